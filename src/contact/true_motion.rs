@@ -1,0 +1,416 @@
+//! The true motion of an impact, and how far the closed form is from it.
+//!
+//! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at rest from x = -A.
+//! Out: [`TrueMotion`]: speed, depth, duration and period measured on the Runge-Kutta path, the path, the drift of
+//! its energy
+//!
+//! ```text
+//! x'^2/2 + V(x) + gamma int_0^depth F,      V' = f
+//! ```
+//!
+//! Flight and contact are separate runs joined at the located touch and exit. Nothing of the closed form enters: no
+//! frequency law, no line.
+
+use thiserror::Error;
+
+use super::linearisation::work;
+use super::phases::ThreePhases;
+use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::ode::{Event, IntegrationError, Options, Phase, State, StopReason, Trajectory, integrate_phases};
+
+/// One impact as it happens, from release to the next turning point.
+#[derive(Debug, Clone)]
+pub struct TrueMotion {
+    /// First touch: time, x_c, speed.
+    pub touch: State,
+    /// The deepest point.
+    pub deepest: State,
+    /// The end of the contact.
+    pub exit: State,
+    /// Greatest depth.
+    pub penetration: f64,
+    /// Duration of the contact.
+    pub duration: f64,
+    /// Time from the release to the turning point after the impact: the period.
+    pub period: f64,
+    /// The path, from the release to that turning point.
+    pub trajectory: Trajectory,
+    /// Largest change of the energy along the path, as a part of the kinetic energy at touch: how good the path is.
+    pub energy_drift: f64,
+}
+
+/// Largest distance |x of the closed form - x of the true motion|, in the units of x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deviation {
+    /// In real time, within the true approach, contact and return.
+    pub phases: [f64; 3],
+    /// In real time, over one true period.
+    pub total: f64,
+    /// With each phase's clock started at its own start, in approach, contact and return: what is left when the
+    /// error in the times of the joins is taken out.
+    pub aligned: [f64; 3],
+}
+
+/// Why there is no true motion.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TrueMotionError {
+    /// It turns round before the barrier.
+    #[error(
+        "the pendulum never reaches the barrier: released at x = {release} it turns round at x = {turn}, and the \
+         barrier stands at {barrier}: raise the amplitude or move the barrier"
+    )]
+    NeverReaches {
+        /// Where it is released.
+        release: f64,
+        /// Where it turns round.
+        turn: f64,
+        /// Where the barrier is.
+        barrier: f64,
+    },
+    /// The release is at or behind the barrier.
+    #[error(
+        "the release at x = {release} lies at or behind the barrier at {barrier}: raise the amplitude or move the \
+         barrier"
+    )]
+    ReleasedBehindBarrier {
+        /// Where it is released.
+        release: f64,
+        /// Where the barrier is.
+        barrier: f64,
+    },
+    /// The run gave up.
+    #[error("the true motion could not be followed to the end of the impact: {0}")]
+    Stopped(StopReason),
+    /// The run could not begin.
+    #[error(transparent)]
+    Integration(#[from] IntegrationError),
+    /// The energy could not be evaluated.
+    #[error("the energy of the true motion could not be evaluated: {0}")]
+    Energy(#[from] QuadratureError),
+}
+
+/// Follows x'' + restoring_force(x) + stiffness * elastic_force(x - barrier) = 0 from rest at x = -amplitude until it
+/// comes to rest again after the impact.
+///
+/// `elastic_force` is asked for depths of at least zero only. The absolute tolerance of `options` should lie well
+/// below the depth of the contact.
+///
+/// # Errors
+/// [`TrueMotionError`]: the barrier is not reached, or the run ends early and says why.
+pub fn true_motion(
+    amplitude: f64,
+    barrier: f64,
+    stiffness: f64,
+    restoring_force: impl Fn(f64) -> f64,
+    elastic_force: impl Fn(f64) -> f64,
+    options: &Options,
+) -> Result<TrueMotion, TrueMotionError> {
+    let release = -amplitude;
+    if barrier <= release {
+        return Err(TrueMotionError::ReleasedBehindBarrier { release, barrier });
+    }
+    let flight = |_: f64, x: f64, _: f64| -restoring_force(x);
+    let contact = |_: f64, x: f64, _: f64| -restoring_force(x) - stiffness * elastic_force((x - barrier).max(0.0));
+    let depth = |_: f64, x: f64, _: f64| x - barrier;
+    let velocity = |_: f64, _: f64, v: f64| v;
+    let on_barrier = |phase: usize| move |state: State| (phase, State { x: barrier, ..state });
+    let phases = [
+        Phase::new(
+            flight,
+            vec![
+                Event::switch(depth, on_barrier(1)).rising(),
+                Event::stop(velocity).falling(),
+            ],
+        ),
+        Phase::new(
+            contact,
+            vec![
+                Event::record(velocity).falling(),
+                Event::switch(depth, on_barrier(2)).falling(),
+            ],
+        ),
+        Phase::new(flight, vec![Event::stop(velocity).rising()]),
+    ];
+    let start = State {
+        t: 0.0,
+        x: release,
+        v: 0.0,
+    };
+    let trajectory = integrate_phases(&phases, 0, start, LONGEST_TIME, options)?;
+    match trajectory.stop_reason() {
+        StopReason::Event { phase: 2, .. } => {}
+        StopReason::Event { .. } => {
+            return Err(TrueMotionError::NeverReaches {
+                release,
+                turn: trajectory.end().x,
+                barrier,
+            });
+        }
+        reason => return Err(TrueMotionError::Stopped(reason)),
+    }
+    let met = |phase: usize, event: usize| {
+        let found = trajectory
+            .occurrences()
+            .iter()
+            .find(|found| (found.phase, found.event) == (phase, event));
+        found.map(|found| found.state)
+    };
+    let (Some(touch), Some(exit)) = (met(0, 0), met(1, 1)) else {
+        return Err(TrueMotionError::Stopped(trajectory.stop_reason()));
+    };
+    // A graze too shallow for a turning point in doubles: touch, turn and exit are one.
+    let deepest = met(1, 0).unwrap_or(touch);
+    let energy_drift = energy_drift(&trajectory, barrier, stiffness, &restoring_force, &elastic_force)?;
+    Ok(TrueMotion {
+        touch: State { x: barrier, ..touch },
+        deepest,
+        exit: State { x: barrier, ..exit },
+        penetration: deepest.x - barrier,
+        duration: exit.t - touch.t,
+        period: trajectory.end().t,
+        trajectory,
+        energy_drift,
+    })
+}
+
+/// A time no impact of interest takes; the number of steps is the real limit.
+const LONGEST_TIME: f64 = 1e9;
+
+/// The deviation of the closed form from the true motion.
+pub fn deviation(closed_form: &ThreePhases, truth: &TrueMotion) -> Deviation {
+    let true_limits = [0.0, truth.touch.t, truth.exit.t, truth.period];
+    let true_position = |t: f64| {
+        truth
+            .trajectory
+            .at(t.clamp(0.0, truth.period))
+            .map_or(f64::NAN, |(x, _)| x)
+    };
+    let mut phases = [0.0; 3];
+    let mut aligned = [0.0; 3];
+    for (index, phase) in closed_form.phases.iter().enumerate() {
+        let (from, to) = (true_limits[index], true_limits[index + 1]);
+        phases[index] = largest(from, to, |t| closed_form.position_at(t) - true_position(t));
+        // As long as both last.
+        let common = (to - from).min(phase.end - phase.start);
+        aligned[index] = largest(0.0, common, |elapsed| {
+            phase.form.at(elapsed).0 - true_position(from + elapsed)
+        });
+    }
+    // The contact of the closed form falls into another true phase and is short: seen there with a grid of its own.
+    let contact = &closed_form.phases[1];
+    let inside = |t: f64| (0.0..=truth.period).contains(&t);
+    let missed = largest(contact.start, contact.end, |t| {
+        if inside(t) {
+            closed_form.position_at(t) - true_position(t)
+        } else {
+            0.0
+        }
+    });
+    let total = phases.iter().copied().fold(missed, f64::max);
+    Deviation { phases, total, aligned }
+}
+
+/// Largest |function| on a grid: enough points that a smooth maximum is right to six digits.
+fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let points = 2000;
+    let values = (0..=points).map(|index| function(from + (to - from) * f64::from(index) / f64::from(points)).abs());
+    // A value that is not a number must not be passed over.
+    values.fold(
+        0.0,
+        |worst: f64, value| if value > worst || value.is_nan() { value } else { worst },
+    )
+}
+
+fn energy_drift(
+    trajectory: &Trajectory,
+    barrier: f64,
+    stiffness: f64,
+    restoring_force: impl Fn(f64) -> f64,
+    elastic_force: impl Fn(f64) -> f64,
+) -> Result<f64, QuadratureError> {
+    let energy = |state: State| -> Result<f64, QuadratureError> {
+        let potential = integrate_smooth(&restoring_force, barrier, state.x, 1e-13)?.0;
+        Ok(0.5 * state.v * state.v + potential + stiffness * work(&elastic_force, state.x - barrier)?)
+    };
+    // The potential is counted from the barrier: the energy at release is the kinetic energy at touch.
+    let released = energy(trajectory.start())?;
+    let mut worst = 0.0_f64;
+    for knot in trajectory.knots() {
+        worst = worst.max((energy(knot)? - released).abs());
+    }
+    Ok(worst / released.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::hertz::{Design, elastic_force};
+    use crate::contact::linearisation::Rule;
+    use crate::contact::phases::{Column, Swing, contact_speed, three_phases};
+    use crate::ode::root::find_root;
+
+    const FORCE: fn(f64) -> f64 = f64::sin;
+
+    fn swing(barrier: f64, stiffness: f64) -> Swing<'static> {
+        Swing {
+            amplitude: 1.5,
+            barrier,
+            stiffness,
+            frequency_squared: 1.0 - 1.5 * 1.5 / 8.0,
+            linear_stiffness: 1.0,
+            restoring_force: &FORCE,
+            elastic_force: &elastic_force,
+            rule: Rule::LeastSquares,
+        }
+    }
+
+    fn pendulum(barrier: f64, stiffness: f64) -> TrueMotion {
+        let options = Options::with_tolerance(1e-13);
+        true_motion(1.5, barrier, stiffness, f64::sin, elastic_force, &options).unwrap()
+    }
+
+    fn near(value: f64, expected: f64, allowed: f64) {
+        assert!((value - expected).abs() <= allowed, "{value} against {expected}");
+    }
+
+    /// Depth and duration of the contact from the energy alone: depth = q^2,
+    /// v^2 = v0^2 - 2 (cos x_c - cos(x_c + q^2)) - (4/5) gamma q^5 = (q_m - q) H, T_c = 8 sqrt(q_m) int_0^1
+    /// q/sqrt(H) dw.
+    fn contact_by_quadrature(barrier: f64, stiffness: f64) -> (f64, f64) {
+        let square = |q: f64| 2.0 * ((barrier + q * q).cos() - 1.5_f64.cos()) - 0.8 * stiffness * q.powi(5);
+        let deepest = find_root(square, 0.0, 1.0).unwrap();
+        let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * stiffness * q.powi(4);
+        let quotient = |q: f64| {
+            integrate_smooth(|part| slope(q + part * (deepest - q)), 0.0, 1.0, 1e-14)
+                .unwrap()
+                .0
+        };
+        let integrand = |w: f64| {
+            let q = deepest * (1.0 - w * w);
+            q / quotient(q).sqrt()
+        };
+        let duration = 8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).unwrap().0;
+        (deepest * deepest, duration)
+    }
+
+    #[test]
+    fn speed_depth_and_times_are_those_of_the_energy() {
+        let m = 0.75_f64.sin().powi(2);
+        for (barrier, stiffness) in [(0.323, 1e6), (0.323, 3.0407e7), (0.0, 1e4), (-0.7, 1e5), (1.2, 1e8)] {
+            let truth = pendulum(barrier, stiffness);
+            near(truth.touch.v, (2.0 * (barrier.cos() - 1.5_f64.cos())).sqrt(), 1e-11);
+            near(truth.touch.v, contact_speed(1.5, barrier, f64::sin).unwrap(), 1e-11);
+            near(truth.exit.v, -truth.touch.v, 2e-11);
+            let reached = (0.5 * barrier).sin() / 0.75_f64.sin();
+            let approach = ellip::ellipk(m).unwrap() + ellip::ellipf(reached.asin(), m).unwrap();
+            near(truth.touch.t, approach, 2e-12);
+            let (depth, duration) = contact_by_quadrature(barrier, stiffness);
+            near(truth.penetration, depth, 1e-12);
+            near(truth.duration, duration, 2e-12);
+            near(truth.period, 2.0 * approach + duration, 1e-11);
+            near(truth.trajectory.end().x, -1.5, 1e-11);
+            assert!(truth.energy_drift < 1e-10, "drift {}", truth.energy_drift);
+        }
+    }
+
+    #[test]
+    fn the_swing_of_the_paper_to_all_digits_known() {
+        let truth = pendulum(0.323, 1e6);
+        near(truth.touch.v, 1.324_802_058_11, 1e-11);
+        near(truth.touch.t, 2.064_407_608_58, 1e-11);
+        near(truth.penetration, 0.005_446_774_934_46, 1e-13);
+        near(truth.duration, 0.012_106_027_06, 1e-11);
+    }
+
+    #[test]
+    fn the_drift_tells_a_loose_run_from_a_tight_one() {
+        let run = |tolerance| {
+            let options = Options::with_tolerance(tolerance);
+            true_motion(1.5, 0.323, 1e6, f64::sin, elastic_force, &options)
+                .unwrap()
+                .energy_drift
+        };
+        assert!(run(1e-5) > 1e3 * run(1e-11));
+    }
+
+    #[test]
+    fn the_closed_form_beside_the_true_motion() {
+        let stiffness = Design::default().stiffness().unwrap();
+        let truth = pendulum(0.323, stiffness);
+        for column in [Column::Paper, Column::Energy] {
+            let motion = three_phases(&swing(0.323, stiffness), column).unwrap();
+            let found = deviation(&motion, &truth);
+            // The touch comes 0.044 late, so after the true one the paths part at twice the speed times that delay.
+            let delay = motion.phases[0].end - truth.touch.t;
+            near(delay, 2.108_808_612 - 2.064_407_608_58, 1e-9);
+            assert!(
+                found.phases[0] > 0.9 * delay * motion.speed && found.phases[0] < 0.1,
+                "{found:?}"
+            );
+            near(found.total, 2.0 * delay * truth.touch.v, 0.3 * delay);
+            // With the clock of the contact set right, what is left is a part of the depth of 1.4e-3.
+            assert!(found.aligned[1] < 0.15 * truth.penetration, "{found:?}");
+        }
+        let of = |column| deviation(&three_phases(&swing(0.323, stiffness), column).unwrap(), &truth).aligned[1];
+        assert!(
+            of(Column::Energy) < 0.7 * of(Column::Paper),
+            "the right speed brings the contact closer"
+        );
+        let energy = three_phases(&swing(0.323, stiffness), Column::Energy).unwrap();
+        near(energy.duration / truth.duration, 1.016, 2e-3);
+        near(energy.penetration / truth.penetration, 1.0, 1e-3);
+    }
+
+    #[test]
+    fn a_motion_compared_with_itself_does_not_deviate() {
+        // A linear pendulum and a linear barrier: the closed form is exact but for gravity in the contact, 0 at x_c
+        // = 0 where the spring k = 1 acts from.
+        let spring = |depth: f64| depth;
+        let linear = |x: f64| x;
+        let exact = Swing {
+            frequency_squared: 1.0,
+            restoring_force: &linear,
+            elastic_force: &spring,
+            ..swing(0.4, 1e4)
+        };
+        let truth = true_motion(1.5, 0.4, 1e4, linear, spring, &Options::with_tolerance(1e-13)).unwrap();
+        for column in [Column::Paper, Column::Energy] {
+            let motion = three_phases(&exact, column).unwrap();
+            let found = deviation(&motion, &truth);
+            assert!(
+                found.total < 1e-10 && found.aligned.iter().all(|part| *part < 1e-10),
+                "{found:?}"
+            );
+            near(motion.period, truth.period, 1e-10);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_followed_is_refused() {
+        let run = |amplitude, barrier| {
+            true_motion(amplitude, barrier, 1e6, f64::sin, elastic_force, &Options::default()).unwrap_err()
+        };
+        let refused = run(0.3, 0.323);
+        assert!(
+            matches!(refused, TrueMotionError::NeverReaches { turn, .. } if (turn - 0.3).abs() < 1e-8),
+            "{refused}"
+        );
+        assert!(matches!(run(1.5, -1.5), TrueMotionError::ReleasedBehindBarrier { .. }));
+        assert!(matches!(run(f64::NAN, 0.3), TrueMotionError::Integration(_)));
+        let few = Options {
+            maximum_steps: 20,
+            ..Options::default()
+        };
+        let refused = true_motion(1.5, 0.323, 1e6, f64::sin, elastic_force, &few).unwrap_err();
+        assert!(
+            matches!(refused, TrueMotionError::Stopped(StopReason::MaximumSteps { .. })),
+            "{refused}"
+        );
+        // At rest on top: it never gets anywhere.
+        let refused = true_motion(1.0, 0.3, 1.0, |_| 0.0, elastic_force, &Options::default()).unwrap_err();
+        assert!(
+            matches!(refused, TrueMotionError::Stopped(StopReason::EndReached)),
+            "{refused}"
+        );
+    }
+}

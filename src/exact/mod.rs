@@ -1,0 +1,12 @@
+//! Numbers that never round.
+//!
+//! [`Rational`] is the coefficient people see; [`Polynomial`](polynomial::Polynomial) carries the symbols; [`Ring`](ring::Ring) is what a
+//! derivation asks of its coefficients, so that one derivation serves exact numbers, symbols and floating point alike.
+
+pub mod polynomial;
+pub mod rational;
+pub mod ring;
+
+pub use polynomial::Polynomial;
+pub use rational::{Integer, Rational};
+pub use ring::Ring;

@@ -1,0 +1,228 @@
+//! JSON documents: exact fractions as strings beside decimals, lowest order first, and the way back.
+//!
+//! ```text
+//! number       {"exact": "-1/8", "value": -0.125}
+//! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
+//! ```
+
+use serde_json::{Map, Value, json};
+
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
+use crate::exact::{Integer, Polynomial, Rational};
+use crate::expr::{Expr, parse_expression};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Definition, Method, Solution};
+use crate::symbol::Symbol;
+use crate::verify::{Values, Verdict, Verification};
+use num_traits::{One, Zero};
+
+/// Why a document is no solution.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum JsonError {
+    /// A key is missing or holds something else.
+    #[error("`{key}` should hold {expected}")]
+    Unexpected {
+        /// The key.
+        key: String,
+        /// What belongs there.
+        expected: &'static str,
+    },
+}
+
+fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
+    Err(JsonError::Unexpected { key: key.to_owned(), expected })
+}
+
+/// A number that may be infinite or undefined only by mistake, in which case it is null.
+pub fn number(value: f64) -> Value {
+    json!(value)
+}
+
+/// An exact fraction beside its decimal value.
+pub fn fraction(value: &Rational) -> Value {
+    json!({ "exact": value.to_string(), "value": to_f64(value) })
+}
+
+/// An exact constant expression, `3/2` or `pi/3`, beside its decimal value.
+pub fn constant(value: &Expr) -> Value {
+    let decimal = value.as_number().map(to_f64).or_else(|| value.evaluate(&[].into()).ok());
+    json!({ "exact": value.to_string(), "value": decimal })
+}
+
+/// A polynomial, lowest order in `small` first.
+pub fn polynomial(polynomial: &Polynomial, small: Symbol) -> Value {
+    let mut terms: Vec<_> = polynomial.terms().collect();
+    terms.sort_by_key(|(monomial, _)| monomial.exponent(small));
+    let term = |(monomial, coefficient): (&Monomial, &Rational)| {
+        let powers: Map<String, Value> =
+            monomial.factors().iter().map(|(symbol, exponent)| (symbol.to_string(), json!(exponent))).collect();
+        json!({ "monomial": powers, "exact": coefficient.to_string(), "value": to_f64(coefficient) })
+    };
+    json!({ "terms": terms.into_iter().map(term).collect::<Vec<_>>() })
+}
+
+/// The document of kind `solution`; `verification` is null unless the formula was judged.
+pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Value {
+    let small = solution.small_parameter;
+    let optional = |law: &Option<Polynomial>| law.as_ref().map(|law| polynomial(law, small));
+    let harmonic = |(k, cosine, sine): (usize, Polynomial, Polynomial)| {
+        json!({ "harmonic": k, "cos": polynomial(&cosine, small), "sin": polynomial(&sine, small) })
+    };
+    let names: Vec<&str> = solution.parameters.iter().map(|name| name.name()).collect();
+    let definitions: Map<String, Value> = solution
+        .definitions
+        .iter()
+        .map(|definition| (definition.symbol.to_string(), json!(definition.meaning.to_string())))
+        .collect();
+    json!({
+        "schema": "lindstedt/solution/1",
+        "equation": solution.equation,
+        "method": solution.method.name(),
+        "order": solution.order,
+        "small_parameter": small.name(),
+        "amplitude": solution.amplitude.name(),
+        "parameters": names,
+        "definitions": definitions,
+        "equilibrium": constant(&solution.equilibrium),
+        "frequency": optional(&solution.frequency),
+        "frequency_squared": optional(&solution.frequency_squared),
+        "relation": optional(&solution.relation),
+        "closed_form": solution.closed_form,
+        "displacement": {
+            "variable": "theta",
+            "harmonics": solution.displacement.harmonics().into_iter().map(harmonic).collect::<Vec<_>>(),
+        },
+        "limit_cycle": solution.limit_cycle.as_ref().map(|amplitude| json!({ "amplitude": polynomial(amplitude, small) })),
+        "modulation": null,
+        "response": null,
+        "validity": solution.validity,
+        "verification": verification.map(self::verification),
+    })
+}
+
+/// The verdict on a formula.
+pub fn verification(verification: &Verification) -> Value {
+    json!({
+        "at": values(&verification.at),
+        "frequency": verification.frequency,
+        "true_frequency": verification.true_frequency,
+        "relative_error": verification.relative_error,
+        "max_deviation": verification.max_deviation,
+        "residual": verification.residual,
+        "slope": verification.slope,
+        "verdict": verdict(verification.verdict),
+    })
+}
+
+/// `"pass"` or `"fail"`.
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "pass",
+        Verdict::Fail => "fail",
+    }
+}
+
+fn values(values: &Values) -> Value {
+    values.iter().map(|(name, value)| (name.to_string(), constant(value))).collect::<Map<_, _>>().into()
+}
+
+/// Reads a document of kind `solution` back; its `verification` is left out.
+///
+/// # Errors
+/// A key that is missing or holds something else.
+pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
+    if text(document, "schema")? != "lindstedt/solution/1" {
+        return unexpected("schema", "\"lindstedt/solution/1\"");
+    }
+    let method = Method::from_name(text(document, "method")?);
+    let amplitude = AmplitudeConvention::from_name(text(document, "amplitude")?);
+    let (Some(method), Some(amplitude)) = (method, amplitude) else {
+        return unexpected("method", "the name of a method, and `amplitude` that of a convention");
+    };
+    let order = document["order"].as_u64().and_then(|order| u32::try_from(order).ok());
+    let optional = |key: &str| match &document[key] {
+        Value::Null => Ok(None),
+        value => read_polynomial(value, key).map(Some),
+    };
+    let strings = |key: &'static str| -> Result<Vec<String>, JsonError> {
+        let list = document[key].as_array().map(|list| list.iter().map(|item| item.as_str().map(str::to_owned)));
+        list.and_then(Iterator::collect).map_or_else(|| unexpected(key, "a list of strings"), Ok)
+    };
+    let limit_cycle = match &document["limit_cycle"] {
+        Value::Null => None,
+        value => Some(read_polynomial(&value["amplitude"], "limit_cycle")?),
+    };
+    Ok(Solution {
+        equation: text(document, "equation")?.to_owned(),
+        method,
+        order: order.map_or_else(|| unexpected("order", "a whole number"), Ok)?,
+        small_parameter: Symbol::new(text(document, "small_parameter")?),
+        amplitude,
+        parameters: strings("parameters")?.iter().map(|name| Symbol::new(name)).collect(),
+        definitions: read_definitions(&document["definitions"])?,
+        equilibrium: expression(text(&document["equilibrium"], "exact")?, "equilibrium")?,
+        frequency: optional("frequency")?,
+        frequency_squared: optional("frequency_squared")?,
+        relation: optional("relation")?,
+        closed_form: document["closed_form"].as_str().map(str::to_owned),
+        displacement: read_displacement(&document["displacement"]["harmonics"])?,
+        limit_cycle,
+        validity: strings("validity")?,
+    })
+}
+
+fn text<'a>(document: &'a Value, key: &str) -> Result<&'a str, JsonError> {
+    document[key].as_str().map_or_else(|| unexpected(key, "a string"), Ok)
+}
+
+fn expression(text: &str, key: &str) -> Result<Expr, JsonError> {
+    parse_expression(text).or_else(|_| unexpected(key, "an expression"))
+}
+
+fn read_definitions(value: &Value) -> Result<Vec<Definition>, JsonError> {
+    let Some(entries) = value.as_object() else { return unexpected("definitions", "an object") };
+    let definition = |(name, meaning): (&String, &Value)| {
+        let Some(meaning) = meaning.as_str() else { return unexpected(name, "an expression") };
+        Ok(Definition { symbol: Symbol::new(name), meaning: expression(meaning, name)? })
+    };
+    entries.iter().map(definition).collect()
+}
+
+fn read_polynomial(value: &Value, key: &str) -> Result<Polynomial, JsonError> {
+    let Some(terms) = value["terms"].as_array() else { return unexpected(key, "a polynomial") };
+    let mut polynomial = Polynomial::zero();
+    for term in terms {
+        let coefficient = term["exact"].as_str().and_then(|exact| exact.parse::<Rational>().ok());
+        let (Some(coefficient), Some(powers)) = (coefficient, term["monomial"].as_object()) else {
+            return unexpected(key, "a polynomial");
+        };
+        let mut monomial = Monomial::one();
+        for (name, exponent) in powers {
+            let Some(exponent) = exponent.as_i64().and_then(|exponent| i32::try_from(exponent).ok()) else {
+                return unexpected(key, "whole exponents");
+            };
+            monomial = monomial.product(&Monomial::power_of(Symbol::new(name), exponent));
+        }
+        polynomial.add_term(monomial, coefficient);
+    }
+    Ok(polynomial)
+}
+
+fn read_displacement(harmonics: &Value) -> Result<FourierSeries<Polynomial>, JsonError> {
+    /// No document of ours comes near it; a hostile one must not fill the memory.
+    const HIGHEST_HARMONIC: u64 = 100_000;
+    let Some(list) = harmonics.as_array() else { return unexpected("displacement", "a list of harmonics") };
+    let (mut cosine, mut sine) = (vec![], vec![]);
+    for harmonic in list {
+        let Some(k) = harmonic["harmonic"].as_u64().filter(|&k| k <= HIGHEST_HARMONIC) else {
+            return unexpected("harmonic", "a whole number");
+        };
+        let k = k as usize;
+        cosine.resize(cosine.len().max(k + 1), Polynomial::zero());
+        sine.resize(sine.len().max(k + 1), Polynomial::zero());
+        cosine[k] = read_polynomial(&harmonic["cos"], "cos")?;
+        sine[k] = read_polynomial(&harmonic["sin"], "sin")?;
+    }
+    Ok(FourierSeries::from_parts(cosine, sine, Integer::one()))
+}

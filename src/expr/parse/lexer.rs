@@ -1,0 +1,244 @@
+//! Text to tokens, and what to write for a character that is none.
+
+use std::ops::Range;
+
+use super::error::{ParseError, shortened};
+
+/// The longest text, in bytes.
+const LONGEST_TEXT: usize = 64 * 1024;
+/// The longest name, in bytes.
+const LONGEST_NAME: usize = 64;
+
+/// The tokens of the text, with one `End` behind the last.
+pub(super) fn tokens(text: &str) -> Result<Vec<Token>, ParseError> {
+    Lexer { text, position: 0 }.tokens()
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Number,
+    Name,
+    Plus,
+    Minus,
+    Times,
+    Divide,
+    Power,
+    Open,
+    Close,
+    Comma,
+    Equals,
+    End,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Token {
+    pub(super) kind: Kind,
+    pub(super) start: usize,
+    pub(super) end: usize,
+}
+
+impl Token {
+    pub(super) fn span(self) -> Range<usize> {
+        self.start..self.end
+    }
+}
+
+struct Lexer<'a> {
+    text: &'a str,
+    position: usize,
+}
+
+impl<'a> Lexer<'a> {
+    fn tokens(mut self) -> Result<Vec<Token>, ParseError> {
+        if self.text.len() > LONGEST_TEXT {
+            let message = format!("the text is longer than {} KiB", LONGEST_TEXT / 1024);
+            return Err(ParseError::new(self.text, 0..0, &message, ""));
+        }
+        self.skip_while(|letter| letter == '\u{feff}');
+        let mut tokens = Vec::new();
+        loop {
+            self.skip_while(|letter| matches!(letter, ' ' | '\t' | '\r' | '\n'));
+            let start = self.position;
+            let Some(letter) = self.rest().chars().next() else {
+                break;
+            };
+            let kind = match letter {
+                'A'..='Z' | 'a'..='z' => self.name()?,
+                '0'..='9' | '.' => self.number()?,
+                _ => self.sign(letter)?,
+            };
+            tokens.push(Token {
+                kind,
+                start,
+                end: self.position,
+            });
+        }
+        tokens.push(Token {
+            kind: Kind::End,
+            start: self.position,
+            end: self.position,
+        });
+        Ok(tokens)
+    }
+
+    fn name(&mut self) -> Result<Kind, ParseError> {
+        let start = self.position;
+        self.skip_while(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        self.skip_while(|letter| letter == '\'');
+        match self.position - start > LONGEST_NAME {
+            true => Err(self.error(start, &format!("a name of more than {LONGEST_NAME} letters"), "")),
+            false => Ok(Kind::Name),
+        }
+    }
+
+    fn number(&mut self) -> Result<Kind, ParseError> {
+        let start = self.position;
+        let digit = |letter: char| letter.is_ascii_digit();
+        self.skip_while(digit);
+        if self.rest().starts_with('.') {
+            self.position += 1;
+            self.skip_while(digit);
+        }
+        if self.rest().starts_with('.') || self.position - start == 1 && self.text[start..].starts_with('.') {
+            self.position += usize::from(self.rest().starts_with('.'));
+            return Err(self.error(start, "this is no number", "a decimal point stands among digits: `0.5`"));
+        }
+        // An `e` without digits behind it is a name, and the missing product sign is found later.
+        if let Some(exponent) = self.rest().strip_prefix(['e', 'E']) {
+            let digits = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
+            if digits.starts_with(digit) {
+                self.position = self.text.len() - digits.len();
+                self.skip_while(digit);
+            }
+        }
+        Ok(Kind::Number)
+    }
+
+    fn sign(&mut self, letter: char) -> Result<Kind, ParseError> {
+        let start = self.position;
+        self.position += letter.len_utf8();
+        let (message, help) = match letter {
+            '+' => return Ok(Kind::Plus),
+            '-' => return Ok(Kind::Minus),
+            '/' => return Ok(Kind::Divide),
+            '^' => return Ok(Kind::Power),
+            '(' => return Ok(Kind::Open),
+            ')' => return Ok(Kind::Close),
+            ',' => return Ok(Kind::Comma),
+            '=' => return Ok(Kind::Equals),
+            '*' if self.rest().starts_with('*') => {
+                self.position += 1;
+                return Ok(Kind::Power);
+            }
+            '*' => return Ok(Kind::Times),
+            '\'' => ("a prime stands directly after its letter".into(), "try `x'`"),
+            '"' => ("a double quote is no pair of primes".into(), "try `x''`"),
+            '[' | '{' => (format!("`{letter}` is no parenthesis here"), "try `(`"),
+            ']' | '}' => (format!("`{letter}` is no parenthesis here"), "try `)`"),
+            '|' => ("`|` is no sign here".into(), "the absolute value is `abs(x)`"),
+            '_' => ("a name begins with a letter".into(), ""),
+            '\\' if self.rest().starts_with("ddot") => return Err(self.latex_derivative(start, "x''")),
+            '\\' if self.rest().starts_with("dot") => return Err(self.latex_derivative(start, "x'")),
+            '\\' => (
+                "LaTeX is written, not read".into(),
+                "functions are `sin(x)`, fractions `a/b`",
+            ),
+            '\0' => ("a NUL character".into(), ""),
+            _ if letter.is_ascii_graphic() => (format!("`{letter}` is no sign here"), ""),
+            _ if letter.is_control() => (format!("a control character, U+{:04X}", u32::from(letter)), ""),
+            _ => {
+                let name = match visible(letter) == letter && !letter.is_whitespace() {
+                    true => format!("`{letter}` (U+{:04X})", u32::from(letter)),
+                    false => format!("the character U+{:04X}", u32::from(letter)),
+                };
+                let help = ascii_spelling(letter).map_or("", |spelling| spelling);
+                (format!("{name} is not understood"), help)
+            }
+        };
+        Err(self.error(start, &message, help))
+    }
+
+    fn latex_derivative(&mut self, start: usize, spelling: &str) -> ParseError {
+        let length = self.rest().find('}').map_or(0, |brace| brace + 1);
+        self.position += length;
+        let message = format!(
+            "`{}`: derivatives are written with primes",
+            shortened(&self.text[start..self.position])
+        );
+        self.error(start, &message, &format!("try `{spelling}`"))
+    }
+
+    fn rest(&self) -> &'a str {
+        &self.text[self.position..]
+    }
+
+    fn skip_while(&mut self, wanted: impl Fn(char) -> bool) {
+        self.position = self.text.len() - self.rest().trim_start_matches(wanted).len();
+    }
+
+    fn error(&self, start: usize, message: &str, help: &str) -> ParseError {
+        ParseError::new(self.text, start..self.position, message, help)
+    }
+}
+
+/// What to write for a character of a typeset formula.
+pub(super) fn ascii_spelling(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        '\u{2212}' | '\u{2013}' | '\u{2014}' | '\u{2010}' | '\u{2011}' => "try `-`",
+        '×' | '·' | '⋅' | '∙' | '•' | '∗' => "try `*`",
+        '÷' | '∕' | '⁄' => "try `/`",
+        '⁰' => "try `^0`",
+        '¹' => "try `^1`",
+        '²' => "try `^2`",
+        '³' => "try `^3`",
+        '⁴' => "try `^4`",
+        '⁵' => "try `^5`",
+        '⁶' => "try `^6`",
+        '⁷' => "try `^7`",
+        '⁸' => "try `^8`",
+        '⁹' => "try `^9`",
+        '½' => "try `1/2`",
+        '′' | '’' | '‘' | '´' => "try `'`",
+        '″' | '“' | '”' => "try `''`",
+        'ẋ' | '\u{307}' => "try `x'`",
+        'ẍ' | '\u{308}' => "try `x''`",
+        '√' => "try `sqrt(x)`",
+        'α' => "try `alpha`",
+        'β' => "try `beta`",
+        'γ' => "try `gamma`",
+        'δ' => "try `delta`",
+        'ε' | 'ϵ' => "try `eps`",
+        'ζ' => "try `zeta`",
+        'η' => "try `eta`",
+        'θ' | 'ϑ' => "try `theta`",
+        'κ' => "try `kappa`",
+        'λ' => "try `lambda`",
+        'μ' | 'µ' => "try `mu`",
+        'ν' => "try `nu`",
+        'ξ' => "try `xi`",
+        'π' => "try `pi`",
+        'ρ' => "try `rho`",
+        'σ' => "try `sigma`",
+        'τ' => "try `tau`",
+        'φ' | 'ϕ' => "try `phi`",
+        'χ' => "try `chi`",
+        'ψ' => "try `psi`",
+        'ω' => "try `omega`",
+        'Ω' | '\u{2126}' => "try `Omega`",
+        '\u{a0}' | '\u{2009}' | '\u{202f}' | '\u{3000}' => "try a plain blank",
+        '\u{ff1d}' => "try `=`",
+        '\u{ff08}' => "try `(`",
+        '\u{ff09}' => "try `)`",
+        _ => return None,
+    })
+}
+
+/// The character itself, or `?` for one that a terminal would not simply show.
+pub(super) fn visible(letter: char) -> char {
+    match letter {
+        '\t' | '\r' | '\n' => ' ',
+        ' '..='~' => letter,
+        _ if letter.is_alphanumeric() || ascii_spelling(letter).is_some_and(|_| !letter.is_whitespace()) => letter,
+        _ => '?',
+    }
+}

@@ -1,0 +1,324 @@
+//! What people write by mistake, and what to write instead.
+
+use std::ops::Range;
+
+use super::error::{ParseError, shortened};
+use super::lexer::{Kind, Token};
+use super::{Parser, RESERVED_NAMES};
+use crate::expr::Function;
+use crate::symbol::Symbol;
+
+impl Parser<'_> {
+    /// The letter that carries primes, after a look at every name.
+    pub(super) fn coordinate(&self) -> Result<Symbol, ParseError> {
+        let mut primed: Option<(Token, &str)> = None;
+        for (index, token) in self
+            .tokens
+            .iter()
+            .enumerate()
+            .filter(|(_, token)| token.kind == Kind::Name)
+        {
+            let name = &self.text[token.span()];
+            let bare = name.trim_end_matches('\'');
+            let called = self.tokens.get(index + 1).is_some_and(|next| next.kind == Kind::Open);
+            if RESERVED_NAMES.contains(&bare) && !called {
+                let meaning = match bare {
+                    "A" | "a" => "the amplitude",
+                    "theta" => "the phase",
+                    _ => "the frequency",
+                };
+                let message = format!("`{bare}` is reserved: it is {meaning} in the answer");
+                return Err(self.error(token.span(), &message, &format!("another name, such as `{bare}1`")));
+            }
+            if bare.len() == name.len() || Function::from_name(bare).is_some() || bare == "t" || bare == "pi" {
+                continue;
+            }
+            if bare.len() > 1 {
+                let message = format!("`{name}`: primes belong to a single letter");
+                return Err(self.error(token.span(), &message, "try `x'` or `x''`"));
+            }
+            match primed {
+                Some((_, first)) if first != bare => {
+                    let message = format!("derivatives of both `{first}` and `{bare}`");
+                    return Err(self.error(token.span(), &message, "an equation of motion has one coordinate"));
+                }
+                _ => primed = Some((*token, bare)),
+            }
+        }
+        let Some((_, letter)) = primed else {
+            return Ok(Symbol::new("x"));
+        };
+        let is_x = |token: &&Token| token.kind == Kind::Name && &self.text[token.span()] == "x";
+        match self.tokens.iter().find(is_x) {
+            Some(token) if letter != "x" => {
+                let message = format!("`x` beside the coordinate `{letter}`");
+                Err(self.error(
+                    token.span(),
+                    &message,
+                    &format!("write `{letter}`, or give the parameter another name"),
+                ))
+            }
+            _ => Ok(Symbol::new(letter)),
+        }
+    }
+
+    /// Derivatives spelt otherwise: `dx/dt`, `d2x/dt2`, `d^2x/dt^2`, `x_dot`, `diff(x, t)`.
+    pub(super) fn refuse_other_derivatives(&self) -> Result<(), ParseError> {
+        let text = |token: &Token| &self.text[token.span()];
+        for (index, token) in self
+            .tokens
+            .iter()
+            .enumerate()
+            .filter(|(_, token)| token.kind == Kind::Name)
+        {
+            let name = text(token);
+            let rest = &self.tokens[index..];
+            let called = rest.get(1).is_some_and(|next| next.kind == Kind::Open);
+            if called && ["diff", "D", "Diff", "Derivative", "derivative", "dot", "ddot"].contains(&name) {
+                let end = matching_close(rest, 1).map_or(token.end, |place| rest[place].end);
+                return Err(self.derivative_error(token.start..end, "x", None));
+            }
+            if let Some((letter, order)) = dotted(name) {
+                return Err(self.derivative_error(token.span(), letter, Some(order)));
+            }
+            let kinds: Vec<Kind> = rest.iter().take(8).map(|token| token.kind).collect();
+            let is_time = |place: usize| {
+                rest.get(place)
+                    .is_some_and(|token| ["dt", "dt2"].contains(&text(token)))
+            };
+            // d, d2x, dx over dt; then d^2 x over dt^2.
+            let numerator = name.strip_prefix('d');
+            let (quotient, letter, order) = match kinds.as_slice() {
+                [Kind::Name, Kind::Divide, Kind::Name, ..] if is_time(2) => {
+                    (2, numerator, 1 + usize::from(name.starts_with("d2")))
+                }
+                [
+                    Kind::Name,
+                    Kind::Power,
+                    Kind::Number,
+                    Kind::Name,
+                    Kind::Divide,
+                    Kind::Name,
+                    ..,
+                ] if name == "d" && is_time(5) => (5, Some(text(&rest[3])), 2),
+                [Kind::Name, Kind::Power, Kind::Number, Kind::Divide, Kind::Name, ..] if name == "d" && is_time(4) => {
+                    (4, Some(""), 2)
+                }
+                _ => continue,
+            };
+            let Some(letter) = letter
+                .map(|rest| rest.trim_start_matches('2'))
+                .filter(|letter| letter.len() <= 1)
+            else {
+                continue;
+            };
+            let mut end = quotient;
+            if kinds.get(end + 1) == Some(&Kind::Power) && kinds.get(end + 2) == Some(&Kind::Number) {
+                end += 2;
+            }
+            let letter = if letter.is_empty() { "x" } else { letter };
+            return Err(self.derivative_error(token.start..rest[end].end, letter, Some(order)));
+        }
+        Ok(())
+    }
+
+    fn derivative_error(&self, span: Range<usize>, letter: &str, order: Option<usize>) -> ParseError {
+        let message = format!("{}: derivatives are written with primes", self.quoted(span.clone()));
+        let help = match order {
+            Some(order) => format!("try `{letter}{}`", "'".repeat(order)),
+            None => "try `x'` for the velocity, `x''` for the acceleration".into(),
+        };
+        self.error(span, &message, &help)
+    }
+
+    /// Two operands side by side.
+    pub(super) fn missing_sign(&self) -> ParseError {
+        let Some(previous) = self.previous() else {
+            return self.unexpected();
+        };
+        let left = match previous.kind {
+            Kind::Close => match matching_open(&self.tokens, self.next - 1) {
+                Some(0) => 0,
+                Some(open) => open - usize::from(self.tokens[open - 1].kind == Kind::Name),
+                None => self.next - 1,
+            },
+            _ => self.next - 1,
+        };
+        let mut right = self.next;
+        if self.peek() == Kind::Name && self.tokens.get(right + 1).is_some_and(|next| next.kind == Kind::Open) {
+            right += 1;
+        }
+        if self.tokens[right].kind == Kind::Open {
+            right = matching_close(&self.tokens, right).unwrap_or(right);
+        }
+        let (left, right) = (
+            self.tokens[left].start..previous.end,
+            self.token().start..self.tokens[right].end,
+        );
+        let message = format!("{}: a product needs its sign", self.quoted(left.start..right.end));
+        let help = format!(
+            "try `{}*{}`",
+            shortened(&self.text[left.clone()]),
+            shortened(&self.text[right.clone()])
+        );
+        self.error(left.start..right.end, &message, &help)
+    }
+
+    pub(super) fn bare_function(&self, token: Token) -> ParseError {
+        let name = &self.text[token.span()];
+        let next = self.token();
+        let message = format!("`{name}` needs parentheses around its argument");
+        match next.kind {
+            Kind::Name | Kind::Number => {
+                let help = format!("try `{name}({})`", &self.text[next.span()]);
+                self.error(token.start..next.end, &message, &help)
+            }
+            Kind::Power => self.error(token.span(), &message, &format!("try `{name}(x)^2`")),
+            _ => self.error(token.span(), &message, &format!("try `{name}(x)`")),
+        }
+    }
+
+    /// A name before a parenthesis that is no function.
+    pub(super) fn unknown_function(&self, token: Token) -> ParseError {
+        let name = &self.text[token.span()];
+        if let Some(known) = similar_function(name) {
+            let message = format!("there is no function `{name}`");
+            return self.error(token.span(), &message, &format!("did you mean `{known}`?"));
+        }
+        let argument = matching_close(&self.tokens, self.next).map_or(token.end, |place| self.tokens[place].end);
+        let product = format!("{name}*{}", shortened(&self.text[token.end..argument]));
+        if name.trim_end_matches('\'').len() == 1 || name == "pi" {
+            let message = format!("{}: a product needs its sign", self.quoted(token.start..argument));
+            return self.error(token.start..argument, &message, &format!("try `{product}`"));
+        }
+        let names: Vec<&str> = Function::all().map(Function::name).chain(["sqrt"]).collect();
+        let help = format!("the functions are {}; a product is `{product}`", names.join(" "));
+        self.error(token.span(), &format!("there is no function `{name}`"), &help)
+    }
+
+    pub(super) fn missing_operand(&self) -> ParseError {
+        let token = self.token();
+        let previous = self.next.checked_sub(1).and_then(|place| self.tokens.get(place));
+        match (previous, token.kind) {
+            (None, Kind::Close) => self.unexpected(),
+            (Some(previous), _) => {
+                let message = format!("something is missing after {}", self.quoted(previous.span()));
+                self.error(previous.span(), &message, "")
+            }
+            (None, _) => {
+                let message = format!("something is missing before {}", self.quoted(token.span()));
+                self.error(token.span(), &message, "")
+            }
+        }
+    }
+
+    /// A token that nothing can continue with.
+    pub(super) fn unexpected(&self) -> ParseError {
+        let token = self.token();
+        match token.kind {
+            Kind::Close => self.error(token.span(), "this `)` closes nothing", ""),
+            Kind::Comma => self.error(
+                token.span(),
+                "a `,` stands between the arguments of `max` and `min` alone",
+                "a decimal point is `.`",
+            ),
+            Kind::Equals => self.error(token.span(), "an `=` where none can stand", ""),
+            _ => self.error(
+                token.span(),
+                &format!("{} cannot stand here", self.quoted(token.span())),
+                "",
+            ),
+        }
+    }
+}
+
+fn matching_close(tokens: &[Token], open: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (place, token) in tokens.iter().enumerate().skip(open) {
+        match token.kind {
+            Kind::Open => depth += 1,
+            Kind::Close if depth == 1 => return Some(place),
+            Kind::Close => depth = depth.checked_sub(1)?,
+            _ => {}
+        }
+    }
+    None
+}
+
+fn matching_open(tokens: &[Token], close: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (place, token) in tokens.iter().enumerate().take(close + 1).rev() {
+        match token.kind {
+            Kind::Close => depth += 1,
+            Kind::Open if depth == 1 => return Some(place),
+            Kind::Open => depth = depth.checked_sub(1)?,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// `x_dot`, `xdot`, `x_ddot`: the letter and the order of the derivative.
+fn dotted(name: &str) -> Option<(&str, usize)> {
+    let letter = name.get(..1)?;
+    match name.get(1..)?.trim_start_matches('_') {
+        "dot" => Some((letter, 1)),
+        "ddot" | "dotdot" => Some((letter, 2)),
+        _ => None,
+    }
+}
+
+/// The function that was probably meant.
+fn similar_function(name: &str) -> Option<&'static str> {
+    let folded = name.to_ascii_lowercase();
+    let alias = match folded.as_str() {
+        "ln" => "log",
+        "sign" | "signum" => "sgn",
+        "heaviside" | "step" => "H",
+        "arcsin" | "arsin" => "asin",
+        "arccos" => "acos",
+        "arctan" | "arctg" => "atan",
+        "fabs" | "absolute" => "abs",
+        "maximum" => "max",
+        "minimum" => "min",
+        "sh" => "sinh",
+        "ch" => "cosh",
+        "th" => "tanh",
+        "tg" => "tan",
+        "root" => "sqrt",
+        _ => "",
+    };
+    if !alias.is_empty() {
+        return Some(alias);
+    }
+    if name.len() < 2 || name.ends_with('\'') {
+        return None;
+    }
+    let names = Function::all()
+        .map(Function::name)
+        .chain(["sqrt"])
+        .filter(|known| known.len() > 1);
+    let closest = names
+        .map(|known| (edits(&folded, known), known))
+        .min_by_key(|(distance, _)| *distance)?;
+    (closest.0 <= 1).then_some(closest.1)
+}
+
+/// The number of letters to insert, delete, replace or swap with their neighbour.
+fn edits(from: &str, to: &str) -> usize {
+    let (from, to) = (from.as_bytes(), to.as_bytes());
+    let mut before: Vec<usize> = Vec::new();
+    let mut above: Vec<usize> = (0..=to.len()).collect();
+    for (i, a) in from.iter().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, b) in to.iter().enumerate() {
+            let mut best = (above[j] + usize::from(a != b)).min(above[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && from[i - 1] == *b && to[j - 1] == *a {
+                best = best.min(before[j - 1] + 1);
+            }
+            row.push(best);
+        }
+        before = std::mem::replace(&mut above, row);
+    }
+    above[to.len()]
+}

@@ -1,0 +1,14 @@
+//! lindstedt
+pub mod symbol;
+pub mod exact;
+pub mod expr;
+pub mod series;
+pub mod solution;
+pub mod oscillator;
+pub mod method;
+pub mod ode;
+pub mod verify;
+pub mod contact;
+pub mod export;
+pub use symbol::Symbol;
+pub use oscillator::Oscillator;

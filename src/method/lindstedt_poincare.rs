@@ -1,0 +1,361 @@
+//! The method of Lindstedt and Poincare: strained time, secular terms eliminated order by order.
+//!
+//! References: A. Lindstedt, Mem. Acad. Imp. Sci. St. Petersbourg 31 (1883); H. Poincare, *Les methodes nouvelles de la
+//! mecanique celeste* II (1893); A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1.
+//!
+//! ```text
+//! x'' + omega0^2 x + sum_j delta^(a_j) c_j x^p x'^q = 0,      theta = omega t
+//! x = A (y_0 + delta y_1 + ...),  omega^2 = omega0^2 (1 + delta W_1 + ...),  y_0 = cos theta
+//! y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
+//! ```
+//!
+//! What remains is [`secular::expand`], over whole numbers where every symbol can be scaled away (Duffing depends on
+//! `eps*A^2` alone) and over polynomials otherwise.
+//!
+//! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the first order,
+//! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`.
+
+use std::collections::BTreeSet;
+
+use num_bigint::BigInt;
+use num_integer::Integer as _;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, expand};
+use super::{Options, Refusal};
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::ratio;
+use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::expr::Expr;
+use crate::oscillator::{Oscillator, Parts, PerturbedForce, SmallParameter, Term};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Definition, Method, Solution};
+use crate::symbol::Symbol;
+
+const TITLE: &str = "the method of Lindstedt and Poincare";
+
+/// Derives frequency and motion as power series in the small parameter.
+///
+/// # Errors
+/// Damping, forcing, or a force that cannot be expanded, each by name.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let parts = oscillator.parts()?;
+    if !parts.forcing.is_zero() {
+        return Err(Refusal::Forcing { method: TITLE, term: first_term(&parts.forcing) });
+    }
+    let small = oscillator.small_parameter(options.small.as_deref())?;
+    let order = options.order.unwrap_or(if small == SmallParameter::Amplitude { 4 } else { 2 });
+    let force = match oscillator.expand(small, order) {
+        // A linear damping term is no polynomial in the amplitude; it is named as what it is.
+        Err(_) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
+            return Err(damping_or_excitation(&parts));
+        }
+        expanded => expanded?,
+    };
+    let (linear_frequency, definition) = force.linear_frequency();
+    let mut definitions: Vec<Definition> = definition.into_iter().chain(force.definitions.clone()).collect();
+
+    let cycle = match limit_cycle_amplitude(&force, &linear_frequency, &parts)? {
+        Some(_) if small == SmallParameter::Amplitude => {
+            return Err(Refusal::AmplitudeNotFree { term: first_term(&parts.damping) });
+        }
+        cycle => cycle,
+    };
+    let convention = options.amplitude.unwrap_or(match cycle {
+        Some(_) => AmplitudeConvention::FirstHarmonic,
+        None => AmplitudeConvention::Initial,
+    });
+    let symbol = convention.symbol();
+    let (unit, amplitude) = match &cycle {
+        None => (Polynomial::symbol(symbol), Amplitude::Free),
+        Some(squared) => {
+            let root = squared.single_term_root().unwrap_or_else(|| {
+                let name = Symbol::new("a0");
+                definitions.push(Definition { symbol: name, meaning: Expr::from(squared).sqrt().unwrap_or_else(|_| Expr::from(squared)) });
+                Polynomial::symbol(name)
+            });
+            (root, Amplitude::Determined)
+        }
+    };
+    let normalisation = match convention {
+        AmplitudeConvention::Initial => Normalisation::Initial,
+        AmplitudeConvention::FirstHarmonic => Normalisation::FirstHarmonic,
+    };
+    let scaled = scaled_terms(&force.terms, &unit, cycle.as_ref(), &linear_frequency);
+    let delta = match small {
+        SmallParameter::Parameter(name) => name,
+        SmallParameter::Amplitude => symbol,
+    };
+    let series = expand_exactly(&scaled, order, normalisation, amplitude, delta)
+        .map_err(|error| if parts.damping.is_zero() { error } else { damping_or_excitation(&parts) })?;
+
+    let times = |series: Polynomial, factor: &Polynomial| series.product(factor);
+    let squared_unit = times(linear_frequency.clone(), &linear_frequency);
+    let displacement = series.displacement.map(|coefficient, _| coefficient.product(&unit));
+    let limit_cycle = cycle.is_some().then(|| limit_cycle(&displacement, convention));
+    let mut validity = vec![format!("truncated after {delta}^{order}; an expansion for small {delta}")];
+    validity.extend(next_terms(&definitions));
+    Ok(Solution {
+        equation: oscillator.equation(),
+        method: Method::LindstedtPoincare,
+        order,
+        small_parameter: delta,
+        amplitude: convention,
+        parameters: oscillator.parameters.clone(),
+        definitions,
+        equilibrium: Expr::zero(),
+        frequency: Some(times(series.frequency, &linear_frequency)),
+        frequency_squared: Some(times(series.frequency_squared, &squared_unit)),
+        relation: None,
+        closed_form: None,
+        displacement,
+        limit_cycle,
+        validity,
+    })
+}
+
+fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {
+    definitions.iter().map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning))
+}
+
+fn first_term(sum: &Expr) -> String {
+    sum.terms().first().unwrap_or(sum).to_string()
+}
+
+/// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
+fn damping_or_excitation(parts: &Parts) -> Refusal {
+    match parts.damping.terms() {
+        [_] => Refusal::Damping { method: TITLE, term: first_term(&parts.damping) },
+        _ => Refusal::AmplitudeNotFree { term: first_term(&parts.damping) },
+    }
+}
+
+/// The square of the amplitude at which the first order has no secular sine; `None` where the amplitude is free.
+fn limit_cycle_amplitude(
+    force: &PerturbedForce,
+    linear_frequency: &Polynomial,
+    parts: &Parts,
+) -> Result<Option<Polynomial>, Refusal> {
+    // g_k, the coefficient of z^k in the secular sine over the amplitude, z = amplitude^2.
+    let mut equation: Vec<Polynomial> = vec![];
+    for term in force.terms.iter().filter(|term| term.order == 1 && term.velocity % 2 == 1) {
+        let sine = FourierSeries::<Rational>::cos(1)
+            .power(term.position)
+            .product(&FourierSeries::sin(1).times(-1).power(term.velocity))
+            .sine(1);
+        let (weight, _) = sine.mean();
+        let power = ((term.position + term.velocity).saturating_sub(1) / 2) as usize;
+        if weight.is_zero() {
+            continue;
+        }
+        if equation.len() <= power {
+            equation.resize(power + 1, Polynomial::zero());
+        }
+        let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
+        let weighted = term.coefficient.product(&frequency).product(&Polynomial::constant(weight));
+        equation[power].accumulate(&weighted);
+    }
+    let powers: Vec<usize> = (0..equation.len()).filter(|&k| !equation[k].is_zero()).collect();
+    let z = Symbol::new("z");
+    let text = || {
+        let term = |&k: &usize| equation[k].times_monomial(&Monomial::power_of(z, k as i32));
+        powers.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term).to_string()
+    };
+    match powers.as_slice() {
+        [] => Ok(None),
+        [_] => Err(Refusal::Damping { method: TITLE, term: first_term(&parts.damping) }),
+        &[low, high] if high == low + 1 => {
+            let Some(inverse) = equation[high].power(-1) else {
+                return Err(Refusal::LimitCycle { equation: text(), reason: "which divides by a sum of symbols" });
+            };
+            let mut squared = equation[low].product(&inverse);
+            squared.negate();
+            let negative = squared.single_term().is_some_and(|(_, number)| !number.is_positive());
+            if negative {
+                return Err(Refusal::Damping { method: TITLE, term: first_term(&parts.damping) });
+            }
+            Ok(Some(squared))
+        }
+        _ => rational_limit_cycle(&equation)
+            .map(|squared| Some(Polynomial::constant(squared)))
+            .ok_or_else(|| Refusal::LimitCycle { equation: text(), reason: "whose stable positive root is no fraction" }),
+    }
+}
+
+/// The smallest positive rational root `z` of `sum g_k z^k` at which the limit cycle is stable, for numerical `g_k`.
+///
+/// The averaged amplitude obeys `a' = (a/2) omega0 g(a^2)` up to a positive factor, so stability asks for `g' < 0`.
+fn rational_limit_cycle(equation: &[Polynomial]) -> Option<Rational> {
+    let numbers: Vec<Rational> = equation.iter().map(Polynomial::as_number).collect::<Option<_>>()?;
+    let common = numbers.iter().fold(Integer::one(), |lcm, number| lcm.lcm(number.denom()));
+    let integers: Vec<Integer> = numbers.iter().map(|number| (number * &common).to_integer()).collect();
+    let lowest = integers.iter().find(|value| !value.is_zero())?;
+    let highest = integers.last()?;
+    let value = |z: &Rational| integers.iter().rev().fold(Rational::zero(), |sum, g| sum * z + g);
+    let slope = |z: &Rational| {
+        let powers = integers.iter().enumerate().skip(1).rev();
+        powers.fold(Rational::zero(), |sum, (k, g)| sum * z + g * BigInt::from(k))
+    };
+    let mut roots: Vec<Rational> = divisors(lowest)?
+        .iter()
+        .flat_map(|p| divisors(highest).unwrap_or_default().into_iter().map(|q| Rational::new(p.clone(), q)))
+        .filter(|z| value(z).is_zero())
+        .collect();
+    roots.sort();
+    roots.into_iter().find(|z| slope(z).is_negative())
+}
+
+/// All positive divisors of a number small enough for trial division.
+fn divisors(value: &Integer) -> Option<Vec<Integer>> {
+    let value = value.abs().to_u64().filter(|value| *value < 1 << 40)?;
+    let small = (1..).take_while(|d| d * d <= value).filter(|d| value % d == 0);
+    Some(small.flat_map(|d| [d, value / d]).map(Integer::from).collect())
+}
+
+fn inverse_power(single_term: &Polynomial, exponent: i32) -> Polynomial {
+    single_term.power(exponent).unwrap_or_else(Polynomial::zero)
+}
+
+/// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this file.
+fn scaled_terms(
+    terms: &[Term],
+    unit: &Polynomial,
+    unit_squared: Option<&Polynomial>,
+    linear_frequency: &Polynomial,
+) -> Vec<Term> {
+    let scale = |term: &Term| {
+        let exponent = (term.position + term.velocity) as i32 - 1;
+        // Even powers of a limit cycle's amplitude are known even where the amplitude itself is a root.
+        let unit = match unit_squared {
+            Some(squared) if exponent > 0 => {
+                let odd = if exponent % 2 == 1 { unit.clone() } else { Polynomial::constant(Rational::one()) };
+                inverse_power(squared, exponent / 2).product(&odd)
+            }
+            _ => inverse_power(unit, exponent),
+        };
+        let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
+        Term { coefficient: term.coefficient.product(&unit).product(&frequency), ..term.clone() }
+    };
+    terms.iter().map(scale).collect()
+}
+
+/// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
+struct ExactSeries {
+    frequency: Polynomial,
+    frequency_squared: Polynomial,
+    displacement: FourierSeries<Polynomial>,
+}
+
+fn expand_exactly(
+    terms: &[Term],
+    order: u32,
+    normalisation: Normalisation,
+    amplitude: Amplitude,
+    delta: Symbol,
+) -> Result<ExactSeries, Refusal> {
+    let scales = scales(terms);
+    let reduced: Vec<Term> = terms
+        .iter()
+        .map(|term| Term { coefficient: without(&term.coefficient, &scales, delta), ..term.clone() })
+        .collect();
+    let restore = |n: usize| {
+        let powers = scales.iter().map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
+        let start = Monomial::power_of(delta, n as i32);
+        powers.filter(|(symbol, _)| *symbol != delta).fold(start, |monomial, (symbol, power)| {
+            monomial.product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
+        })
+    };
+    let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
+    match numbers {
+        Some(numbers) => {
+            let constant = |number: Rational| FourierSeries::constant(number.numer().clone(), number.denom().clone());
+            let force = force_terms(&reduced, numbers.into_iter().map(constant));
+            let expansion = expand::<Integer>(&force, order as usize, normalisation, amplitude)?;
+            let polynomial = |numerator: &Integer, denominator: &Integer| {
+                Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
+            };
+            Ok(collect(&expansion, polynomial, restore))
+        }
+        None => {
+            let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
+            let expansion = expand::<Polynomial<Integer>>(&force, order as usize, normalisation, amplitude)?;
+            let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
+                numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
+            };
+            Ok(collect(&expansion, polynomial, restore))
+        }
+    }
+}
+
+fn force_terms<C>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeries<C>>) -> Vec<ForceTerm<C>> {
+    let pairs = terms.iter().zip(coefficients);
+    let force = |(term, coefficient): (&Term, _)| ForceTerm {
+        order: term.order,
+        position: term.position,
+        velocity: term.velocity,
+        coefficient,
+    };
+    pairs.map(force).collect()
+}
+
+/// A polynomial as whole coefficients over one denominator.
+fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomial<Integer>> {
+    let common = polynomial.terms().fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
+    let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
+    FourierSeries::constant(numerators, common)
+}
+
+/// Every symbol whose exponent is the same multiple of the order in all terms, with that multiple: such a symbol enters the
+/// result in step with the small parameter and can be left out while expanding.
+fn scales(terms: &[Term]) -> Vec<(Symbol, Rational)> {
+    let symbols: BTreeSet<Symbol> = terms.iter().flat_map(|term| term.coefficient.symbols()).collect();
+    let rate = |symbol: Symbol| {
+        let rates: BTreeSet<Rational> = terms
+            .iter()
+            .flat_map(|term| {
+                let exponents = term.coefficient.terms().map(move |(monomial, _)| monomial.exponent(symbol));
+                exponents.map(|exponent| ratio(exponent.into(), term.order as i64))
+            })
+            .collect();
+        if rates.len() == 1 { rates.into_iter().next() } else { None }
+    };
+    symbols.into_iter().filter_map(|symbol| Some((symbol, rate(symbol)?))).collect()
+}
+
+fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)], delta: Symbol) -> Polynomial {
+    let mut reduced = Polynomial::zero();
+    for (monomial, number) in coefficient.terms() {
+        let rest = scales.iter().fold(monomial.without(delta), |monomial, (symbol, _)| monomial.without(*symbol));
+        reduced.add_term(rest, number.clone());
+    }
+    reduced
+}
+
+/// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
+fn collect<C: Ring>(
+    expansion: &Expansion<C>,
+    polynomial: impl Fn(&C, &Integer) -> Polynomial,
+    restore: impl Fn(usize) -> Monomial,
+) -> ExactSeries {
+    let exact = |series: &FourierSeries<C>, n: usize| {
+        let monomial = restore(n);
+        series.map(|numerator, denominator| polynomial(numerator, denominator).times_monomial(&monomial))
+    };
+    let sum = |orders: &[FourierSeries<C>]| {
+        let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
+        exact.fold(FourierSeries::zero(), |sum, term| sum.sum(&term))
+    };
+    ExactSeries {
+        frequency: sum(&expansion.frequency).mean().0,
+        frequency_squared: sum(&expansion.frequency_squared).mean().0,
+        displacement: sum(&expansion.displacement),
+    }
+}
+
+/// The amplitude that a limit cycle has, in the convention of the answer.
+fn limit_cycle(displacement: &FourierSeries<Polynomial>, convention: AmplitudeConvention) -> Polynomial {
+    match convention {
+        AmplitudeConvention::Initial => displacement.at_zero().mean().0,
+        AmplitudeConvention::FirstHarmonic => displacement.cosine(1).mean().0,
+    }
+}

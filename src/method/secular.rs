@@ -1,0 +1,297 @@
+//! Elimination of secular terms: the step every perturbation method of this crate shares.
+//!
+//! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1 (Lindstedt-Poincare); C. M. Andersen and
+//! J. F. Geer, *Power series expansions for the frequency and period of the limit cycle of the van der Pol equation*,
+//! SIAM J. Appl. Math. 42 (1982) 678-693 (limit cycles, order by order).
+//!
+//! With `tau = omega t`, `x = y_0 + delta y_1 + ...`, `omega^2 = 1 + delta W_1 + ...`, `y_0 = cos tau`:
+//!
+//! ```text
+//! y_n'' + y_n = r_n + W_n cos tau,     r_n = - sum_j c_j [y^p (omega y')^q]_(n - a_j) - sum_(0<i<n) W_i y_(n-i)''
+//! W_n = - (cos tau part of r_n)        no secular cosine
+//! B_(n-1) = - (sin tau part) / J       limit cycles only: no secular sine, J its derivative in the amplitude
+//! omega_n = (W_n - sum_(0<i<n) omega_i omega_(n-i)) / 2
+//! ```
+
+use std::collections::HashMap;
+
+use crate::exact::Ring;
+use crate::series::convolution::{Convolutions, Node};
+use crate::series::fourier::{FourierSeries, linear_combination, sum_of_products};
+
+/// One term `delta^order * coefficient * y^position * y'^velocity` of the force beside the linear `y`.
+#[derive(Clone, Debug)]
+pub struct ForceTerm<C> {
+    /// Power of the small parameter, at least one.
+    pub order: usize,
+    /// Power of `y`.
+    pub position: u32,
+    /// Power of `y'` (derivative in the time of the linear frequency).
+    pub velocity: u32,
+    /// A constant series.
+    pub coefficient: FourierSeries<C>,
+}
+
+/// What pins down the homogeneous solution at each order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Normalisation {
+    /// `y(0) = 1`, `y'(0) = 0`: the amplitude is the initial displacement.
+    Initial,
+    /// The first harmonic of `y` is `cos tau` exactly.
+    FirstHarmonic,
+}
+
+/// Whether the amplitude is free (conservative) or determined by the equation (self-excited).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Amplitude {
+    /// A family of periodic motions, one for every amplitude.
+    Free,
+    /// An isolated limit cycle: `y = cos tau` already has the amplitude at which the first order has no secular sine.
+    Determined,
+}
+
+/// The result, order by order.
+#[derive(Clone, Debug)]
+pub struct Expansion<C> {
+    /// `W_n`: omega^2 in powers of the small parameter, constant series; `W_0 = 1`.
+    pub frequency_squared: Vec<FourierSeries<C>>,
+    /// omega itself, likewise.
+    pub frequency: Vec<FourierSeries<C>>,
+    /// `y_n(tau)`.
+    pub displacement: Vec<FourierSeries<C>>,
+    /// `r_n + W_n cos tau`, the right-hand side after the secular term is removed, from order one on.
+    pub right_side: Vec<FourierSeries<C>>,
+    /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
+    pub removed: Vec<FourierSeries<C>>,
+}
+
+/// Why no periodic expansion exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SecularError {
+    /// A sine at the natural frequency that neither frequency nor amplitude can remove: energy is lost or gained.
+    #[error("a secular sine remains at order {order}: the motion gains or loses energy")]
+    Growth {
+        /// The order at which it appears.
+        order: usize,
+    },
+    /// The amplitude equation at this order is degenerate, or its solution would divide by a sum of symbols.
+    #[error("the amplitude cannot be determined at order {order}")]
+    Degenerate {
+        /// The order at which it fails.
+        order: usize,
+    },
+}
+
+/// Expands frequency and displacement to `highest`, inclusive.
+///
+/// Cost: with `H` harmonics at the highest order, every product of the equation takes `O(highest^2 H^2)` coefficient
+/// products in all.
+///
+/// # Errors
+/// See [`SecularError`].
+pub fn expand<C: Ring>(
+    force: &[ForceTerm<C>],
+    highest: usize,
+    normalisation: Normalisation,
+    amplitude: Amplitude,
+) -> Result<Expansion<C>, SecularError> {
+    let mut order_by_order = OrderByOrder::new(force, highest, normalisation, amplitude);
+    for order in 1..=highest {
+        order_by_order.solve_order(order)?;
+    }
+    order_by_order.fix_last_amplitude(highest)?;
+    Ok(order_by_order.result)
+}
+
+struct OrderByOrder<'a, C> {
+    force: &'a [ForceTerm<C>],
+    products: Vec<Option<Node>>,
+    convolutions: Convolutions<C>,
+    position: Node,
+    velocity: Node,
+    normalisation: Normalisation,
+    amplitude: Amplitude,
+    /// How each series changes when the amplitude of `y_0` does.
+    variations: Vec<FourierSeries<C>>,
+    accelerations: Vec<FourierSeries<C>>,
+    result: Expansion<C>,
+}
+
+impl<'a, C: Ring> OrderByOrder<'a, C> {
+    fn new(force: &'a [ForceTerm<C>], highest: usize, normalisation: Normalisation, amplitude: Amplitude) -> Self {
+        let mut convolutions = Convolutions::new();
+        let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
+        // The last amplitude of a limit cycle follows from one order more than is kept.
+        let last = if amplitude == Amplitude::Determined { highest + 1 } else { highest };
+        let mut product_of = |term: &ForceTerm<C>| {
+            let powers = [(position, term.position), (velocity, term.velocity)];
+            let powers = powers.into_iter().filter(|power| power.1 > 0);
+            let nodes: Vec<Node> = powers.map(|(node, exponent)| convolutions.power(node, exponent)).collect();
+            let node = nodes.into_iter().reduce(|left, right| convolutions.product(left, right))?;
+            if let Some(needed) = last.checked_sub(term.order) {
+                convolutions.require(node, needed);
+            }
+            Some(node)
+        };
+        let products = force.iter().map(&mut product_of).collect();
+        let start = FourierSeries::cos(1);
+        convolutions.push(position, start.clone());
+        convolutions.push(velocity, start.derivative());
+        convolutions.advance(0);
+        let leaves = HashMap::from([(position, start.clone()), (velocity, start.derivative())]);
+        let variations = convolutions.variations(&leaves);
+        let result = Expansion {
+            frequency_squared: vec![FourierSeries::integer(1)],
+            frequency: vec![FourierSeries::integer(1)],
+            displacement: vec![start.clone()],
+            right_side: vec![],
+            removed: vec![],
+        };
+        let accelerations = vec![start.derivative().derivative()];
+        Self { force, products, convolutions, position, velocity, normalisation, amplitude, variations, accelerations, result }
+    }
+
+    fn solve_order(&mut self, order: usize) -> Result<(), SecularError> {
+        let mut right_side = self.right_side(order);
+        if self.amplitude == Amplitude::Determined && order > 1 {
+            right_side = self.fix_amplitude(order, right_side)?;
+        }
+        let (particular, resonance) = right_side.solve_oscillator();
+        if !resonance.sine.is_zero() {
+            return Err(SecularError::Growth { order });
+        }
+        let frequency_squared = resonance.cosine.times(-1);
+        let balanced = right_side.sum(&frequency_squared.product(&FourierSeries::cos(1)));
+        self.result.removed.push(resonance.cosine);
+        self.result.right_side.push(balanced);
+        self.result.frequency_squared.push(frequency_squared);
+        self.push_frequency(order);
+        let displacement = self.normalised(particular);
+        self.push_displacement(order, displacement);
+        Ok(())
+    }
+
+    /// `r_n` as in the head of this file.
+    fn right_side(&self, order: usize) -> FourierSeries<C> {
+        let one = FourierSeries::integer(1);
+        let mut terms = Vec::new();
+        for (term, product) in self.force.iter().zip(&self.products) {
+            let Some(of_product) = order.checked_sub(term.order) else { continue };
+            match product {
+                Some(node) => terms.extend(
+                    self.convolutions.order(*node, of_product).map(|series| (-1, &term.coefficient, series)),
+                ),
+                None if of_product == 0 => terms.push((-1, &term.coefficient, &one)),
+                None => {}
+            }
+        }
+        for lower in 1..order {
+            terms.push((-1, &self.result.frequency_squared[lower], &self.accelerations[order - lower]));
+        }
+        sum_of_products(&terms)
+    }
+
+    /// Chooses the amplitude of `y_(order-1)` so that `right_side` of `order` has no secular sine, and carries the choice
+    /// through everything already computed.
+    fn fix_amplitude(&mut self, order: usize, right_side: FourierSeries<C>) -> Result<FourierSeries<C>, SecularError> {
+        let mut terms = Vec::new();
+        for (term, product) in self.force.iter().zip(&self.products) {
+            if let (1, Some(node)) = (term.order, product) {
+                terms.push((-1, &term.coefficient, Convolutions::variation_of(&self.variations, *node)));
+            }
+        }
+        if let Some(first) = self.result.frequency_squared.get(1) {
+            terms.push((-1, first, &self.accelerations[0]));
+        }
+        let change = sum_of_products(&terms);
+        let needed = right_side.sine(1).times(-1);
+        let correction = match needed.is_zero() {
+            true => FourierSeries::zero(),
+            false => needed.divided_by_constant(&change.sine(1)).ok_or(SecularError::Degenerate { order })?,
+        };
+        self.convolutions.correct(order - 1, &correction, &self.variations);
+        let corrected = self.result.displacement[order - 1].sum(&correction.product(&FourierSeries::cos(1)));
+        self.accelerations[order - 1] = corrected.derivative().derivative();
+        self.result.displacement[order - 1] = corrected;
+        Ok(linear_combination(&[(1, &right_side), (1, &correction.product(&change))]))
+    }
+
+    fn fix_last_amplitude(&mut self, highest: usize) -> Result<(), SecularError> {
+        if self.amplitude == Amplitude::Determined && highest > 0 {
+            let right_side = self.right_side(highest + 1);
+            self.fix_amplitude(highest + 1, right_side)?;
+        }
+        Ok(())
+    }
+
+    fn push_frequency(&mut self, order: usize) {
+        let lower = &self.result.frequency;
+        let products: Vec<_> = (1..order).map(|i| (-1, &lower[i], &lower[order - i])).collect();
+        let squares = sum_of_products(&products);
+        let frequency = linear_combination(&[(1, &self.result.frequency_squared[order]), (1, &squares)]).divided_by(2);
+        self.result.frequency.push(frequency);
+    }
+
+    /// Adds the homogeneous solution that the amplitude convention asks for.
+    fn normalised(&self, particular: FourierSeries<C>) -> FourierSeries<C> {
+        if self.normalisation == Normalisation::FirstHarmonic {
+            return particular;
+        }
+        let sine = particular.derivative().at_zero();
+        let with_phase = particular.difference(&sine.product(&FourierSeries::sin(1)));
+        match self.amplitude {
+            Amplitude::Determined => with_phase,
+            Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&FourierSeries::cos(1))),
+        }
+    }
+
+    fn push_displacement(&mut self, order: usize, displacement: FourierSeries<C>) {
+        let derivative = displacement.derivative();
+        self.accelerations.push(derivative.derivative());
+        self.convolutions.push(self.position, displacement.clone());
+        self.result.displacement.push(displacement);
+        let derivatives: Vec<_> = self.result.displacement.iter().map(FourierSeries::derivative).collect();
+        let products: Vec<_> = (0..=order).map(|i| (1, &self.result.frequency[i], &derivatives[order - i])).collect();
+        let velocity = sum_of_products(&products);
+        self.convolutions.push(self.velocity, velocity);
+        self.convolutions.advance(order);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::rational::ratio;
+    use crate::exact::{Integer, Rational};
+    use crate::series::fourier::fraction;
+
+    fn numbers(series: &[FourierSeries<Integer>]) -> Vec<Rational> {
+        series.iter().map(|constant| constant.mean()).map(|(n, d)| fraction(&n, d)).collect()
+    }
+
+    fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integer> {
+        let coefficient = FourierSeries::constant(value.0.into(), value.1.into());
+        ForceTerm { order, position, velocity, coefficient }
+    }
+
+    #[test]
+    fn duffing_and_van_der_pol_from_the_literature() {
+        let duffing = expand(&[term(1, 3, 0, (1, 1))], 4, Normalisation::Initial, Amplitude::Free).expect("periodic");
+        let expected = [ratio(1, 1), ratio(3, 4), ratio(-3, 128), ratio(9, 512), ratio(-1779, 131_072)];
+        assert_eq!(numbers(&duffing.frequency_squared), expected);
+        // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
+        let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
+        let cycle = expand(&force, 4, Normalisation::Initial, Amplitude::Determined).expect("a limit cycle");
+        let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
+        assert_eq!(numbers(&cycle.frequency), expected);
+        let amplitudes: Vec<_> = cycle.displacement.iter().map(FourierSeries::at_zero).map(|y| y.times(2)).collect();
+        let expected = [ratio(2, 1), ratio(0, 1), ratio(1, 96), ratio(0, 1), ratio(-1033, 552_960)];
+        assert_eq!(numbers(&amplitudes), expected);
+    }
+
+    #[test]
+    fn viscous_damping_leaves_a_secular_sine() {
+        let damped = expand(&[term(1, 0, 1, (2, 1))], 3, Normalisation::Initial, Amplitude::Free);
+        assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
+    }
+}

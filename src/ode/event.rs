@@ -1,0 +1,236 @@
+//! Events: zeros of a function of (t, x, v), found inside a step.
+//!
+//! Within a step the motion is a polynomial of degree 8, so the event function is sampled at 17 Chebyshev points, and
+//! each pair of neighbouring samples of opposite sign brackets a crossing, which is then located to rounding
+//! accuracy. Where the samples keep their sign but come closer to zero in between (their derivative changes sign),
+//! the nearest point is searched: two crossings between two samples, the grazing of a barrier, are found as well. An
+//! event function should vary on the scale of the motion, not faster.
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use super::State;
+use super::root::{find_minimum, find_root};
+use super::trajectory::Step;
+
+/// A function of (t, x, v) whose zero matters, the direction of crossing that counts, and what is to happen there.
+pub struct Event<'a> {
+    pub(super) function: Box<dyn Fn(f64, f64, f64) -> f64 + 'a>,
+    pub(super) direction: Direction,
+    pub(super) action: Action<'a>,
+}
+
+/// Which crossings of zero count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Both.
+    Either,
+}
+
+/// What happens at an event.
+pub enum Action<'a> {
+    /// It is listed in the trajectory; the run goes on.
+    Record,
+    /// It is listed and the run ends there.
+    Stop,
+    /// It is listed, and the run restarts with another right side and possibly another state: the closure gets the
+    /// state at the event and answers the index of the phase to go on with and the state to go on from (its time is
+    /// not used).
+    Switch(Box<dyn Fn(State) -> (usize, State) + 'a>),
+}
+
+impl<'a> Event<'a> {
+    /// An event that is only listed. Counts in both directions until told otherwise.
+    pub fn record(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
+        Self {
+            function: Box::new(function),
+            direction: Direction::Either,
+            action: Action::Record,
+        }
+    }
+
+    /// An event that ends the run. Counts in both directions until told otherwise.
+    pub fn stop(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
+        Self {
+            function: Box::new(function),
+            direction: Direction::Either,
+            action: Action::Stop,
+        }
+    }
+
+    /// An event that switches the right side, see [`Action::Switch`]. Let `next` put the state exactly on the surface
+    /// (`x = barrier`), so that the surface just left is not met again by rounding.
+    pub fn switch(function: impl Fn(f64, f64, f64) -> f64 + 'a, next: impl Fn(State) -> (usize, State) + 'a) -> Self {
+        Self {
+            function: Box::new(function),
+            direction: Direction::Either,
+            action: Action::Switch(Box::new(next)),
+        }
+    }
+
+    /// Only crossings from negative to positive.
+    pub fn rising(self) -> Self {
+        Self {
+            direction: Direction::Rising,
+            ..self
+        }
+    }
+
+    /// Only crossings from positive to negative.
+    pub fn falling(self) -> Self {
+        Self {
+            direction: Direction::Falling,
+            ..self
+        }
+    }
+
+    fn counts(&self, rising: bool) -> bool {
+        match self.direction {
+            Direction::Rising => rising,
+            Direction::Falling => !rising,
+            Direction::Either => true,
+        }
+    }
+
+    /// Whether a phase that starts on this surface and moves to this side has to be left: a contact that begins with
+    /// less speed than rounding can resolve, for one.
+    fn leaves_at_once(&self, rising: bool) -> bool {
+        matches!(self.action, Action::Switch(_)) && self.direction != Direction::Either && self.counts(rising)
+    }
+
+    fn value(&self, state: State) -> f64 {
+        (self.function)(state.t, state.x, state.v)
+    }
+}
+
+/// An event function without a finite value.
+#[derive(Debug)]
+pub(super) struct NotFinite;
+
+/// Follows the sign of one event function from step to step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Watch {
+    /// Sign of the last sample that was not zero; `None` at the start of a phase, and after the function reached zero
+    /// at the very end of a step: from there the next sign is the start, not a crossing.
+    positive: Option<bool>,
+}
+
+impl Watch {
+    /// The fractions of the step at which the event happens, in order. `first` is true for the first step of a phase.
+    ///
+    /// A start on the surface is no crossing, reaching zero is one, and leaving it again is none. One exception:
+    /// where a phase starts on the surface of a switch and moves through it in the direction that counts, it is left
+    /// at once.
+    pub(super) fn crossings(&mut self, step: &Step, event: &Event, first: bool) -> Result<Vec<f64>, NotFinite> {
+        let value_at = |fraction: f64| event.value(step.state_at(fraction));
+        let mut samples = Vec::with_capacity(SAMPLES.len() + NEAR_START);
+        for fraction in sample_fractions(first) {
+            let value = value_at(fraction);
+            if !value.is_finite() {
+                return Err(NotFinite);
+            }
+            samples.push((fraction, value));
+        }
+        insert_near_misses(&mut samples, value_at);
+
+        let mut found = Vec::new();
+        let mut before = 0.0;
+        let mut starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
+        for &(fraction, value) in &samples {
+            match (self.positive, value) {
+                (Some(positive), _) if value == 0.0 => {
+                    found.push((fraction, !positive));
+                    self.positive = None;
+                }
+                (Some(positive), _) if positive != (value > 0.0) => {
+                    // The sign may differ by rounding between the end of a step and the start of the next.
+                    let root = if fraction == before {
+                        Ok(fraction)
+                    } else {
+                        find_root(value_at, before, fraction)
+                    };
+                    let root = root.map_err(|_| NotFinite)?;
+                    found.push((root, !positive));
+                    self.positive = Some(!positive);
+                }
+                (None, _) if value != 0.0 => {
+                    if starts_on_surface && event.leaves_at_once(value > 0.0) {
+                        found.push((0.0, value > 0.0));
+                    }
+                    starts_on_surface = false;
+                    self.positive = Some(value > 0.0);
+                }
+                _ => {}
+            }
+            before = fraction;
+        }
+        Ok(found
+            .into_iter()
+            .filter(|&(_, rising)| event.counts(rising))
+            .map(|(fraction, _)| fraction)
+            .collect())
+    }
+}
+
+/// Chebyshev points of a step, both ends included.
+static SAMPLES: LazyLock<[f64; 17]> =
+    LazyLock::new(|| std::array::from_fn(|index| 0.5 * (1.0 - (PI * index as f64 / 16.0).cos())));
+
+/// Extra samples between the first two points of a phase: one that starts on a surface may leave and meet it again
+/// within a tiny part of its first step.
+const NEAR_START: usize = 20;
+
+fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
+    let near_start = if first { NEAR_START } else { 0 };
+    let extra = (1..=near_start)
+        .rev()
+        .map(|power| SAMPLES[1] * 0.25_f64.powi(power as i32));
+    std::iter::once(0.0).chain(extra).chain(SAMPLES[1..].iter().copied())
+}
+
+/// Where |value| has a minimum between samples of one sign, inserts the nearest point found if it lies beyond zero.
+fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f64) {
+    let mut misses = Vec::new();
+    let mut search = |from: f64, to: f64, sign: f64| {
+        let (fraction, height) = find_minimum(|fraction| sign * value_at(fraction), from, to);
+        if height <= 0.0 {
+            misses.push((fraction, sign * height));
+        }
+    };
+    for triple in samples.windows(3) {
+        let [(left, value_left), (_, value), (right, value_right)] = [triple[0], triple[1], triple[2]];
+        let sign = value.signum();
+        let (height_left, height, height_right) = (sign * value_left, sign * value, sign * value_right);
+        if value != 0.0 && height < height_left && height <= height_right {
+            search(left, right, sign);
+        }
+    }
+    // A minimum beside an end of the step has no neighbour on one side: a point close to the end tells the slope.
+    if let [
+        (first, value_first),
+        (second, value_second),
+        ..,
+        (last_but_one, value_before),
+        (last, value_last),
+    ] = samples[..]
+    {
+        for (end, value_end, inner, value_inner) in [
+            (first, value_first, second, value_second),
+            (last, value_last, last_but_one, value_before),
+        ] {
+            let sign = value_end.signum();
+            let dips = || sign * value_at(end + (inner - end) / 64.0) < sign * value_end;
+            if value_end != 0.0 && sign * value_inner >= sign * value_end && dips() {
+                search(end.min(inner), end.max(inner), sign);
+            }
+        }
+    }
+    if !misses.is_empty() {
+        samples.extend(misses);
+        samples.sort_by(|one, other| one.0.total_cmp(&other.0));
+    }
+}

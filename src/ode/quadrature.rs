@@ -1,0 +1,248 @@
+//! The integral of a smooth function, with an error estimate.
+//!
+//! In: a function, an interval, a tolerance. Out: value and error estimate, or why there is none.
+//!
+//! Gauss-Legendre with 20 points on a panel and on its two halves; the difference of the two is the error estimate
+//! of the panel (of its coarse value: the halves, which are what is added up, are far better). The panel with the
+//! largest estimate is halved until the estimates together are below the tolerance times the integral of |f|.
+//!
+//! Singular ends are to be substituted away first: `x = -A + s^2` makes the time integral of an energy
+//! `dx / sqrt(2 (V(A) - V(x)))` smooth.
+//!
+//! ```
+//! use lindstedt::ode::quadrature::integrate_smooth;
+//! let (area, _) = integrate_smooth(f64::sin, 0.0, std::f64::consts::PI, 1e-13)?;
+//! assert!((area - 2.0).abs() < 1e-14);
+//! # Ok::<(), lindstedt::ode::quadrature::QuadratureError>(())
+//! ```
+
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
+
+use gauss_quad::GaussLegendre;
+use thiserror::Error;
+
+/// Why no integral was returned.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum QuadratureError {
+    /// An end of the interval is not a finite number.
+    #[error("the integral from {from} to {to} is not over a finite interval: map it to one first")]
+    Interval {
+        /// Lower end.
+        from: f64,
+        /// Upper end.
+        to: f64,
+    },
+    /// The tolerance is not a positive number.
+    #[error("the quadrature tolerance must be a positive number, not {0}")]
+    Tolerance(f64),
+    /// The integrand has no finite value at this point.
+    #[error("the integrand has no finite value at {at}: split the interval there or substitute the singularity away")]
+    NonFinite {
+        /// Where.
+        at: f64,
+    },
+    /// The tolerance was not reached.
+    #[error(
+        "the integral did not settle: {value} with an estimated error of {error_estimate}; the integrand is not smooth \
+         near {worst_at}: split the interval there or substitute the singularity away"
+    )]
+    NotConverged {
+        /// The best value found.
+        value: f64,
+        /// Its error estimate, absolute.
+        error_estimate: f64,
+        /// Middle of the panel with the largest error.
+        worst_at: f64,
+    },
+}
+
+/// Points of the rule used on each panel.
+const POINTS: NonZeroUsize = NonZeroUsize::MIN.saturating_add(19);
+
+/// Panels after which the integrand is called not smooth.
+const MAXIMUM_PANELS: usize = 1000;
+
+static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINTS));
+
+/// Integral of `function` from `from` to `to`, and its absolute error estimate.
+///
+/// `tolerance` is relative to the integral of |f|; below 1e-14 rounding decides and 1e-14 is used. `from > to` gives
+/// the negative integral.
+///
+/// # Errors
+/// [`QuadratureError`]: an infinite interval, a tolerance that is no positive number, an integrand without a finite
+/// value, or no convergence within 1000 panels; the last one carries the best value.
+pub fn integrate_smooth(
+    mut function: impl FnMut(f64) -> f64,
+    from: f64,
+    to: f64,
+    tolerance: f64,
+) -> Result<(f64, f64), QuadratureError> {
+    if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
+        return Err(QuadratureError::Interval { from, to });
+    }
+    if tolerance.is_nan() || tolerance <= 0.0 {
+        return Err(QuadratureError::Tolerance(tolerance));
+    }
+    if from == to {
+        return Ok((0.0, 0.0));
+    }
+    let tolerance = tolerance.max(1e-14);
+    let coarse = gauss(&mut function, from, to)?.0;
+    let mut panels = vec![Panel::split(&mut function, from, to, coarse)?];
+    loop {
+        let value = panels.iter().map(Panel::value).sum::<f64>();
+        let error_estimate = panels.iter().map(|panel| panel.error).sum::<f64>();
+        let magnitude = panels.iter().map(|panel| panel.magnitude).sum::<f64>();
+        if error_estimate <= tolerance * magnitude {
+            return Ok((value, error_estimate));
+        }
+        let worst = panels
+            .iter()
+            .enumerate()
+            .max_by(|one, other| one.1.error.total_cmp(&other.1.error));
+        let Some((index, &panel)) = worst else {
+            return Ok((value, error_estimate));
+        };
+        let middle = panel.middle();
+        if panels.len() >= MAXIMUM_PANELS || middle <= panel.from.min(panel.to) || middle >= panel.from.max(panel.to) {
+            return Err(QuadratureError::NotConverged {
+                value,
+                error_estimate,
+                worst_at: middle,
+            });
+        }
+        panels[index] = Panel::split(&mut function, panel.from, middle, panel.left)?;
+        panels.push(Panel::split(&mut function, middle, panel.to, panel.right)?);
+    }
+}
+
+/// Nodes and weights of the 20-point Gauss-Legendre rule carried to `[from, to]`, for sums that need the points
+/// themselves, such as a least-squares fit.
+pub fn nodes_and_weights(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    RULE.iter()
+        .map(move |&(node, weight)| (middle + half * node, half * weight))
+}
+
+/// One panel, already integrated on its two halves.
+#[derive(Clone, Copy)]
+struct Panel {
+    from: f64,
+    to: f64,
+    left: f64,
+    right: f64,
+    magnitude: f64,
+    error: f64,
+}
+
+impl Panel {
+    fn split(function: &mut impl FnMut(f64) -> f64, from: f64, to: f64, coarse: f64) -> Result<Self, QuadratureError> {
+        let middle = 0.5 * (from + to);
+        let (left, left_magnitude) = gauss(function, from, middle)?;
+        let (right, right_magnitude) = gauss(function, middle, to)?;
+        let magnitude = left_magnitude + right_magnitude;
+        Ok(Self {
+            from,
+            to,
+            left,
+            right,
+            magnitude,
+            error: (coarse - left - right).abs(),
+        })
+    }
+
+    fn value(&self) -> f64 {
+        self.left + self.right
+    }
+
+    fn middle(&self) -> f64 {
+        0.5 * (self.from + self.to)
+    }
+}
+
+/// Integral of f and of |f| by one application of the rule.
+fn gauss(function: &mut impl FnMut(f64) -> f64, from: f64, to: f64) -> Result<(f64, f64), QuadratureError> {
+    let (mut sum, mut magnitude) = (0.0, 0.0);
+    for (at, weight) in nodes_and_weights(from, to) {
+        let value = function(at);
+        if !value.is_finite() {
+            return Err(QuadratureError::NonFinite { at });
+        }
+        sum += weight * value;
+        magnitude += (weight * value).abs();
+    }
+    Ok((sum, magnitude))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Name, function, the two ends, the integral.
+    type Case = (&'static str, fn(f64) -> f64, f64, f64, f64);
+
+    #[test]
+    fn integrals_known_in_closed_form() {
+        let table: [Case; 6] = [
+            ("polynomial", |x| x.powi(9), 0.0, 2.0, 102.4),
+            ("negative direction", f64::cos, 1.0, 0.0, -(1.0_f64.sin())),
+            (
+                "a narrow bell",
+                |x| 1.0 / (1.0 + 1e6 * x * x),
+                -1.0,
+                1.0,
+                2e-3 * 1000.0_f64.atan(),
+            ),
+            ("zero by symmetry", f64::sin, -3.0, 3.0, 0.0),
+            (
+                "many waves",
+                |x| (200.0 * x).sin(),
+                0.0,
+                1.0,
+                (1.0 - 200.0_f64.cos()) / 200.0,
+            ),
+            ("an end that is not smooth", f64::sqrt, 0.0, 1.0, 2.0 / 3.0),
+        ];
+        for (name, function, from, to, exact) in table {
+            let (value, error_estimate) = integrate_smooth(function, from, to, 1e-12).unwrap();
+            let error = (value - exact).abs();
+            assert!(error <= 1e-12 * exact.abs().max(1.0), "{name}: {value} against {exact}");
+            assert!(
+                error <= error_estimate + 1e-15 * exact.abs().max(1.0),
+                "{name}: error {error} above its estimate {error_estimate}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_complete_elliptic_integral() {
+        for m in [0.0, 0.3, 0.9, 0.999_999] {
+            // 1 - m sin^2 written without cancellation.
+            let integrand = |angle: f64| 1.0 / (1.0 - m + m * angle.cos().powi(2)).sqrt();
+            let (value, _) = integrate_smooth(integrand, 0.0, std::f64::consts::FRAC_PI_2, 1e-13).unwrap();
+            let exact = ellip::ellipk(m).unwrap();
+            assert!((value / exact - 1.0).abs() < 1e-13, "m = {m}: {value} against {exact}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_integrated_is_refused() {
+        let refuse = |function: fn(f64) -> f64, from, to| integrate_smooth(function, from, to, 1e-10).unwrap_err();
+        assert!(matches!(
+            refuse(f64::exp, 0.0, f64::INFINITY),
+            QuadratureError::Interval { .. }
+        ));
+        assert!(matches!(refuse(f64::ln, -1.0, 1.0), QuadratureError::NonFinite { .. }));
+        assert!(matches!(
+            refuse(|x| 1.0 / x, 0.0, 1.0),
+            QuadratureError::NotConverged { .. }
+        ));
+        assert!(matches!(
+            integrate_smooth(f64::exp, 0.0, 1.0, 0.0),
+            Err(QuadratureError::Tolerance(_))
+        ));
+        assert_eq!(integrate_smooth(f64::exp, 2.0, 2.0, 1e-10), Ok((0.0, 0.0)));
+    }
+}

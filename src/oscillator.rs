@@ -1,0 +1,381 @@
+//! The question: an equation of motion in normal form.
+//!
+//! ```text
+//! m(x) x'' + g(x, x', t) = 0   ->   x'' + f(x, x', t) = 0,   f = g / m
+//! f = restoring(x) + inertia(x, x' even) + damping(x, x' odd) + forcing(x, t)
+//! ```
+//!
+//! and, for perturbation methods, the force as a sum of terms `delta^order * coefficient * x^p x'^q` beside the linear
+//! `omega0^2 x`, where `delta` is a parameter of the equation or the amplitude itself.
+
+use std::collections::BTreeSet;
+
+use num_traits::{Signed, Zero};
+
+use crate::exact::polynomial::Monomial;
+use crate::exact::{Polynomial, Rational, Ring};
+use crate::expr::{Equation, Expr, ExprError, ParseError, parse_equation};
+use crate::series::taylor::{TaylorError, taylor};
+use crate::solution::Definition;
+use crate::symbol::Symbol;
+
+/// An equation of motion `x'' + force = 0` for one coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Oscillator {
+    /// The dependent variable, `x` unless another letter carries the primes.
+    pub coordinate: Symbol,
+    /// Everything on the left side: the equation is `residual = 0`.
+    pub residual: Expr,
+    /// `f`, the full force on the left side after division by the coefficient of `x''`.
+    pub force: Expr,
+    /// The names that are neither the coordinate, its derivatives nor time, in alphabetical order.
+    pub parameters: Vec<Symbol>,
+}
+
+/// The force taken apart by what its terms do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts {
+    /// Terms in the coordinate alone.
+    pub restoring: Expr,
+    /// Terms even in the velocity: they come from a mass that depends on position and lose no energy.
+    pub inertia: Expr,
+    /// Terms odd in the velocity.
+    pub damping: Expr,
+    /// Terms that contain time.
+    pub forcing: Expr,
+}
+
+/// The quantity in whose powers an expansion runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SmallParameter {
+    /// A parameter of the equation, `eps` say.
+    Parameter(Symbol),
+    /// The amplitude of the motion.
+    Amplitude,
+}
+
+/// One term `delta^order * coefficient * x^position * x'^velocity` of the force.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Power of the small parameter, at least one.
+    pub order: usize,
+    /// Power of the coordinate.
+    pub position: u32,
+    /// Power of the velocity.
+    pub velocity: u32,
+    /// The rest, in the parameters; the small parameter itself is left out.
+    pub coefficient: Polynomial,
+}
+
+/// The force as `omega0^2 x` and terms that vanish with the small parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerturbedForce {
+    /// `omega0^2`.
+    pub linear: Polynomial,
+    /// All other terms up to the order asked for.
+    pub terms: Vec<Term>,
+    /// Constants that are no polynomials and were given names.
+    pub definitions: Vec<Definition>,
+}
+
+/// Why an equation is no oscillator, or not one that can be expanded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OscillatorError {
+    /// The text is not an equation.
+    #[error(transparent)]
+    Parse(#[from] ParseError),
+    /// A step of algebra failed.
+    #[error("{0}")]
+    Expression(#[from] ExprError),
+    /// There is no second derivative.
+    #[error("the equation has no `{0}''`: an oscillator needs an acceleration")]
+    NoAcceleration(Symbol),
+    /// The second derivative does not enter linearly.
+    #[error("the acceleration enters as `{0}`, which is not linear in it: solve the equation for x'' first")]
+    NonlinearAcceleration(String),
+    /// The coefficient of the acceleration vanishes at the equilibrium.
+    #[error("the coefficient `{0}` of the acceleration vanishes at rest, so the equation does not determine the motion there")]
+    VanishingMass(String),
+    /// There is a force at rest.
+    #[error("the force at rest is `{0}`, not zero: x = 0 is no equilibrium")]
+    NoEquilibrium(String),
+    /// No linear restoring force.
+    #[error("the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0")]
+    NoRestoringForce(String),
+    /// A term that does not vanish with the small parameter.
+    #[error("the term `{term}` does not vanish with the small parameter `{small}`")]
+    NotSmall {
+        /// The term.
+        term: String,
+        /// The small parameter.
+        small: String,
+    },
+    /// A term that is no polynomial in coordinate and velocity.
+    #[error("the term `{0}` is no polynomial in the coordinate and its velocity")]
+    NotPolynomial(String),
+    /// No Taylor series.
+    #[error(transparent)]
+    Taylor(#[from] TaylorError),
+    /// More than one parameter could be small.
+    #[error("more than one parameter could be the small one: {}", list(.0))]
+    AmbiguousSmallParameter(Vec<Symbol>),
+    /// The parameter asked for does not occur.
+    #[error("there is no parameter `{0}` in the equation")]
+    UnknownParameter(Symbol),
+}
+
+fn list(symbols: &[Symbol]) -> String {
+    symbols.iter().map(|symbol| symbol.name()).collect::<Vec<_>>().join(", ")
+}
+
+impl OscillatorError {
+    /// What to try, where something is worth trying.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::AmbiguousSmallParameter(candidates) => {
+                Some(format!("choose one with `--small {}`", candidates.first()?))
+            }
+            Self::NotSmall { .. } | Self::NotPolynomial(_) => {
+                Some("expand in the amplitude instead: `--small A`".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Oscillator {
+    /// Reads an equation such as `x'' + x + eps*x^3 = 0`.
+    ///
+    /// # Errors
+    /// See [`OscillatorError`].
+    pub fn parse(text: &str) -> Result<Self, OscillatorError> {
+        Self::from_equation(&parse_equation(text)?)
+    }
+
+    /// The oscillator of an equation that has been read already.
+    ///
+    /// # Errors
+    /// See [`OscillatorError`].
+    pub fn from_equation(equation: &Equation) -> Result<Self, OscillatorError> {
+        let coordinate = equation.coordinate;
+        let residual = &equation.left - &equation.right;
+        let acceleration = coordinate.derivative().derivative();
+        let mass = residual.differentiate(acceleration)?.expand()?;
+        if mass.is_zero() {
+            return Err(OscillatorError::NoAcceleration(coordinate));
+        }
+        if mass.contains(acceleration) {
+            return Err(OscillatorError::NonlinearAcceleration(residual.to_string()));
+        }
+        let rest = residual.substitute(acceleration, &Expr::zero())?;
+        let mass_at_rest = at_rest(&mass, coordinate);
+        if mass_at_rest.is_ok_and(|mass| mass.is_zero()) {
+            return Err(OscillatorError::VanishingMass(mass.to_string()));
+        }
+        let force = Expr::divide(&rest, &mass)?;
+        let own = [coordinate, coordinate.derivative(), acceleration, Symbol::new("t"), Symbol::new("pi")];
+        let names: BTreeSet<Symbol> = residual.symbols().into_iter().filter(|name| !own.contains(name)).collect();
+        Ok(Self { coordinate, residual, force, parameters: names.into_iter().collect() })
+    }
+
+    /// The velocity `x'`.
+    pub fn velocity(&self) -> Symbol {
+        self.coordinate.derivative()
+    }
+
+    /// The equation in normal form, as text.
+    pub fn equation(&self) -> String {
+        let acceleration = Expr::from(self.velocity().derivative());
+        format!("{} = 0", &acceleration + &self.force)
+    }
+
+    /// The terms of the force sorted by kind. A term of several kinds, such as `x'*sin(t)`, counts as forcing.
+    ///
+    /// # Errors
+    /// The expanded force would be too long.
+    pub fn parts(&self) -> Result<Parts, OscillatorError> {
+        let velocity = self.velocity();
+        let backwards = -&Expr::from(velocity);
+        let expanded = self.force.expand()?;
+        let (mut restoring, mut inertia, mut damping, mut forcing) = (vec![], vec![], vec![], vec![]);
+        for term in expanded.terms() {
+            if term.contains(Symbol::new("t")) {
+                forcing.push(term.clone());
+            } else if !term.contains(velocity) {
+                restoring.push(term.clone());
+            } else if term.substitute(velocity, &backwards)? == *term {
+                inertia.push(term.clone());
+            } else {
+                damping.push(term.clone());
+            }
+        }
+        Ok(Parts {
+            restoring: Expr::sum(restoring),
+            inertia: Expr::sum(inertia),
+            damping: Expr::sum(damping),
+            forcing: Expr::sum(forcing),
+        })
+    }
+
+    /// The quantity in whose powers to expand: `asked`, else `eps`, else the one parameter whose vanishing leaves
+    /// `x'' + omega0^2 x`, else the amplitude.
+    ///
+    /// # Errors
+    /// An unknown name, or several parameters that would do.
+    pub fn small_parameter(&self, asked: Option<&str>) -> Result<SmallParameter, OscillatorError> {
+        if let Some(name) = asked {
+            let symbol = Symbol::new(name);
+            return match name {
+                "A" | "a" => Ok(SmallParameter::Amplitude),
+                _ if self.parameters.contains(&symbol) => Ok(SmallParameter::Parameter(symbol)),
+                _ => Err(OscillatorError::UnknownParameter(symbol)),
+            };
+        }
+        let eps = Symbol::new("eps");
+        if self.parameters.contains(&eps) {
+            return Ok(SmallParameter::Parameter(eps));
+        }
+        let candidates: Vec<Symbol> =
+            self.parameters.iter().copied().filter(|&parameter| self.is_linear_without(parameter)).collect();
+        match candidates.as_slice() {
+            [] => Ok(SmallParameter::Amplitude),
+            [only] => Ok(SmallParameter::Parameter(*only)),
+            _ => Err(OscillatorError::AmbiguousSmallParameter(candidates)),
+        }
+    }
+
+    /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
+    fn is_linear_without(&self, parameter: Symbol) -> bool {
+        let Ok(rest) = self.force.substitute(parameter, &Expr::zero()).and_then(|rest| rest.expand()) else {
+            return false;
+        };
+        let linear = Expr::divide(&rest, &Expr::from(self.coordinate)).and_then(|quotient| quotient.expand());
+        linear.is_ok_and(|quotient| {
+            let own = [self.coordinate, self.velocity(), Symbol::new("t")];
+            !quotient.is_zero() && own.iter().all(|&name| !quotient.contains(name)) && quotient != self.stiffness()
+        })
+    }
+
+    fn stiffness(&self) -> Expr {
+        let quotient = Expr::divide(&self.force, &Expr::from(self.coordinate)).and_then(|quotient| quotient.expand());
+        quotient.unwrap_or_else(|_| self.force.clone())
+    }
+
+    /// The force up to `delta^order`, about the equilibrium `x = 0`.
+    ///
+    /// # Errors
+    /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic or no polynomial.
+    pub fn expand(&self, small: SmallParameter, order: u32) -> Result<PerturbedForce, OscillatorError> {
+        let (position, velocity) = (self.coordinate, self.velocity());
+        let at_rest = at_rest(&self.force, position).and_then(|force| force.expand());
+        if let Ok(force) = at_rest
+            && !force.is_zero()
+        {
+            return Err(OscillatorError::NoEquilibrium(force.to_string()));
+        }
+        let zero = Rational::zero();
+        let (parts, first) = match small {
+            SmallParameter::Parameter(name) => (taylor(&self.force, &[(name, zero)], order)?, 0),
+            SmallParameter::Amplitude => {
+                (taylor(&self.force, &[(position, zero.clone()), (velocity, zero)], order.saturating_add(1))?, 1)
+            }
+        };
+        let mut names = Names::new(self);
+        let mut linear = Polynomial::zero();
+        let mut terms = Vec::new();
+        for (power, part) in parts.iter().enumerate().skip(first) {
+            let mut name = |constant: &Expr| names.of(constant, &[position, velocity]);
+            let Some(polynomial) = part.to_polynomial(&mut name)? else {
+                return Err(OscillatorError::NotPolynomial(part.to_string()));
+            };
+            for (monomial, coefficient) in polynomial.terms() {
+                let text = || Expr::from(&Polynomial::term(monomial.clone(), coefficient.clone())).to_string();
+                let exponent = |symbol| u32::try_from(monomial.exponent(symbol));
+                let (Ok(p), Ok(q)) = (exponent(position), exponent(velocity)) else {
+                    return Err(OscillatorError::NotPolynomial(text()));
+                };
+                let mut rest = monomial.without(position).without(velocity);
+                if let SmallParameter::Parameter(name) = small {
+                    rest = rest.without(name);
+                }
+                let coefficient = Polynomial::term(rest, coefficient.clone());
+                match (power - first, p, q) {
+                    (0, 1, 0) => linear.accumulate(&coefficient),
+                    (0, ..) => {
+                        let small = match small {
+                            SmallParameter::Parameter(name) => name.to_string(),
+                            SmallParameter::Amplitude => "A".to_owned(),
+                        };
+                        return Err(OscillatorError::NotSmall { term: text(), small });
+                    }
+                    (order, position, velocity) => terms.push(Term { order, position, velocity, coefficient }),
+                }
+            }
+        }
+        let negative = linear.as_number().is_some_and(|number| number.is_negative());
+        if linear.is_zero() || negative {
+            return Err(OscillatorError::NoRestoringForce((&Expr::from(&linear) * &Expr::from(position)).to_string()));
+        }
+        Ok(PerturbedForce { linear, terms: merged(terms), definitions: names.definitions })
+    }
+}
+
+/// Terms with equal powers added up, so that each product of the equation occurs once.
+fn merged(terms: Vec<Term>) -> Vec<Term> {
+    let mut merged: Vec<Term> = Vec::with_capacity(terms.len());
+    for term in terms {
+        let key = |term: &Term| (term.order, term.position, term.velocity);
+        match merged.iter_mut().find(|known| key(known) == key(&term)) {
+            Some(known) => known.coefficient.accumulate(&term.coefficient),
+            None => merged.push(term),
+        }
+    }
+    merged
+}
+
+fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
+    expression.substitute(coordinate, &Expr::zero())?.substitute(coordinate.derivative(), &Expr::zero())
+}
+
+/// Names for constants that are no polynomials.
+struct Names<'a> {
+    taken: &'a [Symbol],
+    definitions: Vec<Definition>,
+}
+
+impl<'a> Names<'a> {
+    fn new(oscillator: &'a Oscillator) -> Self {
+        Self { taken: &oscillator.parameters, definitions: vec![] }
+    }
+
+    /// The symbol of `constant`, unless one of `variables` occurs in it.
+    fn of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
+        if variables.iter().any(|&variable| constant.contains(variable)) || constant.contains(Symbol::new("t")) {
+            return None;
+        }
+        if let Some(known) = self.definitions.iter().find(|definition| definition.meaning == *constant) {
+            return Some(known.symbol);
+        }
+        let numbered = (1..).map(|number| Symbol::new(&format!("c{number}")));
+        let used = |symbol: &Symbol| {
+            self.taken.contains(symbol) || self.definitions.iter().any(|definition| definition.symbol == *symbol)
+        };
+        let symbol = numbered.into_iter().find(|symbol| !used(symbol))?;
+        self.definitions.push(Definition { symbol, meaning: constant.clone() });
+        Some(symbol)
+    }
+}
+
+impl PerturbedForce {
+    /// `omega0` as a single term: a fraction, a product of powers of parameters, or the symbol `omega0` with its definition.
+    pub fn linear_frequency(&self) -> (Polynomial, Option<Definition>) {
+        if let Some(root) = self.linear.single_term_root() {
+            return (root, None);
+        }
+        let symbol = Symbol::new("omega0");
+        // Negative numbers were refused; nothing else under the root is known to be negative.
+        let linear = Expr::from(&self.linear);
+        let meaning = linear.sqrt().unwrap_or(linear);
+        (Polynomial::term(Monomial::power_of(symbol, 1), num_traits::One::one()), Some(Definition { symbol, meaning }))
+    }
+}

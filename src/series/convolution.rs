@@ -1,0 +1,172 @@
+//! Products of series in a small parameter, order by order, none computed twice.
+//!
+//! With `u = u_0 + delta u_1 + ...` and `v` likewise, order `n` of the product is `sum_i u_i v_(n-i)`. A [`Convolutions`]
+//! holds the products an equation asks for (`x^2`, `x^3`, `x x'^2`, ...) as a graph on its leaves and computes one order of
+//! each when that order of the leaves is known, only as far as it is needed.
+
+use std::collections::HashMap;
+
+use super::fourier::{FourierSeries, linear_combination, sum_of_products};
+use crate::exact::Ring;
+
+/// One series in the graph: a leaf, or a product of two others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Node(usize);
+
+#[derive(Debug)]
+struct Orders<C> {
+    /// `None` for a leaf.
+    factors: Option<(Node, Node)>,
+    /// The orders known so far.
+    known: Vec<FourierSeries<C>>,
+    /// The highest order anyone asked for.
+    needed: Option<usize>,
+}
+
+/// Series in a small parameter and their products.
+#[derive(Debug, Default)]
+pub struct Convolutions<C> {
+    nodes: Vec<Orders<C>>,
+    products: HashMap<(Node, Node), Node>,
+}
+
+impl<C: Ring> Convolutions<C> {
+    /// No series yet.
+    pub fn new() -> Self {
+        Self { nodes: vec![], products: HashMap::new() }
+    }
+
+    /// A new series whose orders the caller supplies.
+    pub fn leaf(&mut self) -> Node {
+        self.add(None)
+    }
+
+    /// The product of two series.
+    pub fn product(&mut self, left: Node, right: Node) -> Node {
+        let factors = (left.min(right), left.max(right));
+        if let Some(&known) = self.products.get(&factors) {
+            return known;
+        }
+        let node = self.add(Some(factors));
+        self.products.insert(factors, node);
+        node
+    }
+
+    /// The power `base^exponent`, `exponent >= 1`, built by steps of two so that neighbouring powers share their work.
+    pub fn power(&mut self, base: Node, exponent: u32) -> Node {
+        if exponent <= 1 {
+            return base;
+        }
+        let square = self.product(base, base);
+        let start = if exponent % 2 == 0 { square } else { base };
+        (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square))
+    }
+
+    /// Asks for `node` up to `order`, and with it for its factors.
+    pub fn require(&mut self, node: Node, order: usize) {
+        let entry = &mut self.nodes[node.0];
+        if entry.needed.is_some_and(|needed| needed >= order) {
+            return;
+        }
+        entry.needed = Some(order);
+        if let Some((left, right)) = entry.factors {
+            self.require(left, order);
+            self.require(right, order);
+        }
+    }
+
+    /// Supplies the next order of a leaf.
+    pub fn push(&mut self, leaf: Node, series: FourierSeries<C>) {
+        self.nodes[leaf.0].known.push(series);
+    }
+
+    /// Order `order` of a series, where it is known.
+    pub fn order(&self, node: Node, order: usize) -> Option<&FourierSeries<C>> {
+        self.nodes[node.0].known.get(order)
+    }
+
+    /// Computes `order` of every product that needs it; the leaves must be known that far.
+    pub fn advance(&mut self, order: usize) {
+        for index in 0..self.nodes.len() {
+            let entry = &self.nodes[index];
+            let Some((left, right)) = entry.factors else { continue };
+            if entry.needed.is_none_or(|needed| needed < order) {
+                continue;
+            }
+            let (left, right, same) = (&self.nodes[left.0].known, &self.nodes[right.0].known, left == right);
+            let product = if same {
+                // A square: u_i u_j and u_j u_i are the same product.
+                let terms: Vec<_> = (0..=order / 2)
+                    .map(|i| (if 2 * i == order { 1 } else { 2 }, &left[i], &left[order - i]))
+                    .collect();
+                sum_of_products(&terms)
+            } else {
+                let terms: Vec<_> = (0..=order).map(|i| (1, &left[i], &right[order - i])).collect();
+                sum_of_products(&terms)
+            };
+            self.nodes[index].known.push(product);
+        }
+    }
+
+    /// The first variation of every series at order zero when the leaves vary by `of_leaves`.
+    pub fn variations(&self, of_leaves: &HashMap<Node, FourierSeries<C>>) -> Vec<FourierSeries<C>> {
+        let mut variations: Vec<FourierSeries<C>> = Vec::with_capacity(self.nodes.len());
+        for (index, entry) in self.nodes.iter().enumerate() {
+            let variation = match entry.factors {
+                None => of_leaves.get(&Node(index)).cloned().unwrap_or_else(FourierSeries::zero),
+                Some((left, right)) => {
+                    let zeroth = |node: Node| &self.nodes[node.0].known[0];
+                    let (of_left, of_right) = (&variations[left.0], &variations[right.0]);
+                    sum_of_products(&[(1, of_left, zeroth(right)), (1, zeroth(left), of_right)])
+                }
+            };
+            variations.push(variation);
+        }
+        variations
+    }
+
+    /// Adds `factor` times the variation of each series to its order `order`, where that order is already known.
+    pub fn correct(&mut self, order: usize, factor: &FourierSeries<C>, variations: &[FourierSeries<C>]) {
+        for (entry, variation) in self.nodes.iter_mut().zip(variations) {
+            if let Some(series) = entry.known.get_mut(order) {
+                *series = linear_combination(&[(1, series), (1, &factor.product(variation))]);
+            }
+        }
+    }
+
+    /// The variation that belongs to `node` in the list of [`Convolutions::variations`].
+    pub fn variation_of<'a>(variations: &'a [FourierSeries<C>], node: Node) -> &'a FourierSeries<C> {
+        &variations[node.0]
+    }
+
+    fn add(&mut self, factors: Option<(Node, Node)>) -> Node {
+        self.nodes.push(Orders { factors, known: vec![], needed: None });
+        Node(self.nodes.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::Integer;
+
+    #[test]
+    fn powers_agree_with_repeated_products() {
+        let orders = [FourierSeries::<Integer>::cos(1), FourierSeries::cos(3), FourierSeries::sin(2)];
+        let mut graph = Convolutions::new();
+        let leaf = graph.leaf();
+        let fifth = graph.power(leaf, 5);
+        graph.require(fifth, 2);
+        for (order, series) in orders.iter().enumerate() {
+            graph.push(leaf, series.clone());
+            graph.advance(order);
+        }
+        // (u0 + d u1 + d^2 u2)^5 at d^2: 5 u0^4 u2 + 10 u0^3 u1^2.
+        let [zeroth, first, second] = &orders;
+        let expected = linear_combination(&[
+            (5, &zeroth.power(4).product(second)),
+            (10, &zeroth.power(3).product(&first.power(2))),
+        ]);
+        assert_eq!(graph.order(fifth, 2), Some(&expected));
+    }
+}

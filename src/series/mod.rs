@@ -1,0 +1,8 @@
+//! Series with exact coefficients: [`taylor`] of a function, [`fourier`] in `theta = omega t`, and running [`convolution`]s
+//! of powers, order by order.
+
+pub mod convolution;
+pub mod fourier;
+pub mod taylor;
+
+pub use fourier::FourierSeries;

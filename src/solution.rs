@@ -1,0 +1,176 @@
+//! The answer: a frequency relation and a motion, with everything needed to use them rightly.
+//!
+//! A formula without its amplitude convention, order and validity is half a formula, so all of them travel together.
+
+use std::fmt;
+
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::series::FourierSeries;
+use crate::symbol::Symbol;
+
+/// The method that derived a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Method {
+    /// Strained time, secular terms eliminated order by order.
+    LindstedtPoincare,
+}
+
+impl Method {
+    /// Every method, in the order in which they are listed to users.
+    pub const ALL: [Self; 1] = [Self::LindstedtPoincare];
+
+    /// The name on the command line and in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LindstedtPoincare => "lindstedt-poincare",
+        }
+    }
+
+    /// The name in running text.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::LindstedtPoincare => "Lindstedt-Poincare",
+        }
+    }
+
+    /// The method of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+}
+
+/// What the amplitude in a formula measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AmplitudeConvention {
+    /// `A` = x(0) minus the equilibrium, with x'(0) = 0.
+    Initial,
+    /// `a` = amplitude of the first harmonic.
+    FirstHarmonic,
+}
+
+impl AmplitudeConvention {
+    /// The name on the command line and in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Initial => "initial",
+            Self::FirstHarmonic => "first-harmonic",
+        }
+    }
+
+    /// The convention of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Initial, Self::FirstHarmonic].into_iter().find(|convention| convention.name() == name)
+    }
+
+    /// The symbol: `A` or `a`.
+    pub fn symbol(self) -> Symbol {
+        Symbol::new(match self {
+            Self::Initial => "A",
+            Self::FirstHarmonic => "a",
+        })
+    }
+}
+
+impl fmt::Display for AmplitudeConvention {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Initial => "A = x(0) - equilibrium, x'(0) = 0",
+            Self::FirstHarmonic => "a = amplitude of the first harmonic",
+        })
+    }
+}
+
+/// A symbol that the program introduced, and what it stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Definition {
+    /// For example `omega0`.
+    pub symbol: Symbol,
+    /// For example `sqrt(k)`.
+    pub meaning: Expr,
+}
+
+/// A closed-form approximation of a periodic motion.
+///
+/// The motion is `x(t) = displacement(theta)`, `theta = omega t`; all polynomials are in the parameters of the equation, the
+/// amplitude symbol of the convention and the symbols of `definitions`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// The equation as it was understood, `x'' + f = 0`.
+    pub equation: String,
+    /// Who derived it.
+    pub method: Method,
+    /// Highest power kept, inclusive, of the small parameter.
+    pub order: u32,
+    /// The parameter in which the expansion runs; the amplitude symbol where it runs in the amplitude.
+    pub small_parameter: Symbol,
+    /// What the amplitude symbol measures.
+    pub amplitude: AmplitudeConvention,
+    /// The parameters of the equation, in alphabetical order.
+    pub parameters: Vec<Symbol>,
+    /// Symbols introduced by the program.
+    pub definitions: Vec<Definition>,
+    /// The equilibrium about which the motion swings; `A` is measured from it.
+    pub equilibrium: Expr,
+    /// omega, where the method gives a polynomial.
+    pub frequency: Option<Polynomial>,
+    /// omega^2, likewise.
+    pub frequency_squared: Option<Polynomial>,
+    /// For implicit methods: a polynomial in even powers of `omega`, equal to zero.
+    pub relation: Option<Polynomial>,
+    /// A closed form that is no polynomial.
+    pub closed_form: Option<String>,
+    /// The motion, equilibrium included.
+    pub displacement: FourierSeries<Polynomial>,
+    /// Self-excited oscillators: the amplitude (in the convention above) that the equation itself determines.
+    pub limit_cycle: Option<Polynomial>,
+    /// What is known of where the formula holds.
+    pub validity: Vec<String>,
+}
+
+impl Solution {
+    /// The value of a polynomial of this solution, with definitions worked out from the values of the parameters.
+    ///
+    /// # Errors
+    /// The first symbol without a value.
+    pub fn evaluate(&self, polynomial: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
+        let values: Vec<(Symbol, f64)> = self
+            .definitions
+            .iter()
+            .filter(|definition| polynomial.symbols().contains(&definition.symbol))
+            .map(|definition| {
+                let parameters = definition.meaning.symbols().into_iter();
+                let known: Result<_, Symbol> =
+                    parameters.map(|symbol| value_of(symbol).map(|value| (symbol, value)).ok_or(symbol)).collect();
+                let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
+                Ok((definition.symbol, value))
+            })
+            .collect::<Result<_, Symbol>>()?;
+        let pi = Symbol::new("pi");
+        polynomial.evaluate(|symbol| {
+            let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
+            defined.or_else(|| value_of(symbol)).or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
+        })
+    }
+
+    /// The motion as a numerical Fourier series in `theta`.
+    ///
+    /// # Errors
+    /// The first symbol without a value.
+    pub fn motion(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<FourierSeries<f64>, Symbol> {
+        let harmonics = self.displacement.harmonics();
+        let length = harmonics.last().map_or(0, |last| last.0 + 1);
+        let (mut cosine, mut sine) = (vec![0.0; length], vec![0.0; length]);
+        for (k, cosines, sines) in harmonics {
+            cosine[k] = self.evaluate(&cosines, value_of)?;
+            sine[k] = self.evaluate(&sines, value_of)?;
+        }
+        Ok(FourierSeries::from_parts(cosine, sine, 1.into()))
+    }
+
+    /// Whether any polynomial of the solution contains the amplitude symbol: not so for linear equations and limit cycles.
+    pub fn depends_on_amplitude(&self) -> bool {
+        let laws = self.frequency.iter().chain(&self.frequency_squared).chain(&self.relation);
+        laws.into_iter().any(|law| law.symbols().contains(&self.amplitude.symbol()))
+    }
+}

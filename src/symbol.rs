@@ -1,0 +1,74 @@
+//! Names of parameters, coordinates and derivatives.
+//!
+//! Every name is stored once for the life of the program, so a [`Symbol`] is one pointer wide, copies freely and
+//! compares by its text: the normal form of an expression, and with it every printed formula, is the same on every run.
+
+use std::collections::HashSet;
+use std::fmt;
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+/// A name such as `eps`, `A`, `x` or `x'`.
+///
+/// The derivative of a coordinate is the same name with primes: `x'` is the velocity, `x''` the acceleration.
+///
+/// ```
+/// use lindstedt::Symbol;
+/// let x = Symbol::new("x");
+/// assert_eq!(x.derivative().name(), "x'");
+/// assert_eq!(x.derivative().primes(), 1);
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Symbol(&'static str);
+
+static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
+
+impl Symbol {
+    /// The symbol of this name. Names are kept until the program ends.
+    pub fn new(name: &str) -> Self {
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = names.get(name) {
+            return Self(known);
+        }
+        let kept: &'static str = Box::leak(name.into());
+        names.insert(kept);
+        Self(kept)
+    }
+
+    /// The text of the name, primes included.
+    pub fn name(self) -> &'static str {
+        self.0
+    }
+
+    /// The time derivative of a coordinate: one more prime.
+    pub fn derivative(self) -> Self {
+        Self::new(&format!("{}'", self.0))
+    }
+
+    /// How many primes the name ends with: 0 for `x`, 2 for `x''`.
+    pub fn primes(self) -> usize {
+        self.0.len() - self.0.trim_end_matches('\'').len()
+    }
+
+    /// The name without its primes: the coordinate itself.
+    pub fn coordinate(self) -> Self {
+        Self::new(self.0.trim_end_matches('\''))
+    }
+}
+
+impl fmt::Display for Symbol {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.0)
+    }
+}
+
+impl fmt::Debug for Symbol {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.0)
+    }
+}
+
+impl From<&str> for Symbol {
+    fn from(name: &str) -> Self {
+        Self::new(name)
+    }
+}

@@ -1,0 +1,426 @@
+//! The judge: a formula against the true motion of the *original* equation.
+//!
+//! Nothing here looks at how a formula was derived. The true frequency comes from energy quadrature where energy is
+//! conserved and from the Runge-Kutta return where it is not; the motion from Runge-Kutta with dense output on the
+//! equation as it was typed, sine and all, not on its truncation.
+//!
+//! ```text
+//! relative_error = omega_formula / omega_true - 1
+//! max_deviation  = max |x_true(t) - x_formula(t)| / |A|      over one true period, in real time
+//! residual       = rms of x'' + f(x, x') along the formula / rms of f
+//! slope          = log2( error(delta) / error(delta/2) )     -> the exponent of the first missing term
+//! ```
+
+pub mod period;
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use crate::exact::rational::{Rational, to_f64};
+use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
+use crate::ode::Trajectory;
+use crate::ode::root::find_root;
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Solution};
+use crate::symbol::Symbol;
+use period::PeriodError;
+
+/// The error of the frequency below which a formula passes when the user names no tolerance: 1 %.
+pub const DEFAULT_TOLERANCE: f64 = 0.01;
+
+/// Points per period on which deviation and residual are taken.
+const SAMPLES: usize = 1024;
+
+/// Exact values of symbols, as given by the user: numbers and multiples of pi.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Values(BTreeMap<Symbol, Expr>);
+
+/// Why a value is no value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ValueError {
+    /// It contains a symbol.
+    #[error("the value `{value}` of `{name}` contains `{symbol}`: give a number, such as 3/2 or pi/3")]
+    NotANumber {
+        /// The name.
+        name: Symbol,
+        /// The value as typed.
+        value: String,
+        /// What is in it.
+        symbol: Symbol,
+    },
+    /// It is not finite.
+    #[error("the value `{value}` of `{name}` is not a finite number")]
+    NotFinite {
+        /// The name.
+        name: Symbol,
+        /// The value as typed.
+        value: String,
+    },
+    /// The name was given twice.
+    #[error("`{0}` is given two values")]
+    Twice(Symbol),
+}
+
+impl Values {
+    /// Adds the value of a symbol.
+    ///
+    /// # Errors
+    /// A value with symbols in it, one that is not finite, or a second value for the same name.
+    pub fn insert(&mut self, name: Symbol, value: Expr) -> Result<(), ValueError> {
+        if let Some(symbol) = value.symbols().into_iter().next() {
+            return Err(ValueError::NotANumber { name, value: value.to_string(), symbol });
+        }
+        if value.evaluate(&BTreeMap::new()).is_err() {
+            return Err(ValueError::NotFinite { name, value: value.to_string() });
+        }
+        match self.0.insert(name, value) {
+            None => Ok(()),
+            Some(_) => Err(ValueError::Twice(name)),
+        }
+    }
+
+    /// The names and exact values, in alphabetical order.
+    pub fn iter(&self) -> impl Iterator<Item = (Symbol, &Expr)> {
+        self.0.iter().map(|(name, value)| (*name, value))
+    }
+
+    /// The value of a symbol as a floating-point number.
+    pub fn get(&self, name: Symbol) -> Option<f64> {
+        let value = self.0.get(&name)?;
+        value.as_number().map(to_f64).or_else(|| value.evaluate(&BTreeMap::new()).ok())
+    }
+
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn with(&self, name: Symbol, value: f64) -> BTreeMap<Symbol, f64> {
+        let mut numbers: BTreeMap<Symbol, f64> = self.0.keys().filter_map(|&key| Some((key, self.get(key)?))).collect();
+        numbers.insert(name, value);
+        numbers
+    }
+}
+
+/// The formula's verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The frequency is within the tolerance.
+    Pass,
+    /// It is not, or it is not real.
+    Fail,
+}
+
+/// A formula judged at given values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verification {
+    /// The values at which it was judged.
+    pub at: Values,
+    /// omega by the formula; `None` where its square is not positive.
+    pub frequency: Option<f64>,
+    /// omega of the true motion.
+    pub true_frequency: f64,
+    /// `frequency / true_frequency - 1`.
+    pub relative_error: Option<f64>,
+    /// Largest deviation over one true period, over the amplitude.
+    pub max_deviation: Option<f64>,
+    /// Root mean square of the equation's residual along the formula, over that of its force.
+    pub residual: Option<f64>,
+    /// Measured exponent of the frequency error; `None` where rounding hides it.
+    pub slope: Option<f64>,
+    /// The verdict on the frequency.
+    pub verdict: Verdict,
+}
+
+/// Why a formula could not be judged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum VerificationError {
+    /// Values are missing.
+    #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
+    Missing(Vec<Symbol>),
+    /// A value for a symbol that does not occur.
+    #[error("`{name}` does not occur in the formula; it has: {}", .known.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
+    Unknown {
+        /// The name.
+        name: Symbol,
+        /// The names that do occur.
+        known: Vec<Symbol>,
+    },
+    /// The equation has no motion to compare with at these values.
+    #[error(transparent)]
+    Period(#[from] PeriodError),
+    /// The equation could not be taken apart.
+    #[error(transparent)]
+    Oscillator(#[from] OscillatorError),
+    /// The equation could not be evaluated.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+    /// The values do not fit the equation.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// The amplitude is zero, and at rest there is nothing to compare.
+    #[error("at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against")]
+    AtRest,
+}
+
+/// The symbols that need a value before `solution` can be judged.
+pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
+    let mut needed = solution.parameters.clone();
+    if solution.limit_cycle.is_none() && solution.depends_on_amplitude() {
+        needed.push(solution.amplitude.symbol());
+    }
+    needed
+}
+
+/// Judges `solution` at the values `at`.
+///
+/// # Errors
+/// Missing or unknown values, or no true periodic motion there.
+pub fn judge(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+    tolerance: f64,
+) -> Result<Verification, VerificationError> {
+    let needed = needed_values(solution);
+    let mut known = solution.parameters.clone();
+    known.push(solution.amplitude.symbol());
+    if let Some((name, _)) = at.iter().find(|(name, _)| !known.contains(name)) {
+        return Err(VerificationError::Unknown { name, known });
+    }
+    let missing: Vec<Symbol> = needed.into_iter().filter(|&name| at.get(name).is_none()).collect();
+    if !missing.is_empty() {
+        return Err(VerificationError::Missing(missing));
+    }
+    // Where the frequency does not depend on the amplitude, any will do to compare the motion.
+    let amplitude_symbol = solution.amplitude.symbol();
+    let numbers = at.with(amplitude_symbol, at.get(amplitude_symbol).unwrap_or(1.0));
+    if solution.limit_cycle.is_none() && numbers[&amplitude_symbol] == 0.0 {
+        return Err(VerificationError::AtRest);
+    }
+    let truth = TrueMotion::of(oscillator, solution, &numbers)?;
+    let frequency = formula_frequency(solution, &numbers);
+    let relative_error = frequency.map(|frequency| frequency / truth.frequency - 1.0);
+    let motion = solution.motion(&|symbol| numbers.get(&symbol).copied()).ok();
+    let pair = frequency.zip(motion.as_ref());
+    let max_deviation = pair.map(|(frequency, motion)| truth.largest_deviation(frequency, motion));
+    let residual = match pair {
+        Some((frequency, motion)) => Some(residual(oscillator, &numbers, frequency, motion)?),
+        None => None,
+    };
+    let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
+    Ok(Verification {
+        at: at.clone(),
+        frequency,
+        true_frequency: truth.frequency,
+        relative_error,
+        max_deviation: max_deviation.filter(|value| value.is_finite()),
+        residual: residual.filter(|value| value.is_finite()),
+        slope: slope(oscillator, solution, &numbers),
+        verdict: if pass { Verdict::Pass } else { Verdict::Fail },
+    })
+}
+
+/// omega by the formula: the root of the truncated omega^2, `None` where that is not positive.
+fn formula_frequency(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    let law = solution.frequency_squared.as_ref()?;
+    let squared = solution.evaluate(law, &|symbol| numbers.get(&symbol).copied()).ok()?;
+    (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
+}
+
+/// The true periodic motion that a formula is meant for.
+struct TrueMotion {
+    frequency: f64,
+    /// One period from a turning point; `None` where only the frequency was asked for.
+    path: Option<Trajectory>,
+    /// The instant of the path that is `t = 0` of the formula.
+    shift: f64,
+    amplitude: f64,
+}
+
+impl TrueMotion {
+    fn of(
+        oscillator: &Oscillator,
+        solution: &Solution,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
+        let physics = Physics::new(oscillator, solution, numbers)?;
+        let start = physics.start(solution, numbers)?;
+        let path = match solution.limit_cycle {
+            Some(_) => period::limit_cycle(&physics.acceleration(), physics.equilibrium, start, physics.longest)?,
+            None => period::swing(&physics.acceleration(), physics.equilibrium, start, physics.longest)?,
+        };
+        let frequency = match physics.conservative {
+            true => TAU / period::conservative_period(&physics.force(), physics.equilibrium, start)?,
+            false => TAU / path.end().t,
+        };
+        let shift = match solution.amplitude {
+            AmplitudeConvention::Initial => 0.0,
+            AmplitudeConvention::FirstHarmonic => {
+                let (cosine, sine) = first_harmonic(&path);
+                sine.atan2(cosine) / TAU * path.end().t
+            }
+        };
+        let amplitude = match (solution.amplitude, &solution.limit_cycle) {
+            (AmplitudeConvention::FirstHarmonic, None) => numbers[&solution.amplitude.symbol()].abs(),
+            _ => (path.at(0.0).map_or(start, |(x, _)| x) - physics.equilibrium).abs(),
+        };
+        Ok(Self { frequency, path: Some(path), shift, amplitude })
+    }
+
+    /// Largest `|x_true - x_formula|` over one true period, over the amplitude.
+    fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<f64>) -> f64 {
+        let Some(path) = &self.path else { return f64::NAN };
+        let period = path.end().t;
+        let deviation = |index: usize| {
+            let t = period * index as f64 / SAMPLES as f64;
+            let place = (t + self.shift).rem_euclid(period);
+            path.at(place).map_or(f64::NAN, |(x, _)| (x - motion.evaluate(frequency * t)).abs())
+        };
+        (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / self.amplitude
+    }
+}
+
+/// The equation with numbers for its parameters.
+struct Physics {
+    force: CompiledFunction,
+    equilibrium: f64,
+    conservative: bool,
+    longest: f64,
+}
+
+impl Physics {
+    fn new(
+        oscillator: &Oscillator,
+        solution: &Solution,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
+        let parts = oscillator.parts()?;
+        let conservative = [&parts.inertia, &parts.damping, &parts.forcing].iter().all(|part| part.is_zero());
+        let force = compiled_force(oscillator, numbers)?;
+        let equilibrium = solution.equilibrium.evaluate(numbers)?;
+        let guess = formula_frequency(solution, numbers).unwrap_or(1.0);
+        // A thousand periods of the formula: a motion that has not turned by then is not swinging.
+        Ok(Self { force, equilibrium, conservative, longest: 1000.0 * TAU / guess })
+    }
+
+    fn force(&self) -> impl Fn(f64) -> f64 + '_ {
+        |x| self.force.call(&[x, 0.0])
+    }
+
+    fn acceleration(&self) -> impl Fn(f64, f64, f64) -> f64 + '_ {
+        |_, x, v| -self.force.call(&[x, v])
+    }
+
+    /// The turning point to start from: given, guessed for a limit cycle, or found so that the first harmonic of the
+    /// true motion has the amplitude asked for.
+    fn start(&self, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Result<f64, VerificationError> {
+        if solution.limit_cycle.is_some() {
+            let motion = solution.motion(&|symbol| numbers.get(&symbol).copied());
+            let highest = |motion: FourierSeries<f64>| {
+                (0..SAMPLES).map(|k| motion.evaluate(TAU * k as f64 / SAMPLES as f64)).fold(f64::MIN, f64::max)
+            };
+            return Ok(motion.map(highest).unwrap_or(self.equilibrium + 1.0));
+        }
+        let amplitude = numbers[&solution.amplitude.symbol()];
+        if solution.amplitude == AmplitudeConvention::Initial {
+            return Ok(self.equilibrium + amplitude);
+        }
+        let excess = |start: f64| {
+            let path = period::swing(&self.acceleration(), self.equilibrium, start, self.longest);
+            path.map_or(f64::NAN, |path| first_harmonic(&path).0 - amplitude)
+        };
+        let at = |factor: f64| self.equilibrium + factor * amplitude;
+        for spread in [0.05, 0.2, 0.5] {
+            if let Ok(start) = find_root(excess, at(1.0 - spread), at(1.0 + spread)) {
+                return Ok(start);
+            }
+        }
+        Err(PeriodError::NoReturn(self.longest).into())
+    }
+}
+
+/// The force as a function of position and velocity, with exact numbers in place of the parameters.
+fn compiled_force(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<CompiledFunction, VerificationError> {
+    let exact = |name: &Symbol| Rational::from_float(numbers[name]).map(|value| (*name, Expr::number(value)));
+    let values = oscillator.parameters.iter().filter_map(exact).collect();
+    let force = oscillator.force.substitute_all(&values)?;
+    Ok(CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()])?)
+}
+
+/// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to rounding here.
+fn first_harmonic(path: &Trajectory) -> (f64, f64) {
+    let period = path.end().t;
+    let sample = |k: usize| {
+        let phase = k as f64 / SAMPLES as f64;
+        let x = path.at(period * phase).map_or(f64::NAN, |(x, _)| x);
+        (x * (TAU * phase).cos(), x * (TAU * phase).sin())
+    };
+    let sum = (0..SAMPLES).map(sample).fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
+    (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
+}
+
+fn residual(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, f64>,
+    frequency: f64,
+    motion: &FourierSeries<f64>,
+) -> Result<f64, VerificationError> {
+    let force = compiled_force(oscillator, numbers)?;
+    let velocity = motion.derivative();
+    let acceleration = velocity.derivative();
+    let (mut defects, mut forces) = (0.0, 0.0);
+    for k in 0..SAMPLES {
+        let theta = TAU * k as f64 / SAMPLES as f64;
+        let force = force.call(&[motion.evaluate(theta), frequency * velocity.evaluate(theta)]);
+        let defect = frequency * frequency * acceleration.evaluate(theta) + force;
+        defects += defect * defect;
+        forces += force * force;
+    }
+    Ok((defects / forces).sqrt())
+}
+
+/// The exponent with which the error of the frequency vanishes, from the two smallest values of the small parameter at
+/// which rounding does not yet matter.
+fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    const HALVINGS: i32 = 10;
+    // The truth is good to 1e-14 by quadrature and 1e-11 by Runge-Kutta; an error a thousand times that is measured to 0.1 %.
+    let conservative = oscillator.parts().ok().is_some_and(|parts| parts.inertia.is_zero() && parts.damping.is_zero());
+    let floor = if conservative { 1e-11 } else { 1e-8 };
+    let error = |halving: i32| {
+        let mut numbers = numbers.clone();
+        *numbers.get_mut(&solution.small_parameter)? *= 0.5_f64.powi(halving);
+        let formula = formula_frequency(solution, &numbers)?;
+        let truth = true_frequency(oscillator, solution, &numbers).ok()?;
+        Some((formula / truth - 1.0).abs())
+    };
+    let mut slope = None;
+    let mut before: Option<f64> = None;
+    for halving in 0..HALVINGS {
+        let Some(error) = error(halving) else { continue };
+        if error < floor {
+            break;
+        }
+        slope = before.map(|before| (before / error).log2());
+        before = Some(error);
+    }
+    slope
+}
+
+/// omega of the true motion, without its path where energy alone gives it.
+fn true_frequency(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<f64, VerificationError> {
+    let physics = Physics::new(oscillator, solution, numbers)?;
+    if physics.conservative && solution.amplitude == AmplitudeConvention::Initial {
+        let start = physics.start(solution, numbers)?;
+        return Ok(TAU / period::conservative_period(&physics.force(), physics.equilibrium, start)?);
+    }
+    TrueMotion::of(oscillator, solution, numbers).map(|truth| truth.frequency)
+}

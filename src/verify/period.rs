@@ -1,0 +1,238 @@
+//! The true frequency, by ways that share nothing with the formulas.
+//!
+//! Conservative motion (L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11): between the turning points `x_0`
+//! and `x_1`, with `U(x) = V(x_0) - V(x)`,
+//!
+//! ```text
+//! T = 2 int dx / sqrt(2 U),   x = m + r sin phi,   U = (x_0 - x)(x - x_1) g(x)   ->   T = 2 int dphi / sqrt(2 g)
+//! ```
+//!
+//! The last integrand is smooth. `U` near either end is the mean of the force from there, so nothing cancels.
+//!
+//! Any other periodic motion: the Runge-Kutta return to a turning point.
+
+use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::ode::root::{RootError, find_root};
+use crate::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory, integrate};
+
+/// Relative tolerance of the quadratures.
+const TOLERANCE: f64 = 1e-14;
+
+/// Tolerance per step of the Runge-Kutta runs that find a return.
+const STEP_TOLERANCE: f64 = 1e-13;
+
+/// Why there is no period.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PeriodError {
+    /// Released there, the motion leaves instead of swinging.
+    #[error("no periodic motion: released at rest from x = {start}, the force does not pull back towards x = {equilibrium}")]
+    PushedAway {
+        /// The release point.
+        start: f64,
+        /// The equilibrium.
+        equilibrium: f64,
+    },
+    /// No second turning point.
+    #[error("no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched}")]
+    Escapes {
+        /// The release point.
+        start: f64,
+        /// How far the search went.
+        searched: f64,
+    },
+    /// The motion did not come back within the time allowed.
+    #[error("no return to a turning point within t = {0}")]
+    NoReturn(f64),
+    /// A quadrature failed.
+    #[error(transparent)]
+    Quadrature(#[from] QuadratureError),
+    /// A root was lost.
+    #[error(transparent)]
+    Root(#[from] RootError),
+    /// The integration failed.
+    #[error(transparent)]
+    Integration(#[from] IntegrationError),
+    /// No isolated limit cycle near the amplitude of the formula.
+    #[error("no limit cycle with a turning point between x = {from} and x = {to}")]
+    NoLimitCycle {
+        /// Lower end of the search.
+        from: f64,
+        /// Upper end of the search.
+        to: f64,
+    },
+}
+
+/// The period of `x'' + force(x) = 0` released at rest from `start`, swinging about `equilibrium`.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn conservative_period(
+    force: &dyn Fn(f64) -> f64,
+    equilibrium: f64,
+    start: f64,
+) -> Result<f64, PeriodError> {
+    let end = turning_point(force, equilibrium, start)?;
+    let (middle, radius) = (0.5 * (start + end), 0.5 * (start - end));
+    let mean_force = |from: f64, to: f64| integrate_smooth(|u| force(from + (to - from) * u), 0.0, 1.0, TOLERANCE);
+    let mut failure = None;
+    let integrand = |phi: f64| {
+        let x = middle + radius * phi.sin();
+        let quotient = if phi >= 0.0 {
+            mean_force(x, start).map(|(mean, _)| mean / (x - end))
+        } else {
+            mean_force(end, x).map(|(mean, _)| -mean / (start - x))
+        };
+        match quotient {
+            Ok(quotient) => 1.0 / (2.0 * quotient).sqrt(),
+            Err(error) => {
+                failure = Some(error);
+                f64::NAN
+            }
+        }
+    };
+    let quarter = std::f64::consts::FRAC_PI_2;
+    match integrate_smooth(integrand, -quarter, quarter, TOLERANCE) {
+        Ok((half, _)) => Ok(2.0 * half),
+        Err(error) => Err(failure.unwrap_or(error).into()),
+    }
+}
+
+/// The other turning point of a conservative motion released at rest from `start`.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn turning_point(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
+    /// Steps per amplitude of the search, and how many amplitudes far it goes.
+    const STEPS_PER_AMPLITUDE: f64 = 64.0;
+    const FARTHEST: f64 = 1e4;
+    let amplitude = start - equilibrium;
+    if force(start) * amplitude <= 0.0 {
+        return Err(PeriodError::PushedAway { start, equilibrium });
+    }
+    // In a symmetric well the mirror image is the turning point to the last digit, which no root finder gives near a
+    // separatrix.
+    let odd = (1..=16).map(|k| amplitude * f64::from(k) / 16.0);
+    if odd.into_iter().all(|x| force(equilibrium + x) == -force(equilibrium - x) && force(equilibrium + x) * amplitude > 0.0) {
+        return Ok(equilibrium - amplitude);
+    }
+    let gained = |from: f64, to: f64| integrate_smooth(force, to, from, TOLERANCE).map(|(energy, _)| energy);
+    let (mut x, mut energy, mut step) = (start, 0.0, -amplitude / STEPS_PER_AMPLITUDE);
+    while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
+        let next = x + step;
+        let after = energy + gained(x, next)?;
+        if after <= 0.0 {
+            let mut failure = None;
+            let root = find_root(
+                |candidate| match gained(x, candidate) {
+                    Ok(gain) => energy + gain,
+                    Err(error) => {
+                        failure = Some(error);
+                        f64::NAN
+                    }
+                },
+                x,
+                next,
+            );
+            return root.map_err(|error| failure.map_or(error.into(), Into::into));
+        }
+        (x, energy) = (next, after);
+        // Past the mirror image of the start the search may widen its steps.
+        if (x - equilibrium).abs() > 2.0 * amplitude.abs() {
+            step *= 1.05;
+        }
+    }
+    Err(PeriodError::Escapes { start, searched: x })
+}
+
+/// One full swing by Runge-Kutta: from rest at `start` to the next turning point on the same side.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn swing(
+    acceleration: &dyn Fn(f64, f64, f64) -> f64,
+    equilibrium: f64,
+    start: f64,
+    longest: f64,
+) -> Result<Trajectory, PeriodError> {
+    let state = State { t: 0.0, x: start, v: 0.0 };
+    let turning = Event::stop(|_, _, v| v);
+    let turning = if start > equilibrium { turning.falling() } else { turning.rising() };
+    let path = integrate(acceleration, state, longest, &[turning], &Options::with_tolerance(STEP_TOLERANCE))?;
+    match path.stop_reason() {
+        StopReason::Event { .. } => Ok(path),
+        _ => Err(PeriodError::NoReturn(path.end().t)),
+    }
+}
+
+/// The limit cycle near a turning point at `guess`: its swing from the fixed point of the return map.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn limit_cycle(
+    acceleration: &dyn Fn(f64, f64, f64) -> f64,
+    equilibrium: f64,
+    guess: f64,
+    longest: f64,
+) -> Result<Trajectory, PeriodError> {
+    let growth = |start: f64| swing(acceleration, equilibrium, start, longest).map(|path| path.end().x - start);
+    let at = |factor: f64| equilibrium + factor * (guess - equilibrium);
+    // Widen the bracket around the guess until the return map grows on one side and shrinks on the other.
+    for spread in [0.05, 0.2, 0.5, 0.8] {
+        let (low, high) = (at(1.0 - spread), at(1.0 + spread));
+        let (Ok(below), Ok(above)) = (growth(low), growth(high)) else { continue };
+        if below * above <= 0.0 {
+            let fixed = find_root(|start| growth(start).unwrap_or(f64::NAN), low, high)?;
+            return swing(acceleration, equilibrium, fixed, longest);
+        }
+    }
+    Err(PeriodError::NoLimitCycle { from: at(0.2), to: at(1.8) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pendulum_and_duffing_by_elliptic_functions() {
+        for amplitude in [0.01, 0.5, 1.5, 2.5, 3.0, 3.14, -1.5] {
+            let period = conservative_period(&|x: f64| x.sin(), 0.0, amplitude).unwrap();
+            // By the complementary parameter 1 - m = cos^2(A/2): near the separatrix m itself has lost its digits.
+            let exact = 4.0 * spec_math::cephes64::ellpk((0.5 * amplitude).cos().powi(2));
+            assert!((period / exact - 1.0).abs() < 1e-13, "A = {amplitude}: {period} {exact}");
+        }
+        for s in [-0.9, 0.1, 1.0, 10.0, 1000.0] {
+            let period = conservative_period(&|x: f64| x + s * x * x * x, 0.0, 1.0).unwrap();
+            let exact = 4.0 * ellip::ellipk(s / (2.0 * (1.0 + s))).unwrap() / f64::sqrt(1.0 + s);
+            assert!((period / exact - 1.0).abs() < 1e-13, "s = {s}: {period} {exact}");
+        }
+    }
+
+    #[test]
+    fn an_uneven_well_has_its_own_turning_point() {
+        // V = x^2/2 + x^3/3 at x = 1/4: V(x_1) = V(1/4) is a cubic with root 1/4, leaving a quadratic.
+        let end = turning_point(&|x: f64| x + x * x, 0.0, 0.25).unwrap();
+        let quadratic = |x: f64| x * x + 1.75 * x + 0.4375;
+        assert!(quadratic(end).abs() < 1e-15, "{end}");
+        let period = conservative_period(&|x: f64| x + x * x, 0.0, 0.25).unwrap();
+        let swing = swing(&|_, x, _| -x - x * x, 0.0, 0.25, 100.0).unwrap();
+        assert!((period - swing.end().t).abs() < 1e-10);
+    }
+
+    #[test]
+    fn what_does_not_swing_is_refused() {
+        let cubic = |x: f64| x - x * x * x / 6.0;
+        assert!(matches!(conservative_period(&cubic, 0.0, 2.5), Err(PeriodError::PushedAway { .. })));
+        assert!(matches!(
+            conservative_period(&|x: f64| x + x * x, 0.0, 0.75),
+            Err(PeriodError::Escapes { .. })
+        ));
+    }
+
+    #[test]
+    fn van_der_pol_settles_on_its_cycle() {
+        // mu = 1: period and amplitude as tabulated by M. Urabe, Funkcialaj Ekvacioj 3 (1960), to the digits given there.
+        let path = limit_cycle(&|_, x, v| (1.0 - x * x) * v - x, 0.0, 2.0, 100.0).unwrap();
+        assert!((path.end().t - 6.663_286_86).abs() < 1e-7, "{}", path.end().t);
+        assert!((path.end().x - 2.008_619_86).abs() < 1e-7, "{}", path.end().x);
+    }
+}

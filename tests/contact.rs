@@ -1,0 +1,202 @@
+//! One impact of the pendulum, from equation (8) to the verdict: the closed forms against the true motion and against
+//! numbers found independently.
+
+use lindstedt::contact::hertz::{self, Design, elastic_force};
+use lindstedt::contact::linearisation::Rule;
+use lindstedt::contact::phases::{Column, Form, Swing, ThreePhases, three_phases};
+use lindstedt::contact::true_motion::{TrueMotion, deviation, true_motion};
+use lindstedt::ode::Options;
+use proptest::prelude::*;
+
+const SINE: fn(f64) -> f64 = f64::sin;
+
+fn swing(amplitude: f64, barrier: f64, stiffness: f64) -> Swing<'static> {
+    Swing {
+        amplitude,
+        barrier,
+        stiffness,
+        frequency_squared: 1.0 - amplitude * amplitude / 8.0,
+        linear_stiffness: 1.0,
+        restoring_force: &SINE,
+        elastic_force: &elastic_force,
+        rule: Rule::LeastSquares,
+    }
+}
+
+fn paper(stiffness: f64, column: Column) -> ThreePhases {
+    three_phases(&swing(1.5, 0.323, stiffness), column).unwrap()
+}
+
+fn truth(stiffness: f64) -> TrueMotion {
+    true_motion(
+        1.5,
+        0.323,
+        stiffness,
+        f64::sin,
+        elastic_force,
+        &Options::with_tolerance(1e-12),
+    )
+    .unwrap()
+}
+
+#[test]
+fn table_5_leads_to_the_depth_and_duration_of_a_hertz_contact() {
+    let stiffness = Design::default().stiffness().unwrap();
+    assert!((stiffness / 3.0407e7 - 1.0).abs() < 2e-5);
+    for (column, depth, duration) in [
+        (Column::Paper, 1.32079e-3, 3.13035e-3),
+        (Column::Energy, 1.39090e-3, 3.09013e-3),
+    ] {
+        let speed = paper(stiffness, column).speed;
+        assert!(
+            (hertz::penetration(stiffness, speed).unwrap() - depth).abs() < 6e-9,
+            "{column}: depth"
+        );
+        assert!(
+            (hertz::duration(stiffness, speed).unwrap() - duration).abs() < 6e-9,
+            "{column}: duration"
+        );
+    }
+}
+
+#[test]
+fn contact_times_over_many_decades_of_stiffness() {
+    // Values known from interval arithmetic.
+    assert!((truth(1e6).duration - 0.012_106_027_06).abs() < 1e-10);
+    assert!((truth(4.2e9).duration - 4.30387e-4).abs() < 1e-9);
+    for power in [3, 5, 7, 9, 11, 14, 18] {
+        let stiffness = 10.0_f64.powi(power);
+        let truth = truth(stiffness);
+        // Gravity shortens the depth by sin(x_c) d against v^2/2: Hertz alone is right for stiff barriers.
+        let depth = hertz::penetration(stiffness, truth.touch.v).unwrap();
+        let gravity = depth * 1.5_f64.sin();
+        assert!(
+            (truth.penetration / depth - 1.0).abs() < 2.0 * gravity + 1e-6,
+            "depth at gamma = {stiffness}"
+        );
+        let duration = hertz::duration(stiffness, truth.touch.v).unwrap();
+        assert!(
+            (truth.duration / duration - 1.0).abs() < 2.0 * gravity + 1e-6,
+            "duration at gamma = {stiffness}"
+        );
+        // And the closed form with the energy's speed: 1.6 % long, the least-squares line's own error.
+        let closed = paper(stiffness, Column::Energy);
+        assert!(
+            (closed.duration / duration - 1.016).abs() < 2.0 * gravity + 1e-3,
+            "line at gamma = {stiffness}"
+        );
+    }
+}
+
+#[test]
+fn the_printed_contact_duration_needs_an_absurd_stiffness() {
+    // 9.258e-8 as dimensionless time belongs to gamma = 6.2e18 in a Hertz contact of the true speed.
+    let truth = truth(6.2e18);
+    assert!(
+        (truth.duration / 9.258e-8 - 1.0).abs() < 0.002,
+        "duration {}",
+        truth.duration
+    );
+    assert!((hertz::duration(6.2e18, truth.touch.v).unwrap() / truth.duration - 1.0).abs() < 1e-6);
+    // And the slope 0.034 of equation (15) to the depth 1.093e-3, gamma = 4.88e7.
+    let speed = paper(1e6, Column::Paper).speed;
+    let line = paper(4.88e7, Column::Paper).line;
+    assert!((line.slope - 0.034).abs() < 2e-5, "slope {}", line.slope);
+    assert!((hertz::penetration(4.88e7, speed).unwrap() - 1.093e-3).abs() < 1e-6);
+}
+
+#[test]
+fn the_errors_of_the_paper_have_the_sizes_known() {
+    let stiffness = Design::default().stiffness().unwrap();
+    let (closed, truth) = (paper(stiffness, Column::Paper), truth(stiffness));
+    let percent = |value: f64, reference: f64| 100.0 * (value / reference - 1.0);
+    assert!((percent(closed.speed, truth.touch.v) + 6.26).abs() < 0.005);
+    assert!((percent(closed.phases[0].end, truth.touch.t) - 2.15).abs() < 0.005);
+    // Away from the barrier's neighbourhood the periods differ like the approaches.
+    assert!((percent(closed.period, truth.period) - 2.15).abs() < 0.01);
+}
+
+#[test]
+fn an_exact_frequency_does_not_make_the_cosine_exact() {
+    // The true omega at 1.5 rad instead of the law: the wave form alone remains, and the verdict sees it.
+    let exact = Swing {
+        frequency_squared: 0.860_608_346_679_613_f64.powi(2),
+        ..swing(1.5, 0.323, 1e6)
+    };
+    let truth = truth(1e6);
+    let found = deviation(&three_phases(&exact, Column::Energy).unwrap(), &truth);
+    let of_law = deviation(&paper(1e6, Column::Energy), &truth);
+    assert!(
+        found.total < 0.6 * of_law.total && found.total > 0.03,
+        "{found:?} against {of_law:?}"
+    );
+}
+
+#[test]
+fn small_swings_are_described_well() {
+    // Every approximation is of second order in A: the whole deviation, in units of A, falls like A^2, until only the
+    // straight line in the contact is left.
+    let relative = |amplitude: f64| {
+        let barrier = 0.2 * amplitude;
+        let options = Options {
+            absolute_tolerance: 1e-13 * amplitude,
+            ..Options::with_tolerance(1e-12)
+        };
+        let truth = true_motion(amplitude, barrier, 1e10, f64::sin, elastic_force, &options).unwrap();
+        deviation(
+            &three_phases(&swing(amplitude, barrier, 1e10), Column::Energy).unwrap(),
+            &truth,
+        )
+        .phases[0]
+            / amplitude
+    };
+    let slope = (relative(0.4) / relative(0.2)).log2();
+    assert!((slope - 2.0).abs() < 0.1, "exponent {slope}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Whatever the numbers, there is an answer of finite numbers or a refusal.
+    #[test]
+    fn no_input_gives_a_number_that_is_none(
+        amplitude in any::<f64>(), barrier in any::<f64>(), stiffness in any::<f64>(), law in any::<f64>(),
+        part in -1.1..1.1_f64, ordinary in any::<bool>()
+    ) {
+        let mut case = swing(amplitude, barrier, stiffness.abs());
+        case.frequency_squared = law.abs();
+        if ordinary {
+            case.amplitude = amplitude.abs() % 3.0;
+            case.barrier = part * case.amplitude;
+        }
+        for column in [Column::Paper, Column::Energy] {
+            match three_phases(&case, column) {
+                Ok(motion) => {
+                    let numbers = [motion.speed, motion.penetration, motion.duration, motion.period];
+                    prop_assert!(numbers.iter().all(|number| number.is_finite()), "{motion:?}");
+                    prop_assert!(motion.position_at(0.5 * motion.period).is_finite());
+                    prop_assert!(motion.phases.iter().all(|phase| phase.end >= phase.start));
+                }
+                Err(refused) => prop_assert!(refused.to_string().len() > 20),
+            }
+        }
+    }
+
+    /// The contact never reaches deeper than its energy allows, and the closed form leaves where it entered.
+    #[test]
+    fn the_contact_ends_where_it_began(
+        amplitude in 0.2..2.7_f64, part in -0.95..0.95_f64, power in 2.0..12.0_f64, rule in 0..6_usize
+    ) {
+        let case = Swing { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
+        let motion = three_phases(&case, Column::Energy).unwrap();
+        let contact = motion.phases[1];
+        let (x, v) = contact.form.at(contact.end - contact.start);
+        prop_assert!((x - case.barrier).abs() < 1e-9 * motion.penetration.max(1e-6));
+        prop_assert!((v + motion.speed).abs() < 1e-9 * motion.speed);
+        let Form::Oscillation { frequency, .. } = contact.form else { panic!("the contact oscillates") };
+        // It turns in the middle, and the middle is the deepest point.
+        let (deepest, at_rest) = contact.form.at(0.5 * (contact.end - contact.start));
+        prop_assert!(at_rest.abs() < 1e-9 * motion.speed && frequency > 0.0);
+        prop_assert!((deepest - case.barrier - motion.penetration).abs() < 1e-9 * motion.penetration.max(1e-6));
+    }
+}

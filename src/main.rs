@@ -1,1 +1,7 @@
-fn main(){}
+//! The command-line program; see `lindstedt --help`.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

@@ -5,17 +5,21 @@
 //! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
 //! ```
 
+use num_complex::Complex64;
+use num_traits::{One, Zero};
 use serde_json::{Map, Value, json};
 
+use crate::contact::phases::{Column, Form, Phase, ThreePhases};
+use crate::contact::true_motion::Deviation;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::{Expr, parse_expression};
+use crate::impact::{Impact, Setup};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, Method, Solution};
 use crate::symbol::Symbol;
 use crate::verify::{Values, Verdict, Verification};
-use num_traits::{One, Zero};
 
 /// Why a document is no solution.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -125,6 +129,116 @@ pub fn verdict(verdict: Verdict) -> &'static str {
 
 fn values(values: &Values) -> Value {
     values.iter().map(|(name, value)| (name.to_string(), constant(value))).collect::<Map<_, _>>().into()
+}
+
+/// The document of kind `impact`.
+pub fn impact(impact: &Impact, tolerance: f64) -> Value {
+    let Setup { amplitude, barrier, stiffness, stiffness_source, order, rule, integrator_tolerance } = &impact.setup;
+    let [to_contact, speed, penetration, duration, period] = impact.quantities().map(|quantity| {
+        json!({
+            "paper": quantity.paper,
+            "energy": quantity.energy,
+            "runge_kutta": quantity.runge_kutta,
+            "paper_error": quantity.paper_error(),
+            "energy_error": quantity.energy_error(),
+        })
+    });
+    let column = |phases: &ThreePhases, deviation: &Deviation| {
+        json!({
+            "velocity_jump": phases.velocity_jump,
+            "line": { "slope": phases.line.slope, "constant": -phases.line.q(*barrier) },
+            "max_deviation": deviation.total / amplitude,
+            "max_deviation_by_phase": deviation.phases.map(|largest| largest / amplitude),
+            "verdict": verdict(impact.verdict(phases.column, tolerance)),
+        })
+    };
+    json!({
+        "schema": "lindstedt/impact/1",
+        "equation": impact.equation,
+        "parameters": {
+            "amplitude": amplitude,
+            "barrier": barrier,
+            "gamma": stiffness,
+            "gamma_source": stiffness_source,
+            "order": order,
+            "linearisation": rule.name(),
+            "integrator_tolerance": integrator_tolerance,
+        },
+        "law": solution(&impact.law, None),
+        "frequency": impact.frequency(),
+        "phases": impact.paper.phases.iter().map(phase).collect::<Vec<_>>(),
+        "energy_phases": impact.energy.phases.iter().map(phase).collect::<Vec<_>>(),
+        "contact": { "speed": speed, "penetration": penetration, "duration": duration },
+        "time_to_contact": to_contact,
+        "period": period,
+        "verification": {
+            "tolerance": tolerance,
+            "energy_drift": impact.truth.energy_drift,
+            "paper": column(&impact.paper, &impact.paper_deviation),
+            "energy": column(&impact.energy, &impact.energy_deviation),
+            "verdict": verdict(impact.verdict(Column::Paper, tolerance)),
+        },
+    })
+}
+
+fn phase(phase: &Phase) -> Value {
+    let coefficients = match phase.form {
+        Form::Cosine { amplitude, frequency, phase } => {
+            json!({ "amplitude": amplitude, "frequency": frequency, "phase": phase })
+        }
+        Form::Oscillation { centre, amplitude, frequency } => json!({
+            "centre": centre,
+            "amplitude": { "re": amplitude.re, "im": amplitude.im },
+            "frequency": frequency,
+        }),
+    };
+    let state = |elapsed: f64| {
+        let (x, velocity) = phase.form.at(elapsed);
+        json!({ "x": x, "velocity": velocity })
+    };
+    json!({
+        "name": phase.name,
+        "start": phase.start,
+        "end": phase.end,
+        "start_state": state(0.0),
+        "end_state": state(phase.end - phase.start),
+        "closed_form": phase.closed_form(),
+        "coefficients": coefficients,
+    })
+}
+
+/// Reads the three phases of a document of kind `impact` back.
+///
+/// # Errors
+/// A key that is missing or holds something else.
+pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
+    if text(document, "schema")? != "lindstedt/impact/1" {
+        return unexpected("schema", "\"lindstedt/impact/1\"");
+    }
+    let Some(list) = document["phases"].as_array() else { return unexpected("phases", "a list") };
+    let number = |value: &Value, key: &str| value[key].as_f64().map_or_else(|| unexpected(key, "a number"), Ok);
+    let read = |value: &Value| {
+        let name = text(value, "name")?;
+        let Some(name) = ["approach", "contact", "return"].into_iter().find(|known| *known == name) else {
+            return unexpected("name", "approach, contact or return");
+        };
+        let coefficients = &value["coefficients"];
+        let frequency = number(coefficients, "frequency")?;
+        let form = match coefficients.get("centre") {
+            None => Form::Cosine {
+                amplitude: number(coefficients, "amplitude")?,
+                frequency,
+                phase: number(coefficients, "phase")?,
+            },
+            Some(_) => {
+                let amplitude = &coefficients["amplitude"];
+                let amplitude = Complex64::new(number(amplitude, "re")?, number(amplitude, "im")?);
+                Form::Oscillation { centre: number(coefficients, "centre")?, amplitude, frequency }
+            }
+        };
+        Ok(Phase { name, start: number(value, "start")?, end: number(value, "end")?, form })
+    };
+    list.iter().map(read).collect()
 }
 
 /// Reads a document of kind `solution` back; its `verification` is left out.

@@ -1,6 +1,6 @@
 //! Handing a result on: [`text`] to read, [`json`] for programs, [`figure`] to look at.
 
-#[cfg(feature = "never")]
+#[cfg(feature = "plot")]
 pub mod figure;
 pub mod json;
 pub mod text;

@@ -2,37 +2,13 @@
 
 use std::fmt::Write as _;
 
+use crate::contact::phases::Column;
+use crate::decimal::{decimal, significant};
 use crate::exact::Polynomial;
 use crate::expr::Expr;
+use crate::impact::Impact;
 use crate::solution::Solution;
 use crate::verify::{Verdict, Verification};
-
-/// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
-pub fn decimal(value: f64) -> String {
-    significant(value, 6)
-}
-
-/// `value` with so many significant digits, without trailing zeros.
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !value.is_finite() {
-        return value.to_string();
-    }
-    let scientific = format!("{value:.*e}", digits.saturating_sub(1));
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
-    };
-    if (-4..digits as i32).contains(&exponent) {
-        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
-        return trimmed(&format!("{value:.decimals$}"));
-    }
-    format!("{}e{exponent}", trimmed(mantissa))
-}
 
 /// A signed relative error in percent: `-1.49 %`.
 pub fn percent(error: f64) -> String {
@@ -140,5 +116,71 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     line("slope of the error", verification.slope.map_or("hidden by rounding".to_owned(), |slope| format!(" {slope:.2}")));
     let verdict = if verification.verdict == Verdict::Pass { "pass" } else { "fail" };
     line("verdict", format!("{verdict} (|relative error| <= {} %)", significant(100.0 * tolerance, 3)));
+    text
+}
+
+/// The whole story of an impact.
+pub fn impact(impact: &Impact, tolerance: f64) -> String {
+    let setup = &impact.setup;
+    let mut text = format!("{}\n", impact.equation);
+    let _ = writeln!(text, "x(0) = -A, x'(0) = 0: released from rest, towards a barrier at xc\n");
+    let _ = writeln!(text, "  A     = {}", decimal(setup.amplitude));
+    let _ = writeln!(text, "  xc    = {}", decimal(setup.barrier));
+    let _ = writeln!(text, "  gamma = {}   ({})", decimal(setup.stiffness), setup.stiffness_source);
+    let law = impact.law.frequency_squared.as_ref().map(ToString::to_string).unwrap_or_default();
+    let _ = writeln!(text, "\nThe law of the free swing, {} to order {} in A", impact.law.method.title(), impact.law.order);
+    let _ = writeln!(text, "  {}", impact.law.equation);
+    let _ = writeln!(text, "  omega^2 = {law}");
+    let _ = writeln!(text, "  omega   = {}   (A = {})", decimal(impact.frequency()), decimal(setup.amplitude));
+    for (title, phases) in [
+        ("The paper's way: every join continuous, contact speed from the one-term motion", &impact.paper),
+        ("With the contact speed from the energy, v = sqrt(2*(cos(xc) - cos(A)))", &impact.energy),
+    ] {
+        let _ = writeln!(text, "\n{title}");
+        let line = phases.line;
+        let constant = phases.line.q(setup.barrier);
+        let _ = writeln!(
+            text,
+            "  elastic force gamma*({}*x - {}), fitted by {} over the depth {}",
+            decimal(line.slope),
+            decimal(constant),
+            setup.rule,
+            decimal(phases.fitted_depth)
+        );
+        for (phase, conditions) in phases.phases.iter().zip(["x = -A to x = xc", "x = xc to x = xc", "x = xc to x = -A"]) {
+            let times = format!("{} <= t <= {}", decimal(phase.start), decimal(phase.end));
+            let _ = writeln!(text, "  {:<9} {conditions},  {times}", phase.name);
+            let _ = writeln!(text, "            {}", phase.closed_form());
+        }
+        if phases.velocity_jump != 0.0 {
+            let _ = writeln!(text, "  the velocity jumps by {} at either join", decimal(phases.velocity_jump));
+        }
+    }
+    text.push_str("\nBeside Runge-Kutta on the original equation\n");
+    let _ = writeln!(text, "  {:<18}{:>12}{:>12}{:>14}{:>22}", "", "Runge-Kutta", "paper", "", "energy");
+    for quantity in impact.quantities() {
+        let _ = writeln!(
+            text,
+            "  {:<18}{:>12}{:>12}{:>12}{:>12}{:>12}",
+            quantity.name,
+            decimal(quantity.runge_kutta),
+            decimal(quantity.paper),
+            percent(quantity.paper_error()),
+            decimal(quantity.energy),
+            percent(quantity.energy_error())
+        );
+    }
+    let relative = |deviation: f64| format!("{} %", significant(100.0 * deviation / setup.amplitude, 3));
+    let (paper, energy) = (relative(impact.paper_deviation.total), relative(impact.energy_deviation.total));
+    let _ = writeln!(text, "  {:<18}{:>12}{paper:>12}{:>12}{energy:>12}", "largest deviation", "", "");
+    let _ = writeln!(text, "  Runge-Kutta keeps the energy to {} of the kinetic energy at touch", significant(impact.truth.energy_drift, 2));
+    let name = |verdict| if verdict == Verdict::Pass { "pass" } else { "fail" };
+    let _ = writeln!(
+        text,
+        "  verdict (every number within {} %): paper {}, energy {}",
+        significant(100.0 * tolerance, 3),
+        name(impact.verdict(Column::Paper, tolerance)),
+        name(impact.verdict(Column::Energy, tolerance))
+    );
     text
 }

@@ -7,8 +7,7 @@
 //! (u^n)' = n*u^(n-1)*u'       (u^v)'   = u^v*(v'*log(u) + v*u'/u)
 //! ```
 //!
-//! with the partial derivatives f_u from the table of [`Function`](super::Function). `x`, `x'` and `x''` are independent
-//! variables here.
+//! with the partial derivatives f_u from the table of [`Function`]. `x`, `x'` and `x''` are independent variables here.
 
 use std::collections::BTreeMap;
 

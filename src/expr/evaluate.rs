@@ -266,7 +266,7 @@ impl Compiler<'_> {
         }
         for (factor, slot) in factors.iter().zip(slots) {
             match factor.node() {
-                _ if factor.is_stepwise() => gate = Some(self.times(gate, *slot)),
+                _ if is_gate(factor) => gate = Some(self.times(gate, *slot)),
                 Node::Power(base, exponent) => {
                     let reciprocal = exponent.as_number().filter(|number| number.is_negative());
                     match (reciprocal, self.known.get(base).copied()) {
@@ -387,6 +387,11 @@ impl Compiler<'_> {
             result: place(result),
         }
     }
+}
+
+/// A factor whose zero covers a whole interval, on which the other factors need no value.
+fn is_gate(factor: &Expr) -> bool {
+    factor.is_stepwise() && (factor.contains_function(Function::Step) || factor.contains_function(Function::Sign))
 }
 
 /// Consecutive places from `start` for what is used, and the first place after them.

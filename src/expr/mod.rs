@@ -607,20 +607,29 @@ mod tests {
         assert!(force.contains_function(Function::Step) && !force.contains_function(Function::Sin));
     }
 
-    /// A million levels: every walk must do without the stack.
+    fn nested_cosines(depth: usize) -> Expr {
+        (0..depth).fold(Expr::symbol("x"), |inner, _| inner.cos().unwrap())
+    }
+
+    #[test]
+    fn a_tree_of_a_million_levels_is_compared_and_dropped() {
+        let (first, second) = (nested_cosines(1_000_000), nested_cosines(1_000_000));
+        assert_eq!(first, second);
+        assert_eq!(first.symbols().len(), 1);
+    }
+
+    /// Deep enough to overflow the stack of a test thread at 20 bytes a level.
     #[test]
     fn depth_never_meets_the_stack() {
-        let build = || (0..1_000_000).fold(Expr::symbol("x"), |inner, _| inner.cos().unwrap());
-        let (first, second) = (build(), build());
+        let depth = 100_000;
+        let expr = nested_cosines(depth);
         let x = Symbol::new("x");
-        assert_eq!(first, second);
-        assert!(first.contains(x));
-        assert_eq!(first.to_string().len(), 5 * 1_000_000 + 1);
-        assert_eq!(first.expand().unwrap(), first);
-        assert_ne!(first.substitute(x, &Expr::symbol("y")).unwrap(), first);
-        assert_eq!(first.differentiate(x).unwrap_err(), ExprError::TooManyTerms(300_000));
+        assert_eq!(expr.to_string().len(), 5 * depth + 1);
+        assert_eq!(expr.expand().unwrap(), expr);
+        assert_ne!(expr.substitute(x, &Expr::symbol("y")).unwrap(), expr);
+        assert_eq!(expr.differentiate(x).unwrap_err(), ExprError::TooManyTerms(300_000));
         // cos repeated without end converges to the solution of cos(u) = u.
-        let value = first.evaluate(&BTreeMap::from([(x, 1.0)])).unwrap();
+        let value = expr.evaluate(&BTreeMap::from([(x, 1.0)])).unwrap();
         assert!((value - value.cos()).abs() < 1e-15);
     }
 

@@ -447,7 +447,7 @@ mod tests {
             ("sqrt(2*x + 2)*sqrt(2*x + 2)*(1 + x)*y", "2*y*(1 + x)^2"),
             ("sqrt(x*y)*sqrt(x*y)*x", "y*x^2"),
             // Powers.
-            ("(a*b)^3", "a^3*b^3"),
+            ("(p*q)^3", "p^3*q^3"),
             ("(x^(1/2))^4", "x^2"),
             ("(x^a)^3", "x^(3*a)"),
             ("(2*x)^-2", "1/(4*x^2)"),
@@ -462,7 +462,7 @@ mod tests {
             ("1^x", "1"),
             // Roots of squares keep their sign, and no root is taken of a product.
             ("(x^2)^(1/2)", "sqrt(x^2)"),
-            ("(x*y)^(1/2)", "sqrt(x*y)"),
+            ("(x*y)^(1/2)", "sqrt(y*x)"),
             // Numbers.
             ("(-8)^(1/3)", "-2"),
             ("(-8)^(2/3)", "4"),

@@ -1,7 +1,8 @@
 //! The order in which terms and factors print, and the structural order behind equality.
 //!
-//! - Terms of a sum: those with an acceleration first, those with functions last, in between by ascending total degree;
-//!   at equal degree coordinates before amplitudes before parameters: `x'' + 2*zeta*x' + sin(x)`, `1 - A^2/8`, `x - xc`.
+//! - Terms of a sum: those with an acceleration first, those with functions last, in between by ascending total degree,
+//!   at equal degree coordinates before amplitudes before parameters: `x'' + 2*zeta*x' + sin(x)`, `1 - A^2/8`,
+//!   `x - xc`.
 //! - Factors of a product: roots of numbers, pi, parameters in alphabetical order, amplitudes, coordinates, then powers
 //!   of sums and functions: `3*eps*A^2/4`, `gamma*(x - xc)^(3/2)*H(x - xc)`.
 
@@ -28,7 +29,7 @@ pub(super) fn compare_factors(a: &Expr, b: &Expr) -> Ordering {
     let class = |expr: &Expr| match expr.node() {
         Node::Number(_) => 0,
         Node::Pi => 1,
-        Node::Symbol(symbol) => 2 + symbol_class(*symbol),
+        Node::Symbol(symbol) => 2 + symbol_class(*symbol) as u8,
         Node::Sum(_) | Node::Product(..) | Node::Power(..) => 6,
         Node::Function(..) => 7,
     };
@@ -42,14 +43,22 @@ pub(super) fn compare_factors(a: &Expr, b: &Expr) -> Ordering {
         .then_with(|| a.cmp(b))
 }
 
-/// Parameters, then amplitudes, then coordinates and their derivatives, then time.
-fn symbol_class(symbol: Symbol) -> u8 {
+/// The kinds of symbols in the order in which they stand in a product.
+#[derive(Clone, Copy)]
+enum Class {
+    Parameter,
+    Amplitude,
+    Coordinate,
+    Time,
+}
+
+fn symbol_class(symbol: Symbol) -> Class {
     match symbol.name() {
-        "A" | "a" => 1,
-        "x" | "theta" => 2,
-        "t" => 3,
-        _ if symbol.primes() > 0 => 2,
-        _ => 0,
+        "A" | "a" => Class::Amplitude,
+        "x" | "theta" => Class::Coordinate,
+        "t" => Class::Time,
+        _ if symbol.primes() > 0 => Class::Coordinate,
+        _ => Class::Parameter,
     }
 }
 
@@ -97,9 +106,17 @@ impl TermKey {
     }
 }
 
-/// Coordinates, the highest derivative first, then amplitudes, then parameters.
+/// Coordinates, the highest derivative first, then time, amplitudes and parameters.
 fn compare_variables(a: Symbol, b: Symbol) -> Ordering {
-    let rank = |symbol: Symbol| (Reverse(symbol_class(symbol)), Reverse(symbol.primes()));
+    let rank = |symbol: Symbol| {
+        let place = match symbol_class(symbol) {
+            Class::Coordinate => 0,
+            Class::Time => 1,
+            Class::Amplitude => 2,
+            Class::Parameter => 3,
+        };
+        (place, Reverse(symbol.primes()))
+    };
     rank(a).cmp(&rank(b)).then_with(|| compare_names(a, b))
 }
 

@@ -11,8 +11,9 @@
 //! number   = digits [ "." digits ] [ "e" [sign] digits ]       exact: 0.323 is 323/1000
 //! ```
 //!
-//! Every error names the place and, where it can, the right spelling. Whatever the text is, reading it ends quickly: its
-//! length, its nesting, the digits and exponents of its numbers and the work of bringing it into normal form are limited.
+//! Every error names the place and, where it can, the right spelling. Whatever the text is, reading it ends quickly:
+//! its length, its nesting, the digits and exponents of its numbers and the work of bringing it into normal form are
+//! limited.
 
 mod error;
 mod lexer;
@@ -432,5 +433,380 @@ impl<'a> Parser<'a> {
     /// The text itself in quotes, shortened in the middle of long ones.
     fn quoted(&self, span: Range<usize>) -> String {
         format!("`{}`", shortened(&self.text[span]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_numbers_are_exact() {
+        for (text, numerator, denominator) in [
+            ("0.323", 323, 1000),
+            ("1.5e-3", 15, 10_000),
+            ("2E+3", 2000, 1),
+            (".5", 1, 2),
+            ("5.", 5, 1),
+            ("007", 7, 1),
+            ("0e-400", 0, 1),
+            ("1e00000000000000000000002", 100, 1),
+            ("2^3^2/2^8", 2, 1),
+            ("-2^2", -4, 1),
+            ("(-2)^2", 4, 1),
+            ("2**-1", 1, 2),
+            ("2*-3 - -4 - +5", -7, 1),
+            ("12/2/3", 2, 1),
+            ("1 - 2 - 3", -4, 1),
+        ] {
+            let expected = Rational::new(numerator.into(), denominator.into());
+            assert_eq!(parse_expression(text).unwrap(), Expr::number(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn blanks_and_marks_at_the_start_do_not_count() {
+        let expected = parse_expression("x''+2*x").unwrap();
+        for text in ["\u{feff}x''+2*x", " x'' \r\n +\t2 * x\r\n", "((x''))+(2)*x"] {
+            assert_eq!(parse_expression(text).unwrap(), expected);
+        }
+    }
+
+    #[test]
+    fn equations_and_their_coordinate() {
+        for (text, expected, coordinate) in [
+            ("x'' + x + eps*x^3 = 0", "x'' + x + eps*x^3 = 0", "x"),
+            ("x'' + sin(x)", "x'' + sin(x) = 0", "x"),
+            ("x'' = -k*x", "x'' = -k*x", "x"),
+            ("u'' + u + eps*u^3", "u'' + u + eps*u^3 = 0", "u"),
+            ("0 = q' + t", "0 = q' + t", "q"),
+            ("x + 1 = 2", "1 + x = 2", "x"),
+            ("x'' + e*x", "x'' + e*x = 0", "x"),
+        ] {
+            let equation = parse_equation(text).unwrap();
+            assert_eq!(
+                (equation.to_string().as_str(), equation.coordinate.name()),
+                (expected, coordinate),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_names_of_answers_are_read_in_expressions_alone() {
+        for name in RESERVED_NAMES {
+            assert_eq!(parse_expression(name).unwrap(), Expr::symbol(name));
+            let error = parse_equation(&format!("x'' + {name}*x = 0")).unwrap_err();
+            assert_eq!((error.span.start, error.span.len()), (6, name.len()), "{error}");
+        }
+        assert!(parse_expression("theta'").is_ok() && parse_equation("phi'' + phi").is_err());
+    }
+
+    /// Text, the part that is meant, the message and the help.
+    #[test]
+    fn mistakes_are_located_and_named() {
+        for (text, place, message, help) in [
+            ("x'' + 2x = 0", "2x", "`2x`: a product needs its sign", "try `2*x`"),
+            ("2(x) + x''", "2(x)", "`2(x)`: a product needs its sign", "try `2*(x)`"),
+            (
+                "x sin(x)",
+                "x sin(x)",
+                "`x sin(x)`: a product needs its sign",
+                "try `x*sin(x)`",
+            ),
+            (
+                "(x+1)(x-1)",
+                "(x+1)(x-1)",
+                "`(x+1)(x-1)`: a product needs its sign",
+                "try `(x+1)*(x-1)`",
+            ),
+            (
+                "sin(x)(x-1)",
+                "sin(x)(x-1)",
+                "`sin(x)(x-1)`: a product needs its sign",
+                "try `sin(x)*(x-1)`",
+            ),
+            ("k(x)", "k(x)", "`k(x)`: a product needs its sign", "try `k*(x)`"),
+            ("2e", "2e", "`2e`: a product needs its sign", "try `2*e`"),
+            ("0x10", "0x10", "`0x10`: a product needs its sign", "try `0*x10`"),
+            ("x 1", "x 1", "`x 1`: a product needs its sign", "try `x*1`"),
+            (
+                "d2x/dt2 + x",
+                "d2x/dt2",
+                "`d2x/dt2`: derivatives are written with primes",
+                "try `x''`",
+            ),
+            (
+                "x + du/dt",
+                "du/dt",
+                "`du/dt`: derivatives are written with primes",
+                "try `u'`",
+            ),
+            (
+                "d^2x/dt^2 + x",
+                "d^2x/dt^2",
+                "`d^2x/dt^2`: derivatives are written with primes",
+                "try `x''`",
+            ),
+            (
+                "x + x_dot",
+                "x_dot",
+                "`x_dot`: derivatives are written with primes",
+                "try `x'`",
+            ),
+            (
+                "uddot + u",
+                "uddot",
+                "`uddot`: derivatives are written with primes",
+                "try `u''`",
+            ),
+            (
+                "\\ddot{x} + x",
+                "\\ddot{x}",
+                "`\\ddot{x}`: derivatives are written with primes",
+                "try `x''`",
+            ),
+            (
+                "diff(x, t) + x",
+                "diff(x, t)",
+                "`diff(x, t)`: derivatives are written with primes",
+                "try `x'` for the velocity, `x''` for the acceleration",
+            ),
+            ("1 + sn(x)", "sn", "there is no function `sn`", "did you mean `sin`?"),
+            ("Sin(x)", "Sin", "there is no function `Sin`", "did you mean `sin`?"),
+            ("sqr(x)", "sqr", "there is no function `sqr`", "did you mean `sqrt`?"),
+            ("ln(x)", "ln", "there is no function `ln`", "did you mean `log`?"),
+            (
+                "x + sin x",
+                "sin x",
+                "`sin` needs parentheses around its argument",
+                "try `sin(x)`",
+            ),
+            (
+                "cos",
+                "cos",
+                "`cos` needs parentheses around its argument",
+                "try `cos(x)`",
+            ),
+            (
+                "sin^2(x)",
+                "sin",
+                "`sin` needs parentheses around its argument",
+                "try `sin(x)^2`",
+            ),
+            (
+                "x''' + x",
+                "x'''",
+                "`x'''` has 3 primes",
+                "the highest derivative is `x''`",
+            ),
+            ("t' + x", "t'", "`t` is no coordinate and carries no prime", ""),
+            ("(x)'", "'", "a prime stands directly after its letter", "try `x'`"),
+            ("x\" + x", "\"", "a double quote is no pair of primes", "try `x''`"),
+            ("x +", "+", "something is missing after `+`", ""),
+            ("x + * 2", "+", "something is missing after `+`", ""),
+            ("* x", "*", "something is missing before `*`", ""),
+            ("x^", "^", "something is missing after `^`", ""),
+            ("2*(x + 1", "(", "this `(` is never closed", ""),
+            ("x)", ")", "this `)` closes nothing", ""),
+            (")(", ")", "this `)` closes nothing", ""),
+            ("()", "()", "nothing stands between these parentheses", ""),
+            ("sin()", "sin()", "`sin` has no argument", ""),
+            ("sin(x, 1)", "sin(x, 1)", "`sin` takes 1 argument, not 2", ""),
+            ("max(x)", "max(x)", "`max` takes 2 arguments, not 1", ""),
+            ("x == 1", "==", "`==`: an equation has a single sign", "try `=`"),
+            ("x = 1 = 2", "=", "a second `=`", "an equation has one"),
+            ("(x = 1)", "=", "an `=` inside parentheses", ""),
+            ("x =", "=", "something is missing after `=`", ""),
+            ("1/0", "0", "division by zero", ""),
+            ("0/0", "0", "division by zero", ""),
+            ("x/(1 - 1)", "(1 - 1)", "division by zero: `(1 - 1)` is 0", ""),
+            ("x + log(0)", "log(0)", "`log(0)` has no real value", ""),
+            ("sqrt(-1)", "sqrt(-1)", "`(-1)^(1/2)` has no real value", ""),
+            ("asin(2)", "asin(2)", "`asin(2)` has no real value", ""),
+            ("x*0^0", "0^0", "`0^0` has no real value", ""),
+            ("0^-1", "0^-1", "division by zero: `0^(-1)`", ""),
+            ("x + nan", "nan", "`nan` is no number", ""),
+            (
+                "1,5*x",
+                ",",
+                "a `,` stands between the arguments of `max` and `min` alone",
+                "a decimal point is `.`",
+            ),
+            (
+                "1..2",
+                "1..",
+                "this is no number",
+                "a decimal point stands among digits: `0.5`",
+            ),
+            ("x\u{b2}", "\u{b2}", "`\u{b2}` (U+00B2) is not understood", "try `^2`"),
+            (
+                "x \u{2212} 1",
+                "\u{2212}",
+                "`\u{2212}` (U+2212) is not understood",
+                "try `-`",
+            ),
+            ("2\u{b7}x", "\u{b7}", "`\u{b7}` (U+00B7) is not understood", "try `*`"),
+            ("x \u{202e}1", "\u{202e}", "the character U+202E is not understood", ""),
+            ("x\0", "\0", "a NUL character", ""),
+            ("x\u{1b}[31m", "\u{1b}", "a control character, U+001B", ""),
+            ("__import__(\"os\").getcwd()", "_", "a name begins with a letter", ""),
+            ("|x|", "|", "`|` is no sign here", "the absolute value is `abs(x)`"),
+            (
+                "x''+A*x",
+                "A",
+                "`A` is reserved: it is the amplitude in the answer",
+                "another name, such as `A1`",
+            ),
+            (
+                "u'' + x",
+                "x",
+                "`x` beside the coordinate `u`",
+                "write `u`, or give the parameter another name",
+            ),
+            (
+                "u'' + y'",
+                "y'",
+                "derivatives of both `u` and `y`",
+                "an equation of motion has one coordinate",
+            ),
+            (
+                "phi'' + phi",
+                "phi''",
+                "`phi''`: primes belong to a single letter",
+                "try `x'` or `x''`",
+            ),
+            ("", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
+            (" \n", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
+        ] {
+            let error = parse_equation(text).expect_err(text);
+            assert_eq!(error.message, message, "{text:?}");
+            assert_eq!(&text[error.span.clone()], place, "{text:?}: {error}");
+            assert_eq!(error.help.as_deref().unwrap_or(""), help, "{text:?}");
+        }
+        assert_eq!(
+            parse_expression("x = 1").unwrap_err().message,
+            "an `=` in an expression"
+        );
+    }
+
+    #[test]
+    fn errors_show_the_place() {
+        let shown = |text: &str| parse_equation(text).unwrap_err().to_string();
+        assert_eq!(
+            shown("x'' + 2x = 0"),
+            "`2x`: a product needs its sign\n  x'' + 2x = 0\n        ^^ try `2*x`"
+        );
+        assert_eq!(
+            shown("x'' +\n  x + 2x\n= 0"),
+            "`2x`: a product needs its sign\n    x + 2x\n        ^^ try `2*x`"
+        );
+        assert_eq!(shown(""), "the text is empty\n  an example: `x'' + sin(x) = 0`");
+        assert_eq!(shown("x +"), "something is missing after `+`\n  x +\n    ^");
+        // What a terminal would obey or reorder is not shown.
+        assert_eq!(shown("x\u{1b}[31m"), "a control character, U+001B\n  x?[31m\n   ^");
+        assert_eq!(shown("\u{202e}x"), "the character U+202E is not understood\n  ?x\n  ^");
+        let long = shown(&format!("{}2x{}", "x + ".repeat(1_000), " + x".repeat(1_000)));
+        let lines: Vec<&str> = long.lines().collect();
+        assert_eq!(lines[2].find('^').map(|place| &lines[1][place..place + 2]), Some("2x"));
+        assert!(lines[1].len() < 110 && lines[1].ends_with("..."), "{long}");
+    }
+
+    /// Each ends in an error or a value, soon, and never in the stack.
+    #[test]
+    fn hostile_texts_end_in_an_error() {
+        let nested = |open: &str, close: &str, depth: usize| format!("{}x{}", open.repeat(depth), close.repeat(depth));
+        let deep = "nested more than 256 deep";
+        let long = "the numbers here are too long to be written out";
+        let wide = "the expression is too large to be brought into normal form";
+        let different = (0..8_000).map(|k| format!("x{k}")).collect::<Vec<_>>().join("+");
+        for (text, message) in [
+            (nested("(", ")", 2_000), deep),
+            (nested("sin(", ")", 2_000), deep),
+            (nested("max(1, ", ")", 2_000), deep),
+            (nested("-", "", 5_000), deep),
+            (nested("+", "", 5_000), deep),
+            (nested("x^", "", 5_000), deep),
+            (nested("-(", ")", 129), deep),
+            (nested("2^-", "", 129), deep),
+            ("(".repeat(60_000), deep),
+            ("x".repeat(60_000), "a name of more than 64 letters"),
+            ("9".repeat(60_000), "a number of more than 1000 digits"),
+            ("x + ".repeat(20_000), "the text is longer than 64 KiB"),
+            (
+                "9^9^9^9^9".into(),
+                "`9^387420489` is too large a number to be written out",
+            ),
+            ("x^1000000000".into(), "the exponent in `x^1000000000` is beyond 10000"),
+            (
+                "((x^9999)^9999)".into(),
+                "the exponent in `(x^9999)^9999` is beyond 10000",
+            ),
+            ("x^9999*x^9999".into(), "this product has an exponent beyond 10000"),
+            ("x^(1/10001)".into(), "the exponent in `x^(1/10001)` is beyond 10000"),
+            ("1e999999999999".into(), "the exponent of this number is beyond 400"),
+            (
+                "1e-99999999999999999999999".into(),
+                "the exponent of this number is beyond 400",
+            ),
+            ((3..2_000).map(|n| format!("{n}^9999*")).collect::<String>() + "1", long),
+            (
+                (3..2_000).map(|n| format!("1/{n}^900+")).collect::<String>() + "1",
+                long,
+            ),
+            (format!("{}{}{}", "(".repeat(250), different, "+y)".repeat(250)), wide),
+        ] {
+            assert_eq!(
+                parse_expression(&text).unwrap_err().message,
+                message,
+                "{}",
+                &text[..20.min(text.len())]
+            );
+        }
+    }
+
+    #[test]
+    fn the_limits_themselves_are_allowed() {
+        let nested = |open: &str, close: &str, depth: usize| format!("{}x{}", open.repeat(depth), close.repeat(depth));
+        let x = Expr::symbol("x");
+        assert_eq!(parse_expression(&nested("(", ")", 256)).unwrap(), x);
+        assert_eq!(parse_expression(&nested("-", "", 256)).unwrap(), x);
+        assert!(parse_expression(&nested("sin(", ")", 256)).is_ok());
+        assert!(parse_expression(&nested("x^", "", 256)).is_ok());
+        assert!(parse_expression(&"9".repeat(1_000)).is_ok());
+        assert!(parse_expression("x^10000 + x^(1/10000) + 1e400").is_ok());
+    }
+
+    /// The deepest text allowed needs less than half the stack of a test thread, which has 2 MiB.
+    #[test]
+    fn the_deepest_text_fits_a_small_stack() {
+        let text = format!("{}x{}", "sin(".repeat(256), ")".repeat(256));
+        let parse = move || parse_expression(&text).is_ok();
+        let thread = std::thread::Builder::new()
+            .stack_size(1024 * 1024)
+            .spawn(parse)
+            .unwrap();
+        assert!(thread.join().unwrap());
+    }
+
+    #[test]
+    fn wide_texts_are_read_in_one_go() {
+        let sum = |term: &str, count: usize| parse_expression(&vec![term; count].join("+")).unwrap();
+        assert_eq!(sum("x", 20_000).to_string(), "20000*x");
+        assert_eq!(sum("sin(x)", 9_000).to_string(), "9000*sin(x)");
+        let different: Vec<String> = (0..9_000).map(|k| format!("x{k}")).collect();
+        assert_eq!(parse_expression(&different.join("+")).unwrap().terms().len(), 9_000);
+        assert_eq!(parse_expression(&different.join("*")).unwrap().factors().1.len(), 9_000);
+        assert_eq!(
+            parse_expression(&vec!["(x+1)"; 9_000].join("*")).unwrap().to_string(),
+            "(1 + x)^9000"
+        );
+        let quotients: Vec<String> = (10_001..17_000).map(|n| format!("1/{n}")).collect();
+        let sum = parse_expression(&quotients.join("+"))
+            .unwrap()
+            .evaluate(&std::collections::BTreeMap::new())
+            .unwrap();
+        let direct: f64 = (10_001..17_000).map(|n| 1.0 / f64::from(n)).sum();
+        assert!((sum - direct).abs() < 1e-12);
     }
 }

@@ -1,4 +1,5 @@
-//! Expressions as text that reads back to the same tree.
+//! Expressions as text that reads back to the same tree, within the limits of reading: computed numbers and exponents
+//! may be longer than a text may hold.
 //!
 //! A product prints as a fraction: numerator over denominator, `8*eps*A/(3*pi)`; [`Expr::fraction`] is that split, for
 //! every other notation to share. Powers with a negative number as exponent stand in the denominator; the power 1/2 is

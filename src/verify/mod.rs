@@ -222,6 +222,30 @@ pub fn judge(
     })
 }
 
+/// Time, displacement and velocity.
+pub type Sample = (f64, f64, f64);
+
+/// The motion by the formula and the true one, at the same instants of one true period; `None` where the formula's
+/// frequency is not real.
+///
+/// # Errors
+/// As for [`judge`].
+pub fn motions(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<Option<(Vec<Sample>, Vec<Sample>)>, VerificationError> {
+    let symbol = solution.amplitude.symbol();
+    let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
+    let truth = TrueMotion::of(oscillator, solution, &numbers)?;
+    let motion = solution.motion(&|symbol| numbers.get(&symbol).copied()).ok();
+    let Some((frequency, motion)) = formula_frequency(solution, &numbers).zip(motion) else { return Ok(None) };
+    let velocity = motion.derivative();
+    let times = (0..=SAMPLES).map(|k| truth.path.end().t * k as f64 / SAMPLES as f64);
+    let formula = |t: f64| (t, motion.evaluate(frequency * t), frequency * velocity.evaluate(frequency * t));
+    Ok(Some((times.clone().map(formula).collect(), times.map(|t| truth.sample(t)).collect())))
+}
+
 /// omega by the formula: the root of the truncated omega^2, `None` where that is not positive.
 fn formula_frequency(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let law = solution.frequency_squared.as_ref()?;
@@ -232,8 +256,8 @@ fn formula_frequency(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Op
 /// The true periodic motion that a formula is meant for.
 struct TrueMotion {
     frequency: f64,
-    /// One period from a turning point; `None` where only the frequency was asked for.
-    path: Option<Trajectory>,
+    /// One period from a turning point.
+    path: Trajectory,
     /// The instant of the path that is `t = 0` of the formula.
     shift: f64,
     amplitude: f64,
@@ -266,17 +290,21 @@ impl TrueMotion {
             (AmplitudeConvention::FirstHarmonic, None) => numbers[&solution.amplitude.symbol()].abs(),
             _ => (path.at(0.0).map_or(start, |(x, _)| x) - physics.equilibrium).abs(),
         };
-        Ok(Self { frequency, path: Some(path), shift, amplitude })
+        Ok(Self { frequency, path, shift, amplitude })
+    }
+
+    /// The true motion at the time `t` of the formula.
+    fn sample(&self, t: f64) -> Sample {
+        let place = (t + self.shift).rem_euclid(self.path.end().t);
+        let (x, v) = self.path.at(place).unwrap_or((f64::NAN, f64::NAN));
+        (t, x, v)
     }
 
     /// Largest `|x_true - x_formula|` over one true period, over the amplitude.
     fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<f64>) -> f64 {
-        let Some(path) = &self.path else { return f64::NAN };
-        let period = path.end().t;
         let deviation = |index: usize| {
-            let t = period * index as f64 / SAMPLES as f64;
-            let place = (t + self.shift).rem_euclid(period);
-            path.at(place).map_or(f64::NAN, |(x, _)| (x - motion.evaluate(frequency * t)).abs())
+            let t = self.path.end().t * index as f64 / SAMPLES as f64;
+            (self.sample(t).1 - motion.evaluate(frequency * t)).abs()
         };
         (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / self.amplitude
     }

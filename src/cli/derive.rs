@@ -1,0 +1,178 @@
+//! `lindstedt derive PROBLEM`.
+
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+use lindstedt::export::{json, text};
+use lindstedt::expr::parse_expression;
+use lindstedt::method::{self, Options};
+use lindstedt::problem::Problem;
+use lindstedt::solution::{AmplitudeConvention, Method, Solution};
+use lindstedt::spelling::nearest;
+use lindstedt::verify::{self, Values, VerificationError};
+use lindstedt::{Oscillator, Symbol};
+
+use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// An equation in quotes, a TOML file, or - for standard input
+    problem: String,
+    /// How to derive: lindstedt-poincare
+    #[arg(long)]
+    method: Option<String>,
+    /// Highest power of the small parameter kept, inclusive
+    #[arg(long)]
+    order: Option<u32>,
+    /// What the amplitude measures
+    #[arg(long, value_enum)]
+    amplitude: Option<Convention>,
+    /// The small parameter; A for the amplitude
+    #[arg(long, value_name = "NAME")]
+    small: Option<String>,
+    /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Convention {
+    Initial,
+    FirstHarmonic,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = problem(&arguments.problem)?;
+    let Some(equation) = &problem.equation else {
+        return Err(Failure::Refused("the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned()));
+    };
+    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
+    let options = options(arguments, &problem)?;
+    let values = values(arguments, &problem)?;
+    let solution =
+        method::solve(&oscillator, &options).map_err(|refusal| Failure::refused(&refusal, refusal.help()))?;
+    let tolerance = tolerance(&arguments.common);
+    let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
+    let verification = match judged {
+        false => None,
+        true => {
+            let judged = verify::judge(&oscillator, &solution, &values.unwrap_or_default(), tolerance);
+            Some(judged.map_err(|error| match &error {
+                VerificationError::Unknown { name, known } => {
+                    let near = nearest(name.name(), known.iter().map(|known| known.name()));
+                    let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
+                    Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
+                }
+                VerificationError::Missing(names) => {
+                    Failure::refused(&error, names.first().map(|name| format!("--at {name}=VALUE")))
+                }
+                _ => Failure::refused(&error, None),
+            })?)
+        }
+    };
+    let text = match arguments.common.format {
+        Format::Text => text::solution(&solution, verification.as_ref(), tolerance),
+        Format::Json => json_text(&json::solution(&solution, verification.as_ref())),
+    };
+    let picture = match (&arguments.common.plot, &verification) {
+        (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at)?)),
+        _ => None,
+    };
+    Ok(Outcome { text, picture, note: None, verdict: verification.map(|verification| verification.verdict) })
+}
+
+/// An equation, or what a file says. A name that ends in `.toml`, or a file that exists, is a file.
+fn problem(text: &str) -> Result<Problem, Failure> {
+    let parsed = |text: String| -> Result<Problem, Failure> {
+        text.parse().map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))
+    };
+    let path = Path::new(text);
+    if text == "-" {
+        let text = read(path)?;
+        // Standard input may be a bare equation as well as TOML: only TOML assigns to a bare key.
+        let is_toml = text.lines().any(|line| {
+            let line = line.trim_start();
+            let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
+        });
+        return if is_toml { parsed(text) } else { Ok(Problem { equation: Some(text), ..Problem::default() }) };
+    }
+    if text.ends_with(".toml") || path.is_file() {
+        return parsed(read(path)?);
+    }
+    Ok(Problem { equation: Some(text.to_owned()), ..Problem::default() })
+}
+
+fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure> {
+    let usage = |message: String| Err(Failure::Usage(message));
+    let method = match arguments.method.as_ref().or(problem.method.as_ref()) {
+        None => None,
+        Some(name) => match Method::from_name(name) {
+            Some(method) => Some(method),
+            None => {
+                let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
+                return usage(format!("unknown method `{name}`\n  help: choose one of {}", names.join(", ")));
+            }
+        },
+    };
+    let amplitude = match (arguments.amplitude, &problem.amplitude) {
+        (Some(Convention::Initial), _) => Some(AmplitudeConvention::Initial),
+        (Some(Convention::FirstHarmonic), _) => Some(AmplitudeConvention::FirstHarmonic),
+        (None, None) => None,
+        (None, Some(name)) => match AmplitudeConvention::from_name(name) {
+            Some(convention) => Some(convention),
+            None => return usage(format!("unknown amplitude `{name}`\n  help: choose initial or first-harmonic")),
+        },
+    };
+    let order = arguments.order.or(problem.order);
+    let small = arguments.small.clone().or_else(|| problem.small.clone());
+    Ok(Options { method, order, amplitude, small })
+}
+
+/// The values of the command line, which win over those of the file; `None` where there are none at all.
+fn values(arguments: &Arguments, problem: &Problem) -> Result<Option<Values>, Failure> {
+    let mut values = Values::default();
+    for text in &arguments.at {
+        let Some((name, value)) = text.split_once('=') else {
+            return Err(Failure::Usage(format!("--at {text}: expected NAME=VALUE, such as A=1.5")));
+        };
+        let value = parse_expression(value).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
+        let name = Symbol::new(name.trim());
+        values.insert(name, value).map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+    }
+    let file = problem.exact_values().map_err(|error| Failure::refused(&error, error.help()))?;
+    for (name, value) in file.iter().filter(|(name, _)| values.get(*name).is_none()).collect::<Vec<_>>() {
+        values.insert(name, value.clone()).map_err(|error| Failure::refused(&error, None))?;
+    }
+    Ok((!values.is_empty()).then_some(values))
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &Oscillator, _: &Solution, _: &Values) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Result<String, Failure> {
+    use lindstedt::export::figure::{MotionFigure, motion_figure};
+
+    let motions = verify::motions(oscillator, solution, values).map_err(|error| Failure::refused(&error, None))?;
+    let Some((formula, truth)) = motions else {
+        return Err(Failure::Refused("the formula has no real frequency there: nothing to draw".to_owned()));
+    };
+    let at: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let caption = format!("{}   {}", solution.equation, at.join(", "));
+    let label = format!("{} to order {}", solution.method.title(), solution.order);
+    let figure = MotionFigure {
+        coordinate: oscillator.coordinate.name(),
+        displacement_unit: "",
+        time_unit: "",
+        formula_label: &label,
+        formula: &formula,
+        truth: &truth,
+        caption: &caption,
+    };
+    motion_figure(&figure).map_err(|error| Failure::refused(&error, None))
+}

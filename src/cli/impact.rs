@@ -1,0 +1,123 @@
+//! `lindstedt impact [FILE]`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use lindstedt::contact::phases::Column;
+use lindstedt::export::{json, text};
+use lindstedt::impact::{Impact, Setup, solve};
+use lindstedt::problem::{Barrier, Problem};
+
+use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A TOML file, or - for standard input; without it the paper's swing
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        let common =
+            Common { format: Format::Text, output: None, plot: None, tolerance: None, quiet: false, timeout: None };
+        Self { file: None, common }
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = match &arguments.file {
+        None => Problem::default(),
+        Some(path) => read(path)?
+            .parse()
+            .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))?,
+    };
+    let impact = solve(setup(&problem)?).map_err(|error| Failure::refused(&error, None))?;
+    let tolerance = tolerance(&arguments.common);
+    let text = match arguments.common.format {
+        Format::Text => text::impact(&impact, tolerance),
+        Format::Json => json_text(&json::impact(&impact, tolerance)),
+    };
+    let picture = match &arguments.common.plot {
+        None => None,
+        Some(path) => Some((path.clone(), picture(&impact)?)),
+    };
+    Ok(Outcome { text, picture, note: None, verdict: Some(impact.verdict(Column::Paper, tolerance)) })
+}
+
+/// The default order of the law: equation (12), the first term beyond the linear one.
+const ORDER: u32 = 2;
+
+fn setup(problem: &Problem) -> Result<Setup, Failure> {
+    let refuse = |message: &str| Err(Failure::Refused(message.to_owned()));
+    let damping = &problem.damping;
+    if damping.zeta != 0.0 || damping.alpha != 0.0 || problem.contact.mu.or(problem.contact.lambda).is_some_and(|mu| mu != 0.0) {
+        return refuse("the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda");
+    }
+    if problem.excitation.beta != 0.0 {
+        return refuse("the three phases in closed form are those of the free motion, equation (9): leave out [excitation]");
+    }
+    if problem.equation.is_some() {
+        return refuse("the swing of an impact is x'' + sin(x) = 0: leave out `equation`, or use `lindstedt derive`");
+    }
+    if problem.method.as_deref().is_some_and(|name| name != "lindstedt-poincare") {
+        return refuse("the law of the approach is derived by lindstedt-poincare: leave out `method`");
+    }
+    let amplitude = problem.pendulum.amplitude;
+    let barrier = match problem.pendulum.barrier {
+        Barrier::Right(position) => position,
+        // A left barrier beyond the release is never touched again.
+        Barrier::Both([left, right]) if left < -amplitude => right,
+        Barrier::Both(_) => {
+            return refuse(
+                "released from rest at x = -amplitude the pendulum starts behind the left barrier: move it below -amplitude",
+            );
+        }
+    };
+    let refused = |error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help());
+    let (stiffness, source) = problem.stiffness().map_err(refused)?;
+    Ok(Setup {
+        amplitude,
+        barrier,
+        stiffness,
+        stiffness_source: source.to_owned(),
+        order: problem.order.unwrap_or(ORDER),
+        rule: problem.linearisation().map_err(refused)?,
+        integrator_tolerance: problem.run.integrator_tolerance,
+    })
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &Impact) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(impact: &Impact) -> Result<String, Failure> {
+    use lindstedt::decimal::decimal;
+    use lindstedt::impact::Path;
+    use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
+
+    const POINTS: usize = 600;
+    let drawn = impact.paths(POINTS);
+    let styles = [
+        ("Runge-Kutta", CurveStyle::RUNGE_KUTTA),
+        ("closed form, paper", CurveStyle::FORMULA),
+        ("closed form, energy", CurveStyle::SECOND_FORMULA),
+    ];
+    let motion = |(path, (label, style))| {
+        let Path { samples, contact }: &Path = path;
+        ImpactMotion { label, style, samples, contact }
+    };
+    let motions: Vec<_> = drawn.iter().zip(styles).map(motion).collect();
+    let setup = &impact.setup;
+    let caption = format!(
+        "Pendulum and elastic barrier: A = {}, x_c = {}, gamma = {}; one period from the release.",
+        decimal(setup.amplitude),
+        decimal(setup.barrier),
+        decimal(setup.stiffness)
+    );
+    let figure = ImpactFigure { left_barrier: None, right_barrier: Some(setup.barrier), motions: &motions, caption: &caption };
+    impact_figure(&figure).map_err(|error| Failure::refused(&error, None))
+}

@@ -1,0 +1,50 @@
+//! Floating-point numbers as people write them.
+
+/// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
+pub fn decimal(value: f64) -> String {
+    significant(value, 6)
+}
+
+/// `value` with so many significant digits, without trailing zeros.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    let scientific = format!("{value:.*e}", digits.saturating_sub(1));
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
+    };
+    if (-4..digits as i32).contains(&exponent) {
+        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
+        return trimmed(&format!("{value:.decimals$}"));
+    }
+    format!("{}e{exponent}", trimmed(mantissa))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_people_write_them() {
+        for (value, expected) in [
+            (0.860_608_346_68, "0.860608"),
+            (-1.5, "-1.5"),
+            (3.040_7e7, "3.0407e7"),
+            (9.258e-8, "9.258e-8"),
+            (0.000_123_456_78, "0.000123457"),
+            (1_066.23, "1066.23"),
+            (999_999.96, "1e6"),
+            (0.0, "0"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(decimal(value), expected);
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! One input file, in TOML: every key optional, the paper's value the default, an unknown key an error.
+//!
+//! Angles in radians, `[design]` in SI units, the rest dimensionless as in the paper's equation (7), time in units of
+//! 1/omega, omega^2 = g/L.
+
+use std::str::FromStr;
+
+use serde::Deserialize;
+
+use crate::contact::hertz::{Design, NotPositive};
+use crate::contact::linearisation::{Rule, UnknownRule};
+use crate::expr::{ParseError, parse_expression};
+use crate::spelling::nearest;
+use crate::symbol::Symbol;
+use crate::verify::{ValueError, Values};
+
+/// The largest file that is read, in bytes.
+pub const LARGEST_FILE: usize = 1 << 20;
+
+/// A problem file as it was written.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Problem {
+    /// The equation of motion, for formulas.
+    pub equation: Option<String>,
+    /// The name of a method.
+    pub method: Option<String>,
+    /// The order of the expansion; for an impact, that of the frequency law of the approach.
+    pub order: Option<u32>,
+    /// The name of the small parameter.
+    pub small: Option<String>,
+    /// The amplitude convention: `initial` or `first-harmonic`.
+    pub amplitude: Option<String>,
+    /// Values for `--at`: numbers, or text such as "pi/3".
+    pub values: toml::Table,
+    /// The swing.
+    pub pendulum: Pendulum,
+    /// The barrier.
+    pub contact: Contact,
+    /// Damping of the swing.
+    pub damping: Damping,
+    /// Motion of the pivot.
+    pub excitation: Excitation,
+    /// Mass, radius, length, modulus, gravity.
+    pub design: DesignSection,
+    /// Duration and accuracy of integrations.
+    pub run: Run,
+}
+
+/// `[pendulum]`: released from rest at `x = -amplitude`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Pendulum {
+    /// A, rad.
+    pub amplitude: f64,
+    /// x_c, rad, or `[left, right]`.
+    pub barrier: Barrier,
+}
+
+/// One barrier on the right, or one on either side.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Barrier {
+    /// The position of the right one.
+    Right(f64),
+    /// The positions of both.
+    Both([f64; 2]),
+}
+
+/// `[contact]`
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Contact {
+    /// Dimensionless stiffness; from `[design]` by equation (8) where it is not given.
+    pub gamma: Option<f64>,
+    /// Dimensionless contact damping of equation (7).
+    pub mu: Option<f64>,
+    /// Contact damping of Hunt and Crossley, s/m.
+    pub lambda: Option<f64>,
+    /// The rule by which a line replaces the elastic force.
+    pub linearisation: Option<String>,
+}
+
+/// `[damping]`
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Damping {
+    /// Viscous damping ratio.
+    pub zeta: f64,
+    /// Coulomb friction.
+    pub alpha: f64,
+    /// `exact` or `arctangent`.
+    pub friction: Option<String>,
+}
+
+/// `[excitation]`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Excitation {
+    /// beta = (A_e/L)(Omega/omega)^2.
+    pub beta: f64,
+    /// Omega/omega.
+    pub frequency_ratio: f64,
+}
+
+/// `[design]`, SI units; the defaults are the paper's Table 5.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DesignSection {
+    /// kg
+    pub mass: f64,
+    /// m
+    pub radius: f64,
+    /// m
+    pub length: f64,
+    /// Pa
+    pub modulus: f64,
+    /// m/s^2
+    pub gravity: f64,
+}
+
+/// `[run]`
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Run {
+    /// Dimensionless time.
+    pub duration: f64,
+    /// Error allowed in one step.
+    pub integrator_tolerance: f64,
+}
+
+impl Default for Pendulum {
+    fn default() -> Self {
+        Self { amplitude: 1.5, barrier: Barrier::Right(0.323) }
+    }
+}
+
+impl Default for DesignSection {
+    fn default() -> Self {
+        let Design { mass, radius, length, modulus, gravity } = Design::default();
+        Self { mass, radius, length, modulus, gravity }
+    }
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self { duration: 50.0, integrator_tolerance: 1e-10 }
+    }
+}
+
+/// Why a file is no problem.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProblemError {
+    /// Not TOML, or a key or value that does not belong there; the text shows the line.
+    #[error("{message}")]
+    Toml {
+        /// The message with the line and a caret.
+        message: String,
+        /// The nearest known key.
+        help: Option<String>,
+    },
+    /// Too long.
+    #[error("the file has {0} bytes; the limit is {LARGEST_FILE}")]
+    TooLarge(usize),
+    /// A value of `[values]` is neither a number nor an expression.
+    #[error("the value of `{0}` in [values] should be a number, or text such as \"pi/3\"")]
+    Value(String),
+    /// A value that does not parse.
+    #[error("the value of `{name}` in [values]: {error}")]
+    Expression {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        error: ParseError,
+    },
+    /// A value that is no number.
+    #[error(transparent)]
+    NoValue(#[from] ValueError),
+    /// A design that has no stiffness.
+    #[error("[design]: {0}")]
+    Design(#[from] NotPositive),
+    /// An unknown rule.
+    #[error("[contact]: {0}")]
+    Rule(#[from] UnknownRule),
+}
+
+impl ProblemError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Toml { help, .. } => help.clone(),
+            _ => None,
+        }
+    }
+}
+
+impl FromStr for Problem {
+    type Err = ProblemError;
+
+    fn from_str(text: &str) -> Result<Self, ProblemError> {
+        if text.len() > LARGEST_FILE {
+            return Err(ProblemError::TooLarge(text.len()));
+        }
+        let text = text.trim_start_matches('\u{feff}');
+        toml::from_str(text).map_err(|error: toml::de::Error| {
+            let message = error.to_string().trim_end().to_owned();
+            ProblemError::Toml { help: did_you_mean(error.message()), message }
+        })
+    }
+}
+
+/// The nearest of the keys that "unknown field `a`, expected one of `b`, `c`" lists.
+fn did_you_mean(message: &str) -> Option<String> {
+    let names: Vec<&str> = message.strip_prefix("unknown field ")?.split('`').skip(1).step_by(2).collect();
+    let (typed, known) = names.split_first()?;
+    nearest(typed, known.iter().copied()).map(|name| format!("did you mean `{name}`?"))
+}
+
+impl Problem {
+    /// The dimensionless stiffness of the contact, and where it comes from.
+    ///
+    /// # Errors
+    /// A design with a quantity that is not positive.
+    pub fn stiffness(&self) -> Result<(f64, &'static str), ProblemError> {
+        if let Some(gamma) = self.contact.gamma {
+            return Ok((gamma, "given"));
+        }
+        let DesignSection { mass, radius, length, modulus, gravity } = self.design;
+        let design = Design { mass, radius, length, modulus, gravity };
+        let source = if self.design == DesignSection::default() {
+            "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma"
+        } else {
+            "equation (8) with the given design and l = L"
+        };
+        Ok((design.stiffness()?, source))
+    }
+
+    /// The rule that replaces the elastic force by a line.
+    ///
+    /// # Errors
+    /// An unknown name.
+    pub fn linearisation(&self) -> Result<Rule, ProblemError> {
+        match &self.contact.linearisation {
+            None => Ok(Rule::default()),
+            Some(name) => Ok(name.parse()?),
+        }
+    }
+
+    /// `[values]` as exact numbers: `1.5` is 3/2.
+    ///
+    /// # Errors
+    /// A value that is neither a number nor an expression without symbols.
+    pub fn exact_values(&self) -> Result<Values, ProblemError> {
+        let mut values = Values::default();
+        for (name, value) in &self.values {
+            let text = match value {
+                toml::Value::String(text) => text.clone(),
+                toml::Value::Integer(number) => number.to_string(),
+                // The shortest decimal that reads back to the same float is what was typed.
+                toml::Value::Float(number) if number.is_finite() => number.to_string(),
+                _ => return Err(ProblemError::Value(name.clone())),
+            };
+            let error = |error| ProblemError::Expression { name: name.clone(), error };
+            values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
+        }
+        Ok(values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_the_papers() {
+        let problem: Problem = "".parse().unwrap();
+        assert_eq!(problem.pendulum, Pendulum { amplitude: 1.5, barrier: Barrier::Right(0.323) });
+        let (gamma, source) = problem.stiffness().unwrap();
+        assert!((gamma / 3.0407e7 - 1.0).abs() < 1e-4, "{gamma} by {source}");
+    }
+
+    #[test]
+    fn unknown_keys_name_the_nearest_known_one() {
+        let error = "[pendulum]\nbariers = 0.3".parse::<Problem>().unwrap_err();
+        assert_eq!(error.help().as_deref(), Some("did you mean `barrier`?"));
+        assert!(error.to_string().contains("line 2"), "{error}");
+    }
+
+    #[test]
+    fn values_are_exact() {
+        let problem: Problem = "[values]\nA = 0.323\nB = \"pi/3\"\nC = 2".parse().unwrap();
+        let values = problem.exact_values().unwrap();
+        let texts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
+        assert!("[values]\nA = \"k\"".parse::<Problem>().unwrap().exact_values().is_err());
+    }
+}

@@ -96,19 +96,33 @@ pub enum ImpactError {
 /// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not positive: see [`ImpactError`].
 pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
     let swing = Oscillator::parse(FREE_SWING)?;
-    let law = method::solve(&swing, &method::Options { order: Some(setup.order), ..Default::default() })?;
+    let law = method::solve(
+        &swing,
+        &method::Options {
+            order: Some(setup.order),
+            ..Default::default()
+        },
+    )?;
     let amplitude = |symbol| (symbol == law.amplitude.symbol()).then_some(setup.amplitude);
-    let squared = law.frequency_squared.as_ref().map(|squared| law.evaluate(squared, &amplitude));
+    let squared = law
+        .frequency_squared
+        .as_ref()
+        .map(|squared| law.evaluate(squared, &amplitude));
     let frequency_squared = squared.and_then(Result::ok).unwrap_or(f64::NAN);
 
     // Both forces come out of the printed equation, so that phases and judge use what is printed.
     let original = Oscillator::parse(WITH_BARRIER)?;
     let [position, barrier, stiffness] = ["x", "xc", "gamma"].map(Symbol::new);
     let restoring = original.force.substitute(stiffness, &Expr::zero())?;
-    let elastic = original.force.differentiate(stiffness)?.substitute(barrier, &Expr::zero())?;
+    let elastic = original
+        .force
+        .differentiate(stiffness)?
+        .substitute(barrier, &Expr::zero())?;
     let linear = restoring.differentiate(position)?.evaluate(&[(position, 0.0)].into())?;
-    let (restoring, elastic) =
-        (CompiledFunction::new(&restoring, &[position])?, CompiledFunction::new(&elastic, &[position])?);
+    let (restoring, elastic) = (
+        CompiledFunction::new(&restoring, &[position])?,
+        CompiledFunction::new(&elastic, &[position])?,
+    );
     let restoring_force = |x: f64| restoring.call(&[x]);
     let elastic_force = |depth: f64| elastic.call(&[depth]);
 
@@ -138,7 +152,16 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         &options,
     )?;
     let (paper_deviation, energy_deviation) = (deviation(&paper, &truth), deviation(&energy, &truth));
-    Ok(Impact { equation: original.equation(), setup, law, paper, energy, truth, paper_deviation, energy_deviation })
+    Ok(Impact {
+        equation: original.equation(),
+        setup,
+        law,
+        paper,
+        energy,
+        truth,
+        paper_deviation,
+        energy_deviation,
+    })
 }
 
 /// One number of an impact: by either column and by Runge-Kutta.
@@ -180,14 +203,20 @@ impl Impact {
     pub fn paths(&self, points: usize) -> [Path; 3] {
         let path = |[touch, exit, end]: [f64; 3], at: &dyn Fn(f64) -> (f64, f64)| {
             let between = |from: f64, to: f64| (0..=points).map(move |k| from + (to - from) * k as f64 / points as f64);
-            let times = between(0.0, touch).chain(between(touch, exit)).chain(between(exit, end));
+            let times = between(0.0, touch)
+                .chain(between(touch, exit))
+                .chain(between(exit, end));
             Path {
                 samples: times.map(|t| (t, at(t).0, at(t).1)).collect(),
-                contact: between(touch, exit).map(|t| (t - touch, at(t).0 - self.setup.barrier)).collect(),
+                contact: between(touch, exit)
+                    .map(|t| (t - touch, at(t).0 - self.setup.barrier))
+                    .collect(),
             }
         };
         let closed_form = |phases: &ThreePhases| {
-            path(phases.phases.map(|phase| phase.end), &|t| (phases.position_at(t), phases.velocity_at(t)))
+            path(phases.phases.map(|phase| phase.end), &|t| {
+                (phases.position_at(t), phases.velocity_at(t))
+            })
         };
         let truth = &self.truth;
         let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| {
@@ -226,7 +255,11 @@ impl Impact {
             Column::Paper => quantity.paper_error(),
             Column::Energy => quantity.energy_error(),
         };
-        match self.quantities().iter().all(|quantity| error(quantity).abs() <= tolerance) {
+        match self
+            .quantities()
+            .iter()
+            .all(|quantity| error(quantity).abs() <= tolerance)
+        {
             true => Verdict::Pass,
             false => Verdict::Fail,
         }

@@ -1,18 +1,67 @@
-//! lindstedt
+//! Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion.
+//!
+//! An equation of motion goes in as text; out come a frequency-amplitude law with exact coefficients, the motion as a
+//! Fourier series in `theta = omega t`, and a verdict against the original equation:
+//!
+//! ```
+//! use lindstedt::{Oscillator, method, verify};
+//!
+//! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+//! let solution = method::solve(&pendulum, &method::Options { order: Some(2), ..Default::default() })?;
+//! let law = solution.frequency_squared.as_ref().expect("a polynomial law");
+//! assert_eq!(law.to_string(), "1 - A^2/8");
+//!
+//! let mut at = verify::Values::default();
+//! at.insert("A".into(), "1.5".parse()?)?;
+//! let verdict = verify::judge(&pendulum, &solution, &at, 0.01)?;
+//! assert_eq!(verdict.verdict, verify::Verdict::Fail); // 1.49 % off at 1.5 rad
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The modules stand in the order of the way of the data; each uses only those above it.
+//!
+//! | stage | module | what it holds |
+//! | --- | --- | --- |
+//! | names and numbers | [`symbol`], [`spelling`], [`decimal`], [`exact`] | symbols, fractions, polynomials, the coefficient ring |
+//! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
+//! | series | [`series`] | Taylor, Fourier, running convolutions |
+//! | answer and question | [`solution`], [`oscillator`] | what a method returns, and what it is given |
+//! | method | [`method`] | one file each |
+//! | verify | [`ode`], [`verify`] | Runge-Kutta, quadrature; the verdict |
+//! | contact | [`contact`], [`impact`] | the three phases of a pendulum that hits an elastic barrier |
+//! | in and out | [`problem`], [`export`] | problem files; text, JSON, pictures |
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
 pub mod symbol;
-pub mod spelling;
+
 pub mod decimal;
 pub mod exact;
+pub mod spelling;
+
 pub mod expr;
 pub mod series;
+
 pub mod solution;
+
 pub mod oscillator;
+
 pub mod method;
 pub mod ode;
 pub mod verify;
+
 pub mod contact;
 pub mod impact;
+
 pub mod problem;
+
 pub mod export;
-pub use symbol::Symbol;
+
 pub use oscillator::Oscillator;
+pub use solution::Solution;
+pub use symbol::Symbol;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -94,7 +94,9 @@ pub enum OscillatorError {
     #[error("the acceleration enters as `{0}`, which is not linear in it: solve the equation for x'' first")]
     NonlinearAcceleration(String),
     /// The coefficient of the acceleration vanishes at the equilibrium.
-    #[error("the coefficient `{0}` of the acceleration vanishes at rest, so the equation does not determine the motion there")]
+    #[error(
+        "the coefficient `{0}` of the acceleration vanishes at rest, so the equation does not determine the motion there"
+    )]
     VanishingMass(String),
     /// There is a force at rest.
     #[error("the force at rest is `{0}`, not zero: x = 0 is no equilibrium")]
@@ -125,7 +127,11 @@ pub enum OscillatorError {
 }
 
 fn list(symbols: &[Symbol]) -> String {
-    symbols.iter().map(|symbol| symbol.name()).collect::<Vec<_>>().join(", ")
+    symbols
+        .iter()
+        .map(|symbol| symbol.name())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 impl OscillatorError {
@@ -173,9 +179,24 @@ impl Oscillator {
             return Err(OscillatorError::VanishingMass(mass.to_string()));
         }
         let force = Expr::divide(&rest, &mass)?;
-        let own = [coordinate, coordinate.derivative(), acceleration, Symbol::new("t"), Symbol::new("pi")];
-        let names: BTreeSet<Symbol> = residual.symbols().into_iter().filter(|name| !own.contains(name)).collect();
-        Ok(Self { coordinate, residual, force, parameters: names.into_iter().collect() })
+        let own = [
+            coordinate,
+            coordinate.derivative(),
+            acceleration,
+            Symbol::new("t"),
+            Symbol::new("pi"),
+        ];
+        let names: BTreeSet<Symbol> = residual
+            .symbols()
+            .into_iter()
+            .filter(|name| !own.contains(name))
+            .collect();
+        Ok(Self {
+            coordinate,
+            residual,
+            force,
+            parameters: names.into_iter().collect(),
+        })
     }
 
     /// The velocity `x'`.
@@ -235,8 +256,12 @@ impl Oscillator {
         if self.parameters.contains(&eps) {
             return Ok(SmallParameter::Parameter(eps));
         }
-        let candidates: Vec<Symbol> =
-            self.parameters.iter().copied().filter(|&parameter| self.is_linear_without(parameter)).collect();
+        let candidates: Vec<Symbol> = self
+            .parameters
+            .iter()
+            .copied()
+            .filter(|&parameter| self.is_linear_without(parameter))
+            .collect();
         match candidates.as_slice() {
             [] => Ok(SmallParameter::Amplitude),
             [only] => Ok(SmallParameter::Parameter(*only)),
@@ -246,7 +271,11 @@ impl Oscillator {
 
     /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
-        let Ok(rest) = self.force.substitute(parameter, &Expr::zero()).and_then(|rest| rest.expand()) else {
+        let Ok(rest) = self
+            .force
+            .substitute(parameter, &Expr::zero())
+            .and_then(|rest| rest.expand())
+        else {
             return false;
         };
         let linear = Expr::divide(&rest, &Expr::from(self.coordinate)).and_then(|quotient| quotient.expand());
@@ -276,9 +305,14 @@ impl Oscillator {
         let zero = Rational::zero();
         let (parts, first) = match small {
             SmallParameter::Parameter(name) => (taylor(&self.force, &[(name, zero)], order)?, 0),
-            SmallParameter::Amplitude => {
-                (taylor(&self.force, &[(position, zero.clone()), (velocity, zero)], order.saturating_add(1))?, 1)
-            }
+            SmallParameter::Amplitude => (
+                taylor(
+                    &self.force,
+                    &[(position, zero.clone()), (velocity, zero)],
+                    order.saturating_add(1),
+                )?,
+                1,
+            ),
         };
         let mut names = Names::new(self);
         let mut linear = Polynomial::zero();
@@ -308,15 +342,26 @@ impl Oscillator {
                         };
                         return Err(OscillatorError::NotSmall { term: text(), small });
                     }
-                    (order, position, velocity) => terms.push(Term { order, position, velocity, coefficient }),
+                    (order, position, velocity) => terms.push(Term {
+                        order,
+                        position,
+                        velocity,
+                        coefficient,
+                    }),
                 }
             }
         }
         let negative = linear.as_number().is_some_and(|number| number.is_negative());
         if linear.is_zero() || negative {
-            return Err(OscillatorError::NoRestoringForce((&Expr::from(&linear) * &Expr::from(position)).to_string()));
+            return Err(OscillatorError::NoRestoringForce(
+                (&Expr::from(&linear) * &Expr::from(position)).to_string(),
+            ));
         }
-        Ok(PerturbedForce { linear, terms: merged(terms), definitions: names.definitions })
+        Ok(PerturbedForce {
+            linear,
+            terms: merged(terms),
+            definitions: names.definitions,
+        })
     }
 }
 
@@ -334,7 +379,9 @@ fn merged(terms: Vec<Term>) -> Vec<Term> {
 }
 
 fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
-    expression.substitute(coordinate, &Expr::zero())?.substitute(coordinate.derivative(), &Expr::zero())
+    expression
+        .substitute(coordinate, &Expr::zero())?
+        .substitute(coordinate.derivative(), &Expr::zero())
 }
 
 /// Names for constants that are no polynomials.
@@ -345,7 +392,10 @@ struct Names<'a> {
 
 impl<'a> Names<'a> {
     fn new(oscillator: &'a Oscillator) -> Self {
-        Self { taken: &oscillator.parameters, definitions: vec![] }
+        Self {
+            taken: &oscillator.parameters,
+            definitions: vec![],
+        }
     }
 
     /// The symbol of `constant`, unless one of `variables` occurs in it.
@@ -353,7 +403,11 @@ impl<'a> Names<'a> {
         if variables.iter().any(|&variable| constant.contains(variable)) || constant.contains(Symbol::new("t")) {
             return None;
         }
-        if let Some(known) = self.definitions.iter().find(|definition| definition.meaning == *constant) {
+        if let Some(known) = self
+            .definitions
+            .iter()
+            .find(|definition| definition.meaning == *constant)
+        {
             return Some(known.symbol);
         }
         let numbered = (1..).map(|number| Symbol::new(&format!("c{number}")));
@@ -361,7 +415,10 @@ impl<'a> Names<'a> {
             self.taken.contains(symbol) || self.definitions.iter().any(|definition| definition.symbol == *symbol)
         };
         let symbol = numbered.into_iter().find(|symbol| !used(symbol))?;
-        self.definitions.push(Definition { symbol, meaning: constant.clone() });
+        self.definitions.push(Definition {
+            symbol,
+            meaning: constant.clone(),
+        });
         Some(symbol)
     }
 }
@@ -376,6 +433,9 @@ impl PerturbedForce {
         // Negative numbers were refused; nothing else under the root is known to be negative.
         let linear = Expr::from(&self.linear);
         let meaning = linear.sqrt().unwrap_or(linear);
-        (Polynomial::term(Monomial::power_of(symbol, 1), num_traits::One::one()), Some(Definition { symbol, meaning }))
+        (
+            Polynomial::term(Monomial::power_of(symbol, 1), num_traits::One::one()),
+            Some(Definition { symbol, meaning }),
+        )
     }
 }

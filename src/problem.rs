@@ -131,20 +131,38 @@ pub struct Run {
 
 impl Default for Pendulum {
     fn default() -> Self {
-        Self { amplitude: 1.5, barrier: Barrier::Right(0.323) }
+        Self {
+            amplitude: 1.5,
+            barrier: Barrier::Right(0.323),
+        }
     }
 }
 
 impl Default for DesignSection {
     fn default() -> Self {
-        let Design { mass, radius, length, modulus, gravity } = Design::default();
-        Self { mass, radius, length, modulus, gravity }
+        let Design {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        } = Design::default();
+        Self {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        }
     }
 }
 
 impl Default for Run {
     fn default() -> Self {
-        Self { duration: 50.0, integrator_tolerance: 1e-10 }
+        Self {
+            duration: 50.0,
+            integrator_tolerance: 1e-10,
+        }
     }
 }
 
@@ -171,7 +189,7 @@ pub enum ProblemError {
         /// The name.
         name: String,
         /// What is wrong with it.
-        error: ParseError,
+        error: Box<ParseError>,
     },
     /// A value that is no number.
     #[error(transparent)]
@@ -204,14 +222,22 @@ impl FromStr for Problem {
         let text = text.trim_start_matches('\u{feff}');
         toml::from_str(text).map_err(|error: toml::de::Error| {
             let message = error.to_string().trim_end().to_owned();
-            ProblemError::Toml { help: did_you_mean(error.message()), message }
+            ProblemError::Toml {
+                help: did_you_mean(error.message()),
+                message,
+            }
         })
     }
 }
 
 /// The nearest of the keys that "unknown field `a`, expected one of `b`, `c`" lists.
 fn did_you_mean(message: &str) -> Option<String> {
-    let names: Vec<&str> = message.strip_prefix("unknown field ")?.split('`').skip(1).step_by(2).collect();
+    let names: Vec<&str> = message
+        .strip_prefix("unknown field ")?
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .collect();
     let (typed, known) = names.split_first()?;
     nearest(typed, known.iter().copied()).map(|name| format!("did you mean `{name}`?"))
 }
@@ -225,8 +251,20 @@ impl Problem {
         if let Some(gamma) = self.contact.gamma {
             return Ok((gamma, "given"));
         }
-        let DesignSection { mass, radius, length, modulus, gravity } = self.design;
-        let design = Design { mass, radius, length, modulus, gravity };
+        let DesignSection {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        } = self.design;
+        let design = Design {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        };
         let source = if self.design == DesignSection::default() {
             "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma"
         } else {
@@ -260,7 +298,10 @@ impl Problem {
                 toml::Value::Float(number) if number.is_finite() => number.to_string(),
                 _ => return Err(ProblemError::Value(name.clone())),
             };
-            let error = |error| ProblemError::Expression { name: name.clone(), error };
+            let error = |error| ProblemError::Expression {
+                name: name.clone(),
+                error: Box::new(error),
+            };
             values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
         }
         Ok(values)
@@ -274,7 +315,13 @@ mod tests {
     #[test]
     fn the_defaults_are_the_papers() {
         let problem: Problem = "".parse().unwrap();
-        assert_eq!(problem.pendulum, Pendulum { amplitude: 1.5, barrier: Barrier::Right(0.323) });
+        assert_eq!(
+            problem.pendulum,
+            Pendulum {
+                amplitude: 1.5,
+                barrier: Barrier::Right(0.323)
+            }
+        );
         let (gamma, source) = problem.stiffness().unwrap();
         assert!((gamma / 3.0407e7 - 1.0).abs() < 1e-4, "{gamma} by {source}");
     }
@@ -292,6 +339,12 @@ mod tests {
         let values = problem.exact_values().unwrap();
         let texts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
-        assert!("[values]\nA = \"k\"".parse::<Problem>().unwrap().exact_values().is_err());
+        assert!(
+            "[values]\nA = \"k\""
+                .parse::<Problem>()
+                .unwrap()
+                .exact_values()
+                .is_err()
+        );
     }
 }

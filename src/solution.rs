@@ -60,7 +60,9 @@ impl AmplitudeConvention {
 
     /// The convention of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Initial, Self::FirstHarmonic].into_iter().find(|convention| convention.name() == name)
+        [Self::Initial, Self::FirstHarmonic]
+            .into_iter()
+            .find(|convention| convention.name() == name)
     }
 
     /// The symbol: `A` or `a`.
@@ -140,8 +142,9 @@ impl Solution {
             .filter(|definition| polynomial.symbols().contains(&definition.symbol))
             .map(|definition| {
                 let parameters = definition.meaning.symbols().into_iter();
-                let known: Result<_, Symbol> =
-                    parameters.map(|symbol| value_of(symbol).map(|value| (symbol, value)).ok_or(symbol)).collect();
+                let known: Result<_, Symbol> = parameters
+                    .map(|symbol| value_of(symbol).map(|value| (symbol, value)).ok_or(symbol))
+                    .collect();
                 let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
                 Ok((definition.symbol, value))
             })
@@ -149,7 +152,9 @@ impl Solution {
         let pi = Symbol::new("pi");
         polynomial.evaluate(|symbol| {
             let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
-            defined.or_else(|| value_of(symbol)).or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
+            defined
+                .or_else(|| value_of(symbol))
+                .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
         })
     }
 
@@ -170,7 +175,12 @@ impl Solution {
 
     /// Whether any polynomial of the solution contains the amplitude symbol: not so for linear equations and limit cycles.
     pub fn depends_on_amplitude(&self) -> bool {
-        let laws = self.frequency.iter().chain(&self.frequency_squared).chain(&self.relation);
-        laws.into_iter().any(|law| law.symbols().contains(&self.amplitude.symbol()))
+        let laws = self
+            .frequency
+            .iter()
+            .chain(&self.frequency_squared)
+            .chain(&self.relation);
+        laws.into_iter()
+            .any(|law| law.symbols().contains(&self.amplitude.symbol()))
     }
 }

@@ -46,7 +46,9 @@ enum Convention {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let Some(equation) = &problem.equation else {
-        return Err(Failure::Refused("the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned()));
+        return Err(Failure::Refused(
+            "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
+        ));
     };
     let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
     let options = options(arguments, &problem)?;
@@ -80,13 +82,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at)?)),
         _ => None,
     };
-    Ok(Outcome { text, picture, note: None, verdict: verification.map(|verification| verification.verdict) })
+    Ok(Outcome {
+        text,
+        picture,
+        note: None,
+        verdict: verification.map(|verification| verification.verdict),
+    })
 }
 
 /// An equation, or what a file says. A name that ends in `.toml`, or a file that exists, is a file.
 fn problem(text: &str) -> Result<Problem, Failure> {
     let parsed = |text: String| -> Result<Problem, Failure> {
-        text.parse().map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))
+        text.parse()
+            .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))
     };
     let path = Path::new(text);
     if text == "-" {
@@ -97,12 +105,22 @@ fn problem(text: &str) -> Result<Problem, Failure> {
             let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
             line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
         });
-        return if is_toml { parsed(text) } else { Ok(Problem { equation: Some(text), ..Problem::default() }) };
+        return if is_toml {
+            parsed(text)
+        } else {
+            Ok(Problem {
+                equation: Some(text),
+                ..Problem::default()
+            })
+        };
     }
     if text.ends_with(".toml") || path.is_file() {
         return parsed(read(path)?);
     }
-    Ok(Problem { equation: Some(text.to_owned()), ..Problem::default() })
+    Ok(Problem {
+        equation: Some(text.to_owned()),
+        ..Problem::default()
+    })
 }
 
 fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure> {
@@ -113,7 +131,10 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             Some(method) => Some(method),
             None => {
                 let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
-                return usage(format!("unknown method `{name}`\n  help: choose one of {}", names.join(", ")));
+                return usage(format!(
+                    "unknown method `{name}`\n  help: choose one of {}",
+                    names.join(", ")
+                ));
             }
         },
     };
@@ -123,12 +144,21 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
         (None, None) => None,
         (None, Some(name)) => match AmplitudeConvention::from_name(name) {
             Some(convention) => Some(convention),
-            None => return usage(format!("unknown amplitude `{name}`\n  help: choose initial or first-harmonic")),
+            None => {
+                return usage(format!(
+                    "unknown amplitude `{name}`\n  help: choose initial or first-harmonic"
+                ));
+            }
         },
     };
     let order = arguments.order.or(problem.order);
     let small = arguments.small.clone().or_else(|| problem.small.clone());
-    Ok(Options { method, order, amplitude, small })
+    Ok(Options {
+        method,
+        order,
+        amplitude,
+        small,
+    })
 }
 
 /// The values of the command line, which win over those of the file; `None` where there are none at all.
@@ -136,15 +166,27 @@ fn values(arguments: &Arguments, problem: &Problem) -> Result<Option<Values>, Fa
     let mut values = Values::default();
     for text in &arguments.at {
         let Some((name, value)) = text.split_once('=') else {
-            return Err(Failure::Usage(format!("--at {text}: expected NAME=VALUE, such as A=1.5")));
+            return Err(Failure::Usage(format!(
+                "--at {text}: expected NAME=VALUE, such as A=1.5"
+            )));
         };
         let value = parse_expression(value).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
         let name = Symbol::new(name.trim());
-        values.insert(name, value).map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+        values
+            .insert(name, value)
+            .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
-    let file = problem.exact_values().map_err(|error| Failure::refused(&error, error.help()))?;
-    for (name, value) in file.iter().filter(|(name, _)| values.get(*name).is_none()).collect::<Vec<_>>() {
-        values.insert(name, value.clone()).map_err(|error| Failure::refused(&error, None))?;
+    let file = problem
+        .exact_values()
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    for (name, value) in file
+        .iter()
+        .filter(|(name, _)| values.get(*name).is_none())
+        .collect::<Vec<_>>()
+    {
+        values
+            .insert(name, value.clone())
+            .map_err(|error| Failure::refused(&error, None))?;
     }
     Ok((!values.is_empty()).then_some(values))
 }
@@ -159,8 +201,10 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
     use lindstedt::export::figure::{MotionFigure, motion_figure};
 
     let motions = verify::motions(oscillator, solution, values).map_err(|error| Failure::refused(&error, None))?;
-    let Some((formula, truth)) = motions else {
-        return Err(Failure::Refused("the formula has no real frequency there: nothing to draw".to_owned()));
+    let Some(motions) = motions else {
+        return Err(Failure::Refused(
+            "the formula has no real frequency there: nothing to draw".to_owned(),
+        ));
     };
     let at: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let caption = format!("{}   {}", solution.equation, at.join(", "));
@@ -170,8 +214,8 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
         displacement_unit: "",
         time_unit: "",
         formula_label: &label,
-        formula: &formula,
-        truth: &truth,
+        formula: &motions.formula,
+        truth: &motions.truth,
         caption: &caption,
     };
     motion_figure(&figure).map_err(|error| Failure::refused(&error, None))

@@ -20,8 +20,14 @@ pub struct Arguments {
 
 impl Default for Arguments {
     fn default() -> Self {
-        let common =
-            Common { format: Format::Text, output: None, plot: None, tolerance: None, quiet: false, timeout: None };
+        let common = Common {
+            format: Format::Text,
+            output: None,
+            plot: None,
+            tolerance: None,
+            quiet: false,
+            timeout: None,
+        };
         Self { file: None, common }
     }
 }
@@ -43,7 +49,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => None,
         Some(path) => Some((path.clone(), picture(&impact)?)),
     };
-    Ok(Outcome { text, picture, note: None, verdict: Some(impact.verdict(Column::Paper, tolerance)) })
+    Ok(Outcome {
+        text,
+        picture,
+        note: None,
+        verdict: Some(impact.verdict(Column::Paper, tolerance)),
+    })
 }
 
 /// The default order of the law: equation (12), the first term beyond the linear one.
@@ -52,16 +63,31 @@ const ORDER: u32 = 2;
 fn setup(problem: &Problem) -> Result<Setup, Failure> {
     let refuse = |message: &str| Err(Failure::Refused(message.to_owned()));
     let damping = &problem.damping;
-    if damping.zeta != 0.0 || damping.alpha != 0.0 || problem.contact.mu.or(problem.contact.lambda).is_some_and(|mu| mu != 0.0) {
-        return refuse("the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda");
+    if damping.zeta != 0.0
+        || damping.alpha != 0.0
+        || problem
+            .contact
+            .mu
+            .or(problem.contact.lambda)
+            .is_some_and(|mu| mu != 0.0)
+    {
+        return refuse(
+            "the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda",
+        );
     }
     if problem.excitation.beta != 0.0 {
-        return refuse("the three phases in closed form are those of the free motion, equation (9): leave out [excitation]");
+        return refuse(
+            "the three phases in closed form are those of the free motion, equation (9): leave out [excitation]",
+        );
     }
     if problem.equation.is_some() {
         return refuse("the swing of an impact is x'' + sin(x) = 0: leave out `equation`, or use `lindstedt derive`");
     }
-    if problem.method.as_deref().is_some_and(|name| name != "lindstedt-poincare") {
+    if problem
+        .method
+        .as_deref()
+        .is_some_and(|name| name != "lindstedt-poincare")
+    {
         return refuse("the law of the approach is derived by lindstedt-poincare: leave out `method`");
     }
     let amplitude = problem.pendulum.amplitude;
@@ -96,8 +122,8 @@ fn picture(_: &Impact) -> Result<String, Failure> {
 #[cfg(feature = "plot")]
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::decimal::decimal;
-    use lindstedt::impact::Path;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
+    use lindstedt::impact::Path;
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);
@@ -108,7 +134,12 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
     ];
     let motion = |(path, (label, style))| {
         let Path { samples, contact }: &Path = path;
-        ImpactMotion { label, style, samples, contact }
+        ImpactMotion {
+            label,
+            style,
+            samples,
+            contact,
+        }
     };
     let motions: Vec<_> = drawn.iter().zip(styles).map(motion).collect();
     let setup = &impact.setup;
@@ -118,6 +149,11 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         decimal(setup.barrier),
         decimal(setup.stiffness)
     );
-    let figure = ImpactFigure { left_barrier: None, right_barrier: Some(setup.barrier), motions: &motions, caption: &caption };
+    let figure = ImpactFigure {
+        left_barrier: None,
+        right_barrier: Some(setup.barrier),
+        motions: &motions,
+        caption: &caption,
+    };
     impact_figure(&figure).map_err(|error| Failure::refused(&error, None))
 }

@@ -115,7 +115,9 @@ pub fn run() -> ExitCode {
             return ExitCode::from(code);
         }
     };
-    let command = cli.command.unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
+    let command = cli
+        .command
+        .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
     let common = match &command {
         Command::Derive(arguments) => arguments.common.clone(),
         Command::Impact(arguments) => arguments.common.clone(),
@@ -142,7 +144,10 @@ pub fn run() -> ExitCode {
         Ok(Err(Failure::Usage(message))) => fail(2, &message),
         Err(RecvTimeoutError::Timeout) => {
             let seconds = common.timeout.unwrap_or_default();
-            fail(1, &format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout"))
+            fail(
+                1,
+                &format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout"),
+            )
         }
         Err(RecvTimeoutError::Disconnected) => {
             let _ = worker.join();
@@ -189,13 +194,24 @@ fn read(path: &Path) -> Result<String, Failure> {
     let limit = LARGEST_FILE as u64 + 1;
     let mut bytes = Vec::new();
     if path.as_os_str() == "-" {
-        std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(failure)?;
+        std::io::stdin()
+            .lock()
+            .take(limit)
+            .read_to_end(&mut bytes)
+            .map_err(failure)?;
     } else {
-        std::fs::File::open(path).map_err(failure)?.take(limit).read_to_end(&mut bytes).map_err(failure)?;
+        std::fs::File::open(path)
+            .map_err(failure)?
+            .take(limit)
+            .read_to_end(&mut bytes)
+            .map_err(failure)?;
     }
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
-        Failure::Refused(format!("{} is not UTF-8 text: byte {place} belongs to no character", path.display()))
+        Failure::Refused(format!(
+            "{} is not UTF-8 text: byte {place} belongs to no character",
+            path.display()
+        ))
     })
 }
 
@@ -210,5 +226,7 @@ fn json_text(document: &serde_json::Value) -> String {
 /// Refuses `--plot` where pictures were left out of the build.
 #[cfg(not(feature = "plot"))]
 fn no_pictures<T>() -> Result<T, Failure> {
-    Err(Failure::Refused("this build draws no pictures: build it with the feature `plot`".to_owned()))
+    Err(Failure::Refused(
+        "this build draws no pictures: build it with the feature `plot`".to_owned(),
+    ))
 }

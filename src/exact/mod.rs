@@ -1,6 +1,6 @@
 //! Numbers that never round.
 //!
-//! [`Rational`] is the coefficient people see; [`Polynomial`](polynomial::Polynomial) carries the symbols; [`Ring`](ring::Ring) is what a
+//! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what a
 //! derivation asks of its coefficients, so that one derivation serves exact numbers, symbols and floating point alike.
 
 pub mod polynomial;

@@ -3,7 +3,8 @@
 //! A frequency law such as `omega0 + 3*eps*A^2/(8*omega0)` is one of these: terms in a fixed order, no zero among them, so
 //! that equal polynomials are equal values. Products cost (number of terms)^2 coefficient products.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::collections::btree_map::{BTreeMap, Entry};
 use std::ops::Add;
 
 use num_traits::{One, Zero};
@@ -26,7 +27,11 @@ impl Monomial {
 
     /// `symbol^exponent`.
     pub fn power_of(symbol: Symbol, exponent: i32) -> Self {
-        Self(if exponent == 0 { vec![] } else { vec![(symbol, exponent)] })
+        Self(if exponent == 0 {
+            vec![]
+        } else {
+            vec![(symbol, exponent)]
+        })
     }
 
     /// The symbols and their exponents, in the order of the symbols.
@@ -36,7 +41,9 @@ impl Monomial {
 
     /// The exponent of `symbol`, zero when it does not occur.
     pub fn exponent(&self, symbol: Symbol) -> i32 {
-        self.0.binary_search_by_key(&symbol, |factor| factor.0).map_or(0, |place| self.0[place].1)
+        self.0
+            .binary_search_by_key(&symbol, |factor| factor.0)
+            .map_or(0, |place| self.0[place].1)
     }
 
     /// The sum of all exponents.
@@ -79,7 +86,12 @@ impl Monomial {
         if exponent == 0 {
             return Self::one();
         }
-        Self(self.0.iter().map(|&(symbol, power)| (symbol, power * exponent)).collect())
+        Self(
+            self.0
+                .iter()
+                .map(|&(symbol, power)| (symbol, power * exponent))
+                .collect(),
+        )
     }
 
     /// This monomial with `symbol` taken out.
@@ -93,7 +105,11 @@ impl Ord for Monomial {
         // A higher power of an earlier symbol comes first among equal degrees.
         self.degree().cmp(&other.degree()).then_with(|| {
             let names: BTreeSet<Symbol> = self.0.iter().chain(&other.0).map(|factor| factor.0).collect();
-            names.into_iter().map(|name| other.exponent(name).cmp(&self.exponent(name))).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+            names
+                .into_iter()
+                .map(|name| other.exponent(name).cmp(&self.exponent(name)))
+                .find(|o| o.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
         })
     }
 }
@@ -140,7 +156,6 @@ impl<K: Ring> Polynomial<K> {
 
     /// `self += coefficient * monomial`.
     pub fn add_term(&mut self, monomial: Monomial, coefficient: K) {
-        use std::collections::btree_map::Entry;
         if coefficient.is_zero() {
             return;
         }
@@ -165,7 +180,10 @@ impl<K: Ring> Polynomial<K> {
 
     /// Every symbol that occurs.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
-        self.terms.keys().flat_map(|monomial| monomial.0.iter().map(|factor| factor.0)).collect()
+        self.terms
+            .keys()
+            .flat_map(|monomial| monomial.0.iter().map(|factor| factor.0))
+            .collect()
     }
 
     /// The smallest and largest exponent of `symbol` over all terms; `None` for the zero polynomial.
@@ -177,12 +195,25 @@ impl<K: Ring> Polynomial<K> {
     /// The terms whose exponent of `symbol` is at most `highest`: a series cut off at its order.
     pub fn truncated(&self, symbol: Symbol, highest: i32) -> Self {
         let keep = |monomial: &Monomial| monomial.exponent(symbol) <= highest;
-        Self { terms: self.terms.iter().filter(|(m, _)| keep(m)).map(|(m, k)| (m.clone(), k.clone())).collect() }
+        Self {
+            terms: self
+                .terms
+                .iter()
+                .filter(|(m, _)| keep(m))
+                .map(|(m, k)| (m.clone(), k.clone()))
+                .collect(),
+        }
     }
 
     /// The product with one monomial.
     pub fn times_monomial(&self, factor: &Monomial) -> Self {
-        Self { terms: self.terms.iter().map(|(monomial, k)| (monomial.product(factor), k.clone())).collect() }
+        Self {
+            terms: self
+                .terms
+                .iter()
+                .map(|(monomial, k)| (monomial.product(factor), k.clone()))
+                .collect(),
+        }
     }
 
     /// The same polynomial over other coefficients.
@@ -202,11 +233,12 @@ impl<K: Ring> Polynomial<K> {
         let mut powers: BTreeMap<i32, Self> = BTreeMap::new();
         for (monomial, coefficient) in &self.terms {
             let exponent = monomial.exponent(symbol);
-            if !powers.contains_key(&exponent) {
-                powers.insert(exponent, value.power(exponent)?);
-            }
+            let power = match powers.entry(exponent) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(place) => place.insert(value.power(exponent)?),
+            };
             let rest = Self::term(monomial.without(symbol), coefficient.clone());
-            result.accumulate(&rest.product(&powers[&exponent]));
+            result.accumulate(&rest.product(power));
         }
         Some(result)
     }
@@ -246,8 +278,11 @@ impl Polynomial<Rational> {
     pub fn single_term_root(&self) -> Option<Self> {
         let (monomial, coefficient) = self.single_term()?;
         let half = super::rational::power(coefficient, &super::rational::ratio(1, 2))?;
-        let factors: Option<Vec<_>> =
-            monomial.0.iter().map(|&(symbol, power)| (power % 2 == 0).then_some((symbol, power / 2))).collect();
+        let factors: Option<Vec<_>> = monomial
+            .0
+            .iter()
+            .map(|&(symbol, power)| (power % 2 == 0).then_some((symbol, power / 2)))
+            .collect();
         Some(Self::term(Monomial(factors?), half))
     }
 
@@ -268,7 +303,10 @@ impl Polynomial<Rational> {
     pub fn as_number(&self) -> Option<Rational> {
         match self.terms.len() {
             0 => Some(Rational::zero()),
-            _ => self.single_term().filter(|(monomial, _)| monomial.0.is_empty()).map(|(_, number)| number.clone()),
+            _ => self
+                .single_term()
+                .filter(|(monomial, _)| monomial.0.is_empty())
+                .map(|(_, number)| number.clone()),
         }
     }
 }
@@ -327,7 +365,11 @@ impl<K: Ring> Ring for Polynomial<K> {
         }
     }
     fn content(&self) -> Integer {
-        if K::FIELD { Integer::one() } else { common_content(Zero::zero(), self.terms.values()) }
+        if K::FIELD {
+            Integer::one()
+        } else {
+            common_content(Zero::zero(), self.terms.values())
+        }
     }
     fn inverse(&self) -> Option<(Self, Integer)> {
         let (monomial, coefficient) = self.single_term()?;
@@ -343,7 +385,10 @@ mod tests {
 
     fn law() -> Polynomial {
         let mut law = Polynomial::symbol(Symbol::new("omega0"));
-        law.add_term(Monomial(vec![("A".into(), 2), ("eps".into(), 1), ("omega0".into(), -1)]), ratio(3, 8));
+        law.add_term(
+            Monomial(vec![("A".into(), 2), ("eps".into(), 1), ("omega0".into(), -1)]),
+            ratio(3, 8),
+        );
         law
     }
 
@@ -353,7 +398,11 @@ mod tests {
         let terms: Vec<String> = squared.terms().map(|(m, k)| format!("{k} {:?}", m.0)).collect();
         assert_eq!(
             terms,
-            ["1 [(omega0, 2)]", "3/4 [(A, 2), (eps, 1)]", "9/64 [(A, 4), (eps, 2), (omega0, -2)]"]
+            [
+                "1 [(omega0, 2)]",
+                "3/4 [(A, 2), (eps, 1)]",
+                "9/64 [(A, 4), (eps, 2), (omega0, -2)]"
+            ]
         );
     }
 
@@ -362,7 +411,10 @@ mod tests {
         let omega0 = Symbol::new("omega0");
         let two_k = Polynomial::symbol("k".into()).product(&Polynomial::constant(ratio(2, 1)));
         let value = law().substitute(omega0, &two_k).expect("2 k has an inverse");
-        assert_eq!(value.evaluate(|s| Some(if s.name() == "k" { 3.0 } else { 2.0 })), Ok(6.0 + 0.375 * 8.0 / 6.0));
+        assert_eq!(
+            value.evaluate(|s| Some(if s.name() == "k" { 3.0 } else { 2.0 })),
+            Ok(6.0 + 0.375 * 8.0 / 6.0)
+        );
         let sum = two_k + Polynomial::constant(ratio(1, 1));
         assert_eq!(law().substitute(omega0, &sum), None);
     }
@@ -371,7 +423,10 @@ mod tests {
     fn roots_of_single_terms() {
         let k = Symbol::new("k");
         let square = Polynomial::term(Monomial::power_of(k, 2), ratio(4, 9));
-        assert_eq!(square.single_term_root(), Some(Polynomial::term(Monomial::power_of(k, 1), ratio(2, 3))));
+        assert_eq!(
+            square.single_term_root(),
+            Some(Polynomial::term(Monomial::power_of(k, 1), ratio(2, 3)))
+        );
         assert_eq!(Polynomial::<Rational>::symbol(k).single_term_root(), None);
     }
 

@@ -42,7 +42,11 @@ pub fn power(base: &Rational, exponent: &Rational) -> Option<Rational> {
     }
     let degree = exponent.denom().to_u32()?;
     let times = exponent.numer().to_i32()?;
-    let root = if degree == 1 { base.clone() } else { exact_root(base, degree)? };
+    let root = if degree == 1 {
+        base.clone()
+    } else {
+        exact_root(base, degree)?
+    };
     let bits = root.numer().bits().max(root.denom().bits());
     // A base of +-1 never grows, however often it is multiplied.
     if bits > 1 && bits.saturating_mul(u64::from(times.unsigned_abs())) > LONGEST {

@@ -35,7 +35,10 @@ pub enum JsonError {
 }
 
 fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
-    Err(JsonError::Unexpected { key: key.to_owned(), expected })
+    Err(JsonError::Unexpected {
+        key: key.to_owned(),
+        expected,
+    })
 }
 
 /// A number that may be infinite or undefined only by mistake, in which case it is null.
@@ -50,7 +53,10 @@ pub fn fraction(value: &Rational) -> Value {
 
 /// An exact constant expression, `3/2` or `pi/3`, beside its decimal value.
 pub fn constant(value: &Expr) -> Value {
-    let decimal = value.as_number().map(to_f64).or_else(|| value.evaluate(&[].into()).ok());
+    let decimal = value
+        .as_number()
+        .map(to_f64)
+        .or_else(|| value.evaluate(&[].into()).ok());
     json!({ "exact": value.to_string(), "value": decimal })
 }
 
@@ -59,8 +65,11 @@ pub fn polynomial(polynomial: &Polynomial, small: Symbol) -> Value {
     let mut terms: Vec<_> = polynomial.terms().collect();
     terms.sort_by_key(|(monomial, _)| monomial.exponent(small));
     let term = |(monomial, coefficient): (&Monomial, &Rational)| {
-        let powers: Map<String, Value> =
-            monomial.factors().iter().map(|(symbol, exponent)| (symbol.to_string(), json!(exponent))).collect();
+        let powers: Map<String, Value> = monomial
+            .factors()
+            .iter()
+            .map(|(symbol, exponent)| (symbol.to_string(), json!(exponent)))
+            .collect();
         json!({ "monomial": powers, "exact": coefficient.to_string(), "value": to_f64(coefficient) })
     };
     json!({ "terms": terms.into_iter().map(term).collect::<Vec<_>>() })
@@ -70,9 +79,7 @@ pub fn polynomial(polynomial: &Polynomial, small: Symbol) -> Value {
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Value {
     let small = solution.small_parameter;
     let optional = |law: &Option<Polynomial>| law.as_ref().map(|law| polynomial(law, small));
-    let harmonic = |(k, cosine, sine): (usize, Polynomial, Polynomial)| {
-        json!({ "harmonic": k, "cos": polynomial(&cosine, small), "sin": polynomial(&sine, small) })
-    };
+    let harmonic = |(k, cosine, sine): (usize, Polynomial, Polynomial)| json!({ "harmonic": k, "cos": polynomial(&cosine, small), "sin": polynomial(&sine, small) });
     let names: Vec<&str> = solution.parameters.iter().map(|name| name.name()).collect();
     let definitions: Map<String, Value> = solution
         .definitions
@@ -128,12 +135,24 @@ pub fn verdict(verdict: Verdict) -> &'static str {
 }
 
 fn values(values: &Values) -> Value {
-    values.iter().map(|(name, value)| (name.to_string(), constant(value))).collect::<Map<_, _>>().into()
+    values
+        .iter()
+        .map(|(name, value)| (name.to_string(), constant(value)))
+        .collect::<Map<_, _>>()
+        .into()
 }
 
 /// The document of kind `impact`.
 pub fn impact(impact: &Impact, tolerance: f64) -> Value {
-    let Setup { amplitude, barrier, stiffness, stiffness_source, order, rule, integrator_tolerance } = &impact.setup;
+    let Setup {
+        amplitude,
+        barrier,
+        stiffness,
+        stiffness_source,
+        order,
+        rule,
+        integrator_tolerance,
+    } = &impact.setup;
     let [to_contact, speed, penetration, duration, period] = impact.quantities().map(|quantity| {
         json!({
             "paper": quantity.paper,
@@ -183,10 +202,18 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Value {
 
 fn phase(phase: &Phase) -> Value {
     let coefficients = match phase.form {
-        Form::Cosine { amplitude, frequency, phase } => {
+        Form::Cosine {
+            amplitude,
+            frequency,
+            phase,
+        } => {
             json!({ "amplitude": amplitude, "frequency": frequency, "phase": phase })
         }
-        Form::Oscillation { centre, amplitude, frequency } => json!({
+        Form::Oscillation {
+            centre,
+            amplitude,
+            frequency,
+        } => json!({
             "centre": centre,
             "amplitude": { "re": amplitude.re, "im": amplitude.im },
             "frequency": frequency,
@@ -215,11 +242,16 @@ pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
     if text(document, "schema")? != "lindstedt/impact/1" {
         return unexpected("schema", "\"lindstedt/impact/1\"");
     }
-    let Some(list) = document["phases"].as_array() else { return unexpected("phases", "a list") };
+    let Some(list) = document["phases"].as_array() else {
+        return unexpected("phases", "a list");
+    };
     let number = |value: &Value, key: &str| value[key].as_f64().map_or_else(|| unexpected(key, "a number"), Ok);
     let read = |value: &Value| {
         let name = text(value, "name")?;
-        let Some(name) = ["approach", "contact", "return"].into_iter().find(|known| *known == name) else {
+        let Some(name) = ["approach", "contact", "return"]
+            .into_iter()
+            .find(|known| *known == name)
+        else {
             return unexpected("name", "approach, contact or return");
         };
         let coefficients = &value["coefficients"];
@@ -233,10 +265,19 @@ pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
             Some(_) => {
                 let amplitude = &coefficients["amplitude"];
                 let amplitude = Complex64::new(number(amplitude, "re")?, number(amplitude, "im")?);
-                Form::Oscillation { centre: number(coefficients, "centre")?, amplitude, frequency }
+                Form::Oscillation {
+                    centre: number(coefficients, "centre")?,
+                    amplitude,
+                    frequency,
+                }
             }
         };
-        Ok(Phase { name, start: number(value, "start")?, end: number(value, "end")?, form })
+        Ok(Phase {
+            name,
+            start: number(value, "start")?,
+            end: number(value, "end")?,
+            form,
+        })
     };
     list.iter().map(read).collect()
 }
@@ -260,8 +301,11 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         value => read_polynomial(value, key).map(Some),
     };
     let strings = |key: &'static str| -> Result<Vec<String>, JsonError> {
-        let list = document[key].as_array().map(|list| list.iter().map(|item| item.as_str().map(str::to_owned)));
-        list.and_then(Iterator::collect).map_or_else(|| unexpected(key, "a list of strings"), Ok)
+        let list = document[key]
+            .as_array()
+            .map(|list| list.iter().map(|item| item.as_str().map(str::to_owned)));
+        list.and_then(Iterator::collect)
+            .map_or_else(|| unexpected(key, "a list of strings"), Ok)
     };
     let limit_cycle = match &document["limit_cycle"] {
         Value::Null => None,
@@ -295,16 +339,25 @@ fn expression(text: &str, key: &str) -> Result<Expr, JsonError> {
 }
 
 fn read_definitions(value: &Value) -> Result<Vec<Definition>, JsonError> {
-    let Some(entries) = value.as_object() else { return unexpected("definitions", "an object") };
+    let Some(entries) = value.as_object() else {
+        return unexpected("definitions", "an object");
+    };
     let definition = |(name, meaning): (&String, &Value)| {
-        let Some(meaning) = meaning.as_str() else { return unexpected(name, "an expression") };
-        Ok(Definition { symbol: Symbol::new(name), meaning: expression(meaning, name)? })
+        let Some(meaning) = meaning.as_str() else {
+            return unexpected(name, "an expression");
+        };
+        Ok(Definition {
+            symbol: Symbol::new(name),
+            meaning: expression(meaning, name)?,
+        })
     };
     entries.iter().map(definition).collect()
 }
 
 fn read_polynomial(value: &Value, key: &str) -> Result<Polynomial, JsonError> {
-    let Some(terms) = value["terms"].as_array() else { return unexpected(key, "a polynomial") };
+    let Some(terms) = value["terms"].as_array() else {
+        return unexpected(key, "a polynomial");
+    };
     let mut polynomial = Polynomial::zero();
     for term in terms {
         let coefficient = term["exact"].as_str().and_then(|exact| exact.parse::<Rational>().ok());
@@ -326,7 +379,9 @@ fn read_polynomial(value: &Value, key: &str) -> Result<Polynomial, JsonError> {
 fn read_displacement(harmonics: &Value) -> Result<FourierSeries<Polynomial>, JsonError> {
     /// No document of ours comes near it; a hostile one must not fill the memory.
     const HIGHEST_HARMONIC: u64 = 100_000;
-    let Some(list) = harmonics.as_array() else { return unexpected("displacement", "a list of harmonics") };
+    let Some(list) = harmonics.as_array() else {
+        return unexpected("displacement", "a list of harmonics");
+    };
     let (mut cosine, mut sine) = (vec![], vec![]);
     for harmonic in list {
         let Some(k) = harmonic["harmonic"].as_u64().filter(|&k| k <= HIGHEST_HARMONIC) else {

@@ -1,4 +1,4 @@
-//! Handing a result on: [`text`] to read, [`json`] for programs, [`figure`] to look at.
+//! Handing a result on: [`text`] to read, [`json`] for programs, `figure` (feature `plot`) to look at.
 
 #[cfg(feature = "plot")]
 pub mod figure;

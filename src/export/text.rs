@@ -10,8 +10,11 @@ use crate::impact::Impact;
 use crate::solution::Solution;
 use crate::verify::{Verdict, Verification};
 
-/// A signed relative error in percent: `-1.49 %`.
+/// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
 pub fn percent(error: f64) -> String {
+    if error.abs() < 1e-9 {
+        return "< 1e-7 %".to_owned();
+    }
     let digits = significant(100.0 * error.abs(), 3);
     format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
 }
@@ -36,7 +39,11 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
     law("omega^2", &solution.frequency_squared);
     law("omega", &solution.frequency);
     if let Some(amplitude) = &solution.limit_cycle {
-        let _ = writeln!(text, "\n  limit cycle of amplitude {} = {amplitude}", solution.amplitude.symbol());
+        let _ = writeln!(
+            text,
+            "\n  limit cycle of amplitude {} = {amplitude}",
+            solution.amplitude.symbol()
+        );
     }
     let _ = writeln!(text, "\n{}", motion(solution));
     for definition in &solution.definitions {
@@ -76,7 +83,11 @@ fn motion(solution: &Solution) -> String {
                 (false, _) => ("+", format!("({text})")),
             };
             let bare = text == "1" && k > 0;
-            let term = if bare { wave.trim_start_matches('*').to_owned() } else { format!("{text}{wave}") };
+            let term = if bare {
+                wave.trim_start_matches('*').to_owned()
+            } else {
+                format!("{text}{wave}")
+            };
             lines.push(match (lines.is_empty(), sign) {
                 (true, "+") => format!("  x(t) = {term}").replacen('x', solution_coordinate(solution), 1),
                 (true, _) => format!("  x(t) = -{term}").replacen('x', solution_coordinate(solution), 1),
@@ -94,28 +105,61 @@ fn solution_coordinate(solution: &Solution) -> &str {
 
 /// The verdict, number by number.
 pub fn verification(verification: &Verification, tolerance: f64) -> String {
-    let at: Vec<String> = verification.at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let at: Vec<String> = verification
+        .at
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
     let mut text = match at.is_empty() {
         true => "Judged against the true motion\n".to_owned(),
         false => format!("Judged against the true motion at {}\n", at.join(", ")),
     };
     let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<18}{value}");
+        let _ = writeln!(text, "  {name:<20}{value}");
     };
-    line("omega", verification.frequency.map_or("not real: omega^2 <= 0".to_owned(), decimal));
+    line(
+        "omega",
+        verification
+            .frequency
+            .map_or("not real: omega^2 <= 0".to_owned(), decimal),
+    );
     line("true omega", decimal(verification.true_frequency));
     if let Some(error) = verification.relative_error {
         line("relative error", percent(error));
     }
     if let Some(deviation) = verification.max_deviation {
-        line("largest deviation", format!("{} % of the amplitude over one period", significant(100.0 * deviation, 3)));
+        line(
+            "largest deviation",
+            format!(
+                "{} % of the amplitude over one period",
+                significant(100.0 * deviation, 3)
+            ),
+        );
     }
     if let Some(residual) = verification.residual {
-        line("residual", format!("{} % of the force (rms)", significant(100.0 * residual, 3)));
+        line(
+            "residual",
+            format!("{} % of the force (rms)", significant(100.0 * residual, 3)),
+        );
     }
-    line("slope of the error", verification.slope.map_or("hidden by rounding".to_owned(), |slope| format!(" {slope:.2}")));
-    let verdict = if verification.verdict == Verdict::Pass { "pass" } else { "fail" };
-    line("verdict", format!("{verdict} (|relative error| <= {} %)", significant(100.0 * tolerance, 3)));
+    line(
+        "slope of the error",
+        verification
+            .slope
+            .map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}")),
+    );
+    let verdict = if verification.verdict == Verdict::Pass {
+        "pass"
+    } else {
+        "fail"
+    };
+    line(
+        "verdict",
+        format!(
+            "{verdict} (|relative error| <= {} %)",
+            significant(100.0 * tolerance, 3)
+        ),
+    );
     text
 }
 
@@ -123,41 +167,84 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     let setup = &impact.setup;
     let mut text = format!("{}\n", impact.equation);
-    let _ = writeln!(text, "x(0) = -A, x'(0) = 0: released from rest, towards a barrier at xc\n");
+    let _ = writeln!(
+        text,
+        "x(0) = -A, x'(0) = 0: released from rest, towards a barrier at xc\n"
+    );
     let _ = writeln!(text, "  A     = {}", decimal(setup.amplitude));
     let _ = writeln!(text, "  xc    = {}", decimal(setup.barrier));
-    let _ = writeln!(text, "  gamma = {}   ({})", decimal(setup.stiffness), setup.stiffness_source);
-    let law = impact.law.frequency_squared.as_ref().map(ToString::to_string).unwrap_or_default();
-    let _ = writeln!(text, "\nThe law of the free swing, {} to order {} in A", impact.law.method.title(), impact.law.order);
+    let _ = writeln!(
+        text,
+        "  gamma = {}   ({})",
+        decimal(setup.stiffness),
+        setup.stiffness_source
+    );
+    let law = impact
+        .law
+        .frequency_squared
+        .as_ref()
+        .map(ToString::to_string)
+        .unwrap_or_default();
+    let _ = writeln!(
+        text,
+        "\nThe law of the free swing, {} to order {} in A",
+        impact.law.method.title(),
+        impact.law.order
+    );
     let _ = writeln!(text, "  {}", impact.law.equation);
     let _ = writeln!(text, "  omega^2 = {law}");
-    let _ = writeln!(text, "  omega   = {}   (A = {})", decimal(impact.frequency()), decimal(setup.amplitude));
+    let _ = writeln!(
+        text,
+        "  omega   = {}   (A = {})",
+        decimal(impact.frequency()),
+        decimal(setup.amplitude)
+    );
     for (title, phases) in [
-        ("The paper's way: every join continuous, contact speed from the one-term motion", &impact.paper),
-        ("With the contact speed from the energy, v = sqrt(2*(cos(xc) - cos(A)))", &impact.energy),
+        (
+            "The paper's way: every join continuous, contact speed from the one-term motion",
+            &impact.paper,
+        ),
+        (
+            "With the contact speed from the energy, v = sqrt(2*(cos(xc) - cos(A)))",
+            &impact.energy,
+        ),
     ] {
         let _ = writeln!(text, "\n{title}");
         let line = phases.line;
         let constant = phases.line.q(setup.barrier);
         let _ = writeln!(
             text,
-            "  elastic force gamma*({}*x - {}), fitted by {} over the depth {}",
+            "  elastic force gamma*({}*x {} {}), fitted by {} over the depth {}",
             decimal(line.slope),
-            decimal(constant),
+            if constant < 0.0 { '+' } else { '-' },
+            decimal(constant.abs()),
             setup.rule,
             decimal(phases.fitted_depth)
         );
-        for (phase, conditions) in phases.phases.iter().zip(["x = -A to x = xc", "x = xc to x = xc", "x = xc to x = -A"]) {
+        for (phase, conditions) in
+            phases
+                .phases
+                .iter()
+                .zip(["x = -A to x = xc", "x = xc to x = xc", "x = xc to x = -A"])
+        {
             let times = format!("{} <= t <= {}", decimal(phase.start), decimal(phase.end));
             let _ = writeln!(text, "  {:<9} {conditions},  {times}", phase.name);
             let _ = writeln!(text, "            {}", phase.closed_form());
         }
         if phases.velocity_jump != 0.0 {
-            let _ = writeln!(text, "  the velocity jumps by {} at either join", decimal(phases.velocity_jump));
+            let _ = writeln!(
+                text,
+                "  the velocity jumps by {} at either join",
+                decimal(phases.velocity_jump)
+            );
         }
     }
     text.push_str("\nBeside Runge-Kutta on the original equation\n");
-    let _ = writeln!(text, "  {:<18}{:>12}{:>12}{:>14}{:>22}", "", "Runge-Kutta", "paper", "", "energy");
+    let _ = writeln!(
+        text,
+        "  {:<18}{:>12}{:>12}{:>14}{:>22}",
+        "", "Runge-Kutta", "paper", "", "energy"
+    );
     for quantity in impact.quantities() {
         let _ = writeln!(
             text,
@@ -171,9 +258,20 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         );
     }
     let relative = |deviation: f64| format!("{} %", significant(100.0 * deviation / setup.amplitude, 3));
-    let (paper, energy) = (relative(impact.paper_deviation.total), relative(impact.energy_deviation.total));
-    let _ = writeln!(text, "  {:<18}{:>12}{paper:>12}{:>12}{energy:>12}", "largest deviation", "", "");
-    let _ = writeln!(text, "  Runge-Kutta keeps the energy to {} of the kinetic energy at touch", significant(impact.truth.energy_drift, 2));
+    let (paper, energy) = (
+        relative(impact.paper_deviation.total),
+        relative(impact.energy_deviation.total),
+    );
+    let _ = writeln!(
+        text,
+        "  {:<18}{:>12}{paper:>12}{:>12}{energy:>12}",
+        "largest deviation", "", ""
+    );
+    let drift = 10_f64.powf(impact.truth.energy_drift.max(1e-15).log10().ceil());
+    let _ = writeln!(
+        text,
+        "  Runge-Kutta keeps the energy to {drift:e} of the kinetic energy at touch"
+    );
     let name = |verdict| if verdict == Verdict::Pass { "pass" } else { "fail" };
     let _ = writeln!(
         text,

@@ -41,10 +41,15 @@ const TITLE: &str = "the method of Lindstedt and Poincare";
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        return Err(Refusal::Forcing { method: TITLE, term: first_term(&parts.forcing) });
+        return Err(Refusal::Forcing {
+            method: TITLE,
+            term: first_term(&parts.forcing),
+        });
     }
     let small = oscillator.small_parameter(options.small.as_deref())?;
-    let order = options.order.unwrap_or(if small == SmallParameter::Amplitude { 4 } else { 2 });
+    let order = options
+        .order
+        .unwrap_or(if small == SmallParameter::Amplitude { 4 } else { 2 });
     let force = match oscillator.expand(small, order) {
         // A linear damping term is no polynomial in the amplitude; it is named as what it is.
         Err(_) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
@@ -57,7 +62,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 
     let cycle = match limit_cycle_amplitude(&force, &linear_frequency, &parts)? {
         Some(_) if small == SmallParameter::Amplitude => {
-            return Err(Refusal::AmplitudeNotFree { term: first_term(&parts.damping) });
+            return Err(Refusal::AmplitudeNotFree {
+                term: first_term(&parts.damping),
+            });
         }
         cycle => cycle,
     };
@@ -71,7 +78,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Some(squared) => {
             let root = squared.single_term_root().unwrap_or_else(|| {
                 let name = Symbol::new("a0");
-                definitions.push(Definition { symbol: name, meaning: Expr::from(squared).sqrt().unwrap_or_else(|_| Expr::from(squared)) });
+                definitions.push(Definition {
+                    symbol: name,
+                    meaning: Expr::from(squared).sqrt().unwrap_or_else(|_| Expr::from(squared)),
+                });
                 Polynomial::symbol(name)
             });
             (root, Amplitude::Determined)
@@ -86,14 +96,21 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         SmallParameter::Parameter(name) => name,
         SmallParameter::Amplitude => symbol,
     };
-    let series = expand_exactly(&scaled, order, normalisation, amplitude, delta)
-        .map_err(|error| if parts.damping.is_zero() { error } else { damping_or_excitation(&parts) })?;
+    let series = expand_exactly(&scaled, order, normalisation, amplitude, delta).map_err(|error| {
+        if parts.damping.is_zero() {
+            error
+        } else {
+            damping_or_excitation(&parts)
+        }
+    })?;
 
     let times = |series: Polynomial, factor: &Polynomial| series.product(factor);
     let squared_unit = times(linear_frequency.clone(), &linear_frequency);
     let displacement = series.displacement.map(|coefficient, _| coefficient.product(&unit));
     let limit_cycle = cycle.is_some().then(|| limit_cycle(&displacement, convention));
-    let mut validity = vec![format!("truncated after {delta}^{order}; an expansion for small {delta}")];
+    let mut validity = vec![format!(
+        "truncated after {delta}^{order}; an expansion for small {delta}"
+    )];
     validity.extend(next_terms(&definitions));
     Ok(Solution {
         equation: oscillator.equation(),
@@ -115,7 +132,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 }
 
 fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {
-    definitions.iter().map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning))
+    definitions
+        .iter()
+        .map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning))
 }
 
 fn first_term(sum: &Expr) -> String {
@@ -125,8 +144,13 @@ fn first_term(sum: &Expr) -> String {
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
 fn damping_or_excitation(parts: &Parts) -> Refusal {
     match parts.damping.terms() {
-        [_] => Refusal::Damping { method: TITLE, term: first_term(&parts.damping) },
-        _ => Refusal::AmplitudeNotFree { term: first_term(&parts.damping) },
+        [_] => Refusal::Damping {
+            method: TITLE,
+            term: first_term(&parts.damping),
+        },
+        _ => Refusal::AmplitudeNotFree {
+            term: first_term(&parts.damping),
+        },
     }
 }
 
@@ -138,7 +162,11 @@ fn limit_cycle_amplitude(
 ) -> Result<Option<Polynomial>, Refusal> {
     // g_k, the coefficient of z^k in the secular sine over the amplitude, z = amplitude^2.
     let mut equation: Vec<Polynomial> = vec![];
-    for term in force.terms.iter().filter(|term| term.order == 1 && term.velocity % 2 == 1) {
+    for term in force
+        .terms
+        .iter()
+        .filter(|term| term.order == 1 && term.velocity % 2 == 1)
+    {
         let sine = FourierSeries::<Rational>::cos(1)
             .power(term.position)
             .product(&FourierSeries::sin(1).times(-1).power(term.velocity))
@@ -152,33 +180,52 @@ fn limit_cycle_amplitude(
             equation.resize(power + 1, Polynomial::zero());
         }
         let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
-        let weighted = term.coefficient.product(&frequency).product(&Polynomial::constant(weight));
+        let weighted = term
+            .coefficient
+            .product(&frequency)
+            .product(&Polynomial::constant(weight));
         equation[power].accumulate(&weighted);
     }
     let powers: Vec<usize> = (0..equation.len()).filter(|&k| !equation[k].is_zero()).collect();
     let z = Symbol::new("z");
     let text = || {
         let term = |&k: &usize| equation[k].times_monomial(&Monomial::power_of(z, k as i32));
-        powers.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term).to_string()
+        powers
+            .iter()
+            .map(term)
+            .fold(Polynomial::zero(), |sum, term| sum + term)
+            .to_string()
     };
     match powers.as_slice() {
         [] => Ok(None),
-        [_] => Err(Refusal::Damping { method: TITLE, term: first_term(&parts.damping) }),
+        [_] => Err(Refusal::Damping {
+            method: TITLE,
+            term: first_term(&parts.damping),
+        }),
         &[low, high] if high == low + 1 => {
             let Some(inverse) = equation[high].power(-1) else {
-                return Err(Refusal::LimitCycle { equation: text(), reason: "which divides by a sum of symbols" });
+                return Err(Refusal::LimitCycle {
+                    equation: text(),
+                    reason: "which divides by a sum of symbols",
+                });
             };
             let mut squared = equation[low].product(&inverse);
             squared.negate();
             let negative = squared.single_term().is_some_and(|(_, number)| !number.is_positive());
             if negative {
-                return Err(Refusal::Damping { method: TITLE, term: first_term(&parts.damping) });
+                return Err(Refusal::Damping {
+                    method: TITLE,
+                    term: first_term(&parts.damping),
+                });
             }
             Ok(Some(squared))
         }
         _ => rational_limit_cycle(&equation)
             .map(|squared| Some(Polynomial::constant(squared)))
-            .ok_or_else(|| Refusal::LimitCycle { equation: text(), reason: "whose stable positive root is no fraction" }),
+            .ok_or_else(|| Refusal::LimitCycle {
+                equation: text(),
+                reason: "whose stable positive root is no fraction",
+            }),
     }
 }
 
@@ -187,7 +234,9 @@ fn limit_cycle_amplitude(
 /// The averaged amplitude obeys `a' = (a/2) omega0 g(a^2)` up to a positive factor, so stability asks for `g' < 0`.
 fn rational_limit_cycle(equation: &[Polynomial]) -> Option<Rational> {
     let numbers: Vec<Rational> = equation.iter().map(Polynomial::as_number).collect::<Option<_>>()?;
-    let common = numbers.iter().fold(Integer::one(), |lcm, number| lcm.lcm(number.denom()));
+    let common = numbers
+        .iter()
+        .fold(Integer::one(), |lcm, number| lcm.lcm(number.denom()));
     let integers: Vec<Integer> = numbers.iter().map(|number| (number * &common).to_integer()).collect();
     let lowest = integers.iter().find(|value| !value.is_zero())?;
     let highest = integers.last()?;
@@ -198,7 +247,12 @@ fn rational_limit_cycle(equation: &[Polynomial]) -> Option<Rational> {
     };
     let mut roots: Vec<Rational> = divisors(lowest)?
         .iter()
-        .flat_map(|p| divisors(highest).unwrap_or_default().into_iter().map(|q| Rational::new(p.clone(), q)))
+        .flat_map(|p| {
+            divisors(highest)
+                .unwrap_or_default()
+                .into_iter()
+                .map(|q| Rational::new(p.clone(), q))
+        })
         .filter(|z| value(z).is_zero())
         .collect();
     roots.sort();
@@ -228,13 +282,20 @@ fn scaled_terms(
         // Even powers of a limit cycle's amplitude are known even where the amplitude itself is a root.
         let unit = match unit_squared {
             Some(squared) if exponent > 0 => {
-                let odd = if exponent % 2 == 1 { unit.clone() } else { Polynomial::constant(Rational::one()) };
+                let odd = if exponent % 2 == 1 {
+                    unit.clone()
+                } else {
+                    Polynomial::constant(Rational::one())
+                };
                 inverse_power(squared, exponent / 2).product(&odd)
             }
             _ => inverse_power(unit, exponent),
         };
         let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
-        Term { coefficient: term.coefficient.product(&unit).product(&frequency), ..term.clone() }
+        Term {
+            coefficient: term.coefficient.product(&unit).product(&frequency),
+            ..term.clone()
+        }
     };
     terms.iter().map(scale).collect()
 }
@@ -256,14 +317,21 @@ fn expand_exactly(
     let scales = scales(terms);
     let reduced: Vec<Term> = terms
         .iter()
-        .map(|term| Term { coefficient: without(&term.coefficient, &scales, delta), ..term.clone() })
+        .map(|term| Term {
+            coefficient: without(&term.coefficient, &scales, delta),
+            ..term.clone()
+        })
         .collect();
     let restore = |n: usize| {
-        let powers = scales.iter().map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
+        let powers = scales
+            .iter()
+            .map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
         let start = Monomial::power_of(delta, n as i32);
-        powers.filter(|(symbol, _)| *symbol != delta).fold(start, |monomial, (symbol, power)| {
-            monomial.product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
-        })
+        powers
+            .filter(|(symbol, _)| *symbol != delta)
+            .fold(start, |monomial, (symbol, power)| {
+                monomial.product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
+            })
     };
     let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
     match numbers {
@@ -300,7 +368,9 @@ fn force_terms<C>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeri
 
 /// A polynomial as whole coefficients over one denominator.
 fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomial<Integer>> {
-    let common = polynomial.terms().fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
+    let common = polynomial
+        .terms()
+        .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
     let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
     FourierSeries::constant(numerators, common)
 }
@@ -313,19 +383,31 @@ fn scales(terms: &[Term]) -> Vec<(Symbol, Rational)> {
         let rates: BTreeSet<Rational> = terms
             .iter()
             .flat_map(|term| {
-                let exponents = term.coefficient.terms().map(move |(monomial, _)| monomial.exponent(symbol));
+                let exponents = term
+                    .coefficient
+                    .terms()
+                    .map(move |(monomial, _)| monomial.exponent(symbol));
                 exponents.map(|exponent| ratio(exponent.into(), term.order as i64))
             })
             .collect();
-        if rates.len() == 1 { rates.into_iter().next() } else { None }
+        if rates.len() == 1 {
+            rates.into_iter().next()
+        } else {
+            None
+        }
     };
-    symbols.into_iter().filter_map(|symbol| Some((symbol, rate(symbol)?))).collect()
+    symbols
+        .into_iter()
+        .filter_map(|symbol| Some((symbol, rate(symbol)?)))
+        .collect()
 }
 
 fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)], delta: Symbol) -> Polynomial {
     let mut reduced = Polynomial::zero();
     for (monomial, number) in coefficient.terms() {
-        let rest = scales.iter().fold(monomial.without(delta), |monomial, (symbol, _)| monomial.without(*symbol));
+        let rest = scales.iter().fold(monomial.without(delta), |monomial, (symbol, _)| {
+            monomial.without(*symbol)
+        });
         reduced.add_term(rest, number.clone());
     }
     reduced

@@ -122,12 +122,20 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         let mut convolutions = Convolutions::new();
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
-        let last = if amplitude == Amplitude::Determined { highest + 1 } else { highest };
+        let last = if amplitude == Amplitude::Determined {
+            highest + 1
+        } else {
+            highest
+        };
         let mut product_of = |term: &ForceTerm<C>| {
             let powers = [(position, term.position), (velocity, term.velocity)];
             let powers = powers.into_iter().filter(|power| power.1 > 0);
-            let nodes: Vec<Node> = powers.map(|(node, exponent)| convolutions.power(node, exponent)).collect();
-            let node = nodes.into_iter().reduce(|left, right| convolutions.product(left, right))?;
+            let nodes: Vec<Node> = powers
+                .map(|(node, exponent)| convolutions.power(node, exponent))
+                .collect();
+            let node = nodes
+                .into_iter()
+                .reduce(|left, right| convolutions.product(left, right))?;
             if let Some(needed) = last.checked_sub(term.order) {
                 convolutions.require(node, needed);
             }
@@ -148,7 +156,18 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             removed: vec![],
         };
         let accelerations = vec![start.derivative().derivative()];
-        Self { force, products, convolutions, position, velocity, normalisation, amplitude, variations, accelerations, result }
+        Self {
+            force,
+            products,
+            convolutions,
+            position,
+            velocity,
+            normalisation,
+            amplitude,
+            variations,
+            accelerations,
+            result,
+        }
     }
 
     fn solve_order(&mut self, order: usize) -> Result<(), SecularError> {
@@ -176,17 +195,25 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         let one = FourierSeries::integer(1);
         let mut terms = Vec::new();
         for (term, product) in self.force.iter().zip(&self.products) {
-            let Some(of_product) = order.checked_sub(term.order) else { continue };
+            let Some(of_product) = order.checked_sub(term.order) else {
+                continue;
+            };
             match product {
                 Some(node) => terms.extend(
-                    self.convolutions.order(*node, of_product).map(|series| (-1, &term.coefficient, series)),
+                    self.convolutions
+                        .order(*node, of_product)
+                        .map(|series| (-1, &term.coefficient, series)),
                 ),
                 None if of_product == 0 => terms.push((-1, &term.coefficient, &one)),
                 None => {}
             }
         }
         for lower in 1..order {
-            terms.push((-1, &self.result.frequency_squared[lower], &self.accelerations[order - lower]));
+            terms.push((
+                -1,
+                &self.result.frequency_squared[lower],
+                &self.accelerations[order - lower],
+            ));
         }
         sum_of_products(&terms)
     }
@@ -197,7 +224,11 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         let mut terms = Vec::new();
         for (term, product) in self.force.iter().zip(&self.products) {
             if let (1, Some(node)) = (term.order, product) {
-                terms.push((-1, &term.coefficient, Convolutions::variation_of(&self.variations, *node)));
+                terms.push((
+                    -1,
+                    &term.coefficient,
+                    Convolutions::variation_of(&self.variations, *node),
+                ));
             }
         }
         if let Some(first) = self.result.frequency_squared.get(1) {
@@ -207,13 +238,18 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         let needed = right_side.sine(1).times(-1);
         let correction = match needed.is_zero() {
             true => FourierSeries::zero(),
-            false => needed.divided_by_constant(&change.sine(1)).ok_or(SecularError::Degenerate { order })?,
+            false => needed
+                .divided_by_constant(&change.sine(1))
+                .ok_or(SecularError::Degenerate { order })?,
         };
         self.convolutions.correct(order - 1, &correction, &self.variations);
         let corrected = self.result.displacement[order - 1].sum(&correction.product(&FourierSeries::cos(1)));
         self.accelerations[order - 1] = corrected.derivative().derivative();
         self.result.displacement[order - 1] = corrected;
-        Ok(linear_combination(&[(1, &right_side), (1, &correction.product(&change))]))
+        Ok(linear_combination(&[
+            (1, &right_side),
+            (1, &correction.product(&change)),
+        ]))
     }
 
     fn fix_last_amplitude(&mut self, highest: usize) -> Result<(), SecularError> {
@@ -251,7 +287,9 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         self.convolutions.push(self.position, displacement.clone());
         self.result.displacement.push(displacement);
         let derivatives: Vec<_> = self.result.displacement.iter().map(FourierSeries::derivative).collect();
-        let products: Vec<_> = (0..=order).map(|i| (1, &self.result.frequency[i], &derivatives[order - i])).collect();
+        let products: Vec<_> = (0..=order)
+            .map(|i| (1, &self.result.frequency[i], &derivatives[order - i]))
+            .collect();
         let velocity = sum_of_products(&products);
         self.convolutions.push(self.velocity, velocity);
         self.convolutions.advance(order);
@@ -266,26 +304,52 @@ mod tests {
     use crate::series::fourier::fraction;
 
     fn numbers(series: &[FourierSeries<Integer>]) -> Vec<Rational> {
-        series.iter().map(|constant| constant.mean()).map(|(n, d)| fraction(&n, d)).collect()
+        series
+            .iter()
+            .map(|constant| constant.mean())
+            .map(|(n, d)| fraction(&n, d))
+            .collect()
     }
 
     fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integer> {
         let coefficient = FourierSeries::constant(value.0.into(), value.1.into());
-        ForceTerm { order, position, velocity, coefficient }
+        ForceTerm {
+            order,
+            position,
+            velocity,
+            coefficient,
+        }
     }
 
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
         let duffing = expand(&[term(1, 3, 0, (1, 1))], 4, Normalisation::Initial, Amplitude::Free).expect("periodic");
-        let expected = [ratio(1, 1), ratio(3, 4), ratio(-3, 128), ratio(9, 512), ratio(-1779, 131_072)];
+        let expected = [
+            ratio(1, 1),
+            ratio(3, 4),
+            ratio(-3, 128),
+            ratio(9, 512),
+            ratio(-1779, 131_072),
+        ];
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
         let cycle = expand(&force, 4, Normalisation::Initial, Amplitude::Determined).expect("a limit cycle");
         let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
         assert_eq!(numbers(&cycle.frequency), expected);
-        let amplitudes: Vec<_> = cycle.displacement.iter().map(FourierSeries::at_zero).map(|y| y.times(2)).collect();
-        let expected = [ratio(2, 1), ratio(0, 1), ratio(1, 96), ratio(0, 1), ratio(-1033, 552_960)];
+        let amplitudes: Vec<_> = cycle
+            .displacement
+            .iter()
+            .map(FourierSeries::at_zero)
+            .map(|y| y.times(2))
+            .collect();
+        let expected = [
+            ratio(2, 1),
+            ratio(0, 1),
+            ratio(1, 96),
+            ratio(0, 1),
+            ratio(-1033, 552_960),
+        ];
         assert_eq!(numbers(&amplitudes), expected);
     }
 

@@ -33,7 +33,10 @@ pub struct Convolutions<C> {
 impl<C: Ring> Convolutions<C> {
     /// No series yet.
     pub fn new() -> Self {
-        Self { nodes: vec![], products: HashMap::new() }
+        Self {
+            nodes: vec![],
+            products: HashMap::new(),
+        }
     }
 
     /// A new series whose orders the caller supplies.
@@ -58,7 +61,7 @@ impl<C: Ring> Convolutions<C> {
             return base;
         }
         let square = self.product(base, base);
-        let start = if exponent % 2 == 0 { square } else { base };
+        let start = if exponent.is_multiple_of(2) { square } else { base };
         (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square))
     }
 
@@ -135,12 +138,16 @@ impl<C: Ring> Convolutions<C> {
     }
 
     /// The variation that belongs to `node` in the list of [`Convolutions::variations`].
-    pub fn variation_of<'a>(variations: &'a [FourierSeries<C>], node: Node) -> &'a FourierSeries<C> {
+    pub fn variation_of(variations: &[FourierSeries<C>], node: Node) -> &FourierSeries<C> {
         &variations[node.0]
     }
 
     fn add(&mut self, factors: Option<(Node, Node)>) -> Node {
-        self.nodes.push(Orders { factors, known: vec![], needed: None });
+        self.nodes.push(Orders {
+            factors,
+            known: vec![],
+            needed: None,
+        });
         Node(self.nodes.len() - 1)
     }
 }
@@ -152,7 +159,11 @@ mod tests {
 
     #[test]
     fn powers_agree_with_repeated_products() {
-        let orders = [FourierSeries::<Integer>::cos(1), FourierSeries::cos(3), FourierSeries::sin(2)];
+        let orders = [
+            FourierSeries::<Integer>::cos(1),
+            FourierSeries::cos(3),
+            FourierSeries::sin(2),
+        ];
         let mut graph = Convolutions::new();
         let leaf = graph.leaf();
         let fifth = graph.power(leaf, 5);

@@ -37,7 +37,11 @@ pub struct Resonance<C> {
 impl<C: Ring> FourierSeries<C> {
     /// The series without terms.
     pub fn zero() -> Self {
-        Self { denominator: Integer::one(), cosine: vec![], sine: vec![] }
+        Self {
+            denominator: Integer::one(),
+            cosine: vec![],
+            sine: vec![],
+        }
     }
 
     /// The constant `numerator / denominator`.
@@ -72,7 +76,11 @@ impl<C: Ring> FourierSeries<C> {
         if let Some(first) = sine.first_mut() {
             *first = C::zero();
         }
-        let mut series = Self { denominator: Integer::one(), cosine, sine };
+        let mut series = Self {
+            denominator: Integer::one(),
+            cosine,
+            sine,
+        };
         series.divide_in_place(&denominator);
         series.reduce();
         series
@@ -90,12 +98,18 @@ impl<C: Ring> FourierSeries<C> {
 
     /// The coefficient of `cos k theta` as a constant series.
     pub fn cosine(&self, k: usize) -> Self {
-        Self::constant(self.cosine.get(k).cloned().unwrap_or_else(C::zero), self.denominator.clone())
+        Self::constant(
+            self.cosine.get(k).cloned().unwrap_or_else(C::zero),
+            self.denominator.clone(),
+        )
     }
 
     /// The coefficient of `sin k theta` as a constant series.
     pub fn sine(&self, k: usize) -> Self {
-        Self::constant(self.sine.get(k).cloned().unwrap_or_else(C::zero), self.denominator.clone())
+        Self::constant(
+            self.sine.get(k).cloned().unwrap_or_else(C::zero),
+            self.denominator.clone(),
+        )
     }
 
     /// Numerator and denominator of the constant term: the mean over a period.
@@ -150,7 +164,11 @@ impl<C: Ring> FourierSeries<C> {
         let (numerator, denominator) = divisor.mean();
         let (unit, integer) = numerator.inverse()?;
         let mut series = self.product(&Self::constant(unit, Integer::one()));
-        let sign = if integer < Zero::zero() { -Integer::one() } else { Integer::one() };
+        let sign = if integer < Zero::zero() {
+            -Integer::one()
+        } else {
+            Integer::one()
+        };
         series.scale(&(denominator * &sign));
         series.divide_in_place(&(integer * sign));
         series.reduce();
@@ -167,8 +185,11 @@ impl<C: Ring> FourierSeries<C> {
             };
             coefficients.iter().enumerate().map(scaled).collect()
         };
-        let mut series =
-            Self { denominator: self.denominator.clone(), cosine: times(1, &self.sine), sine: times(-1, &self.cosine) };
+        let mut series = Self {
+            denominator: self.denominator.clone(),
+            cosine: times(1, &self.sine),
+            sine: times(-1, &self.cosine),
+        };
         series.reduce();
         series
     }
@@ -177,9 +198,15 @@ impl<C: Ring> FourierSeries<C> {
     /// `u_k = r_k / (1 - k^2)` for `k != 1`.
     pub fn solve_oscillator(&self) -> (Self, Resonance<C>) {
         let highest = self.highest_harmonic();
-        let occurs = |k: &usize| [&self.cosine, &self.sine].iter().any(|part| part.get(*k).is_some_and(|c| !c.is_zero()));
+        let occurs = |k: &usize| {
+            [&self.cosine, &self.sine]
+                .iter()
+                .any(|part| part.get(*k).is_some_and(|c| !c.is_zero()))
+        };
         let divisor = |k: usize| Integer::one() - Integer::from(k) * Integer::from(k);
-        let common = (2..=highest).filter(occurs).fold(Integer::one(), |lcm, k| lcm.lcm(&divisor(k)));
+        let common = (2..=highest)
+            .filter(occurs)
+            .fold(Integer::one(), |lcm, k| lcm.lcm(&divisor(k)));
         let solve = |part: &[C]| {
             let solved = |(k, coefficient): (usize, &C)| {
                 let mut result = if k == 1 { C::zero() } else { coefficient.clone() };
@@ -190,11 +217,20 @@ impl<C: Ring> FourierSeries<C> {
             };
             part.iter().enumerate().map(solved).collect()
         };
-        let mut solution =
-            Self { denominator: self.denominator.clone(), cosine: solve(&self.cosine), sine: solve(&self.sine) };
+        let mut solution = Self {
+            denominator: self.denominator.clone(),
+            cosine: solve(&self.cosine),
+            sine: solve(&self.sine),
+        };
         solution.divide_in_place(&common);
         solution.reduce();
-        (solution, Resonance { cosine: self.cosine(1), sine: self.sine(1) })
+        (
+            solution,
+            Resonance {
+                cosine: self.cosine(1),
+                sine: self.sine(1),
+            },
+        )
     }
 
     /// The value at `theta = 0`, as a constant series.
@@ -208,13 +244,20 @@ impl<C: Ring> FourierSeries<C> {
 
     /// The same series over another ring.
     pub fn map<D: Ring>(&self, change: impl Fn(&C, &Integer) -> D) -> FourierSeries<D> {
-        let all = |part: &[C]| part.iter().map(|coefficient| change(coefficient, &self.denominator)).collect();
+        let all = |part: &[C]| {
+            part.iter()
+                .map(|coefficient| change(coefficient, &self.denominator))
+                .collect()
+        };
         FourierSeries::from_parts(all(&self.cosine), all(&self.sine), Integer::one())
     }
 
     fn scale(&mut self, factor: &Integer) {
         if !factor.is_one() {
-            self.cosine.iter_mut().chain(&mut self.sine).for_each(|coefficient| coefficient.scale(factor));
+            self.cosine
+                .iter_mut()
+                .chain(&mut self.sine)
+                .for_each(|coefficient| coefficient.scale(factor));
         }
     }
 
@@ -223,7 +266,10 @@ impl<C: Ring> FourierSeries<C> {
             return;
         }
         if C::FIELD {
-            self.cosine.iter_mut().chain(&mut self.sine).for_each(|coefficient| coefficient.divide(divisor));
+            self.cosine
+                .iter_mut()
+                .chain(&mut self.sine)
+                .for_each(|coefficient| coefficient.divide(divisor));
         } else {
             self.denominator *= divisor;
         }
@@ -233,7 +279,10 @@ impl<C: Ring> FourierSeries<C> {
     /// the denominator taken out. The only place where a greatest common divisor is computed.
     fn reduce(&mut self) {
         for part in [&mut self.cosine, &mut self.sine] {
-            let length = part.iter().rposition(|coefficient| !coefficient.is_zero()).map_or(0, |last| last + 1);
+            let length = part
+                .iter()
+                .rposition(|coefficient| !coefficient.is_zero())
+                .map_or(0, |last| last + 1);
             part.truncate(length);
         }
         if self.denominator.is_one() {
@@ -242,15 +291,24 @@ impl<C: Ring> FourierSeries<C> {
         let divisor = common_content(self.denominator.clone(), self.cosine.iter().chain(&self.sine));
         if !divisor.is_one() {
             self.denominator /= &divisor;
-            self.cosine.iter_mut().chain(&mut self.sine).for_each(|coefficient| coefficient.divide(&divisor));
+            self.cosine
+                .iter_mut()
+                .chain(&mut self.sine)
+                .for_each(|coefficient| coefficient.divide(&divisor));
         }
     }
 }
 
 /// `sum of weight * series`, over one common denominator.
 pub fn linear_combination<C: Ring>(terms: &[(i64, &FourierSeries<C>)]) -> FourierSeries<C> {
-    let common = terms.iter().fold(Integer::one(), |lcm, (_, series)| lcm.lcm(&series.denominator));
-    let mut result = FourierSeries { denominator: Integer::one(), cosine: vec![], sine: vec![] };
+    let common = terms
+        .iter()
+        .fold(Integer::one(), |lcm, (_, series)| lcm.lcm(&series.denominator));
+    let mut result = FourierSeries {
+        denominator: Integer::one(),
+        cosine: vec![],
+        sine: vec![],
+    };
     for (weight, series) in terms {
         let factor = &common / &series.denominator * weight;
         add_scaled(&mut result.cosine, &series.cosine, &factor);
@@ -262,16 +320,25 @@ pub fn linear_combination<C: Ring>(terms: &[(i64, &FourierSeries<C>)]) -> Fourie
 }
 
 /// `sum of weight * left * right`, over one common denominator: one order of a running convolution.
-pub fn sum_of_products<C: Ring>(
-    terms: &[(i64, &FourierSeries<C>, &FourierSeries<C>)],
-) -> FourierSeries<C> {
-    let terms: Vec<_> = terms.iter().filter(|(_, left, right)| !left.is_zero() && !right.is_zero()).collect();
+pub fn sum_of_products<C: Ring>(terms: &[(i64, &FourierSeries<C>, &FourierSeries<C>)]) -> FourierSeries<C> {
+    let terms: Vec<_> = terms
+        .iter()
+        .filter(|(_, left, right)| !left.is_zero() && !right.is_zero())
+        .collect();
     let denominator = |left: &FourierSeries<C>, right: &FourierSeries<C>| &left.denominator * &right.denominator;
-    let common = terms.iter().fold(Integer::one(), |lcm, (_, left, right)| lcm.lcm(&denominator(left, right)));
-    let highest = terms.iter().map(|(_, left, right)| left.highest_harmonic() + right.highest_harmonic()).max();
+    let common = terms.iter().fold(Integer::one(), |lcm, (_, left, right)| {
+        lcm.lcm(&denominator(left, right))
+    });
+    let highest = terms
+        .iter()
+        .map(|(_, left, right)| left.highest_harmonic() + right.highest_harmonic())
+        .max();
     let length = highest.map_or(0, |harmonic| harmonic + 1);
-    let mut doubled =
-        FourierSeries { denominator: Integer::one(), cosine: vec![C::zero(); length], sine: vec![C::zero(); length] };
+    let mut doubled = FourierSeries {
+        denominator: Integer::one(),
+        cosine: vec![C::zero(); length],
+        sine: vec![C::zero(); length],
+    };
     for &&(weight, left, right) in &terms {
         let factor = &common / denominator(left, right) * weight;
         let mut left = left.clone();
@@ -349,7 +416,11 @@ impl FourierSeries<Polynomial> {
 impl FourierSeries<f64> {
     /// The value at `theta`.
     pub fn evaluate(&self, theta: f64) -> f64 {
-        let cosines = self.cosine.iter().enumerate().map(|(k, c)| c * (k as f64 * theta).cos());
+        let cosines = self
+            .cosine
+            .iter()
+            .enumerate()
+            .map(|(k, c)| c * (k as f64 * theta).cos());
         let sines = self.sine.iter().enumerate().map(|(k, s)| s * (k as f64 * theta).sin());
         cosines.chain(sines).sum()
     }

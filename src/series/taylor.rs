@@ -62,7 +62,11 @@ pub fn taylor(expression: &Expr, point: &[(Symbol, Rational)], degree: u32) -> R
     if degree > HIGHEST_DEGREE {
         return Err(TaylorError::Degree(degree));
     }
-    Expansion { point, length: degree as usize + 1 }.of(expression)
+    Expansion {
+        point,
+        length: degree as usize + 1,
+    }
+    .of(expression)
 }
 
 /// A truncated power series in `s`; as many entries as the expansion is long.
@@ -95,7 +99,9 @@ impl Expansion<'_> {
             }
             (Node::Product(coefficient, _), factors) => {
                 let start = self.constant(Expr::number(coefficient.clone()));
-                factors.iter().try_fold(start, |product, factor| self.product(&product, factor))
+                factors
+                    .iter()
+                    .try_fold(start, |product, factor| self.product(&product, factor))
             }
             (Node::Power(_, exponent), [base, exponents]) => match exponent.as_number() {
                 Some(exponent) => self.power(base, exponent, expression),
@@ -130,7 +136,9 @@ impl Expansion<'_> {
     }
 
     fn product(&self, left: &Series, right: &Series) -> Result<Series, TaylorError> {
-        (0..self.length).map(|k| convolution(left, right, k, |_| Rational::one())).collect()
+        (0..self.length)
+            .map(|k| convolution(left, right, k, |_| Rational::one()))
+            .collect()
     }
 
     fn times(&self, series: &Series, factor: &Expr) -> Result<Series, TaylorError> {
@@ -141,7 +149,9 @@ impl Expansion<'_> {
     fn integral(&self, start: Expr, derivative: &Series, of: &Series) -> Result<Series, TaylorError> {
         let mut series = vec![start];
         for k in 1..self.length {
-            let sum = convolution(&of[1..=k].to_vec(), &derivative[..k].to_vec(), k - 1, |j| integer(j + 1))?;
+            let sum = convolution(&of[1..=k].to_vec(), &derivative[..k].to_vec(), k - 1, |j| {
+                integer(j + 1)
+            })?;
             series.push(Expr::divide(&sum, &number(k))?);
         }
         Ok(series)
@@ -206,14 +216,20 @@ impl Expansion<'_> {
 
     /// Sine and cosine (`sign = -1`) or their hyperbolic sisters (`sign = 1`).
     fn sine_and_cosine(&self, of: &Series, hyperbolic: bool) -> Result<(Series, Series), TaylorError> {
-        let (sine, cosine, sign) =
-            if hyperbolic { (Function::Sinh, Function::Cosh, 1) } else { (Function::Sin, Function::Cos, -1) };
+        let (sine, cosine, sign) = if hyperbolic {
+            (Function::Sinh, Function::Cosh, 1)
+        } else {
+            (Function::Sin, Function::Cos, -1)
+        };
         let mut sines = vec![Expr::function(sine, vec![of[0].clone()])?];
         let mut cosines = vec![Expr::function(cosine, vec![of[0].clone()])?];
         for k in 1..self.length {
             let of = of[1..=k].to_vec();
             let next_sine = Expr::divide(&convolution(&of, &cosines, k - 1, |j| integer(j + 1))?, &number(k))?;
-            let next_cosine = Expr::divide(&convolution(&of, &sines, k - 1, |j| integer(j + 1) * integer_sign(sign))?, &number(k))?;
+            let next_cosine = Expr::divide(
+                &convolution(&of, &sines, k - 1, |j| integer(j + 1) * integer_sign(sign))?,
+                &number(k),
+            )?;
             sines.push(next_sine);
             cosines.push(next_cosine);
         }
@@ -234,13 +250,17 @@ impl Expansion<'_> {
             }
             Function::Exp => self.exponential(of),
             Function::Log => self.logarithm(of, term),
-                        Function::Asin | Function::Acos | Function::Atan => {
+            Function::Asin | Function::Acos | Function::Atan => {
                 // 1/sqrt(1 - u^2), its negative, or 1/(1 + u^2).
                 let atan = function == Function::Atan;
                 let square = self.times(&self.product(of, of)?, &Expr::from(if atan { 1 } else { -1 }))?;
                 let mut radicand = square;
                 radicand[0] = &radicand[0] + &Expr::from(1);
-                let exponent = if atan { -Rational::one() } else { crate::exact::rational::ratio(-1, 2) };
+                let exponent = if atan {
+                    -Rational::one()
+                } else {
+                    crate::exact::rational::ratio(-1, 2)
+                };
                 let mut derivative = self.power(&radicand, &exponent, term)?;
                 if function == Function::Acos {
                     derivative = self.times(&derivative, &Expr::from(-1))?;
@@ -249,7 +269,9 @@ impl Expansion<'_> {
             }
             Function::Absolute | Function::Sign | Function::Step => {
                 // Away from its corner each of them is a polynomial of degree one at most.
-                let sign = sign_of(&of[0]).filter(|sign| sign.is_ne()).ok_or_else(|| self.not_analytic(term))?;
+                let sign = sign_of(&of[0])
+                    .filter(|sign| sign.is_ne())
+                    .ok_or_else(|| self.not_analytic(term))?;
                 let positive = sign.is_gt();
                 match function {
                     Function::Absolute => self.times(of, &Expr::from(if positive { 1 } else { -1 })),
@@ -260,15 +282,28 @@ impl Expansion<'_> {
             Function::Maximum | Function::Minimum => {
                 let other = arguments.get(1).ok_or_else(|| self.not_analytic(term))?;
                 let difference = &of[0] - &other[0];
-                let sign = sign_of(&difference).filter(|sign| sign.is_ne()).ok_or_else(|| self.not_analytic(term))?;
-                Ok(if sign.is_gt() == (function == Function::Maximum) { of.clone() } else { other.clone() })
+                let sign = sign_of(&difference)
+                    .filter(|sign| sign.is_ne())
+                    .ok_or_else(|| self.not_analytic(term))?;
+                Ok(if sign.is_gt() == (function == Function::Maximum) {
+                    of.clone()
+                } else {
+                    other.clone()
+                })
             }
         }
     }
 
     fn not_analytic(&self, term: &Expr) -> TaylorError {
-        let point: Vec<String> = self.point.iter().map(|(variable, centre)| format!("{variable} = {centre}")).collect();
-        TaylorError::NotAnalytic { term: term.to_string(), point: point.join(", ") }
+        let point: Vec<String> = self
+            .point
+            .iter()
+            .map(|(variable, centre)| format!("{variable} = {centre}"))
+            .collect();
+        TaylorError::NotAnalytic {
+            term: term.to_string(),
+            point: point.join(", "),
+        }
     }
 }
 

@@ -69,10 +69,17 @@ impl Values {
     /// A value with symbols in it, one that is not finite, or a second value for the same name.
     pub fn insert(&mut self, name: Symbol, value: Expr) -> Result<(), ValueError> {
         if let Some(symbol) = value.symbols().into_iter().next() {
-            return Err(ValueError::NotANumber { name, value: value.to_string(), symbol });
+            return Err(ValueError::NotANumber {
+                name,
+                value: value.to_string(),
+                symbol,
+            });
         }
         if value.evaluate(&BTreeMap::new()).is_err() {
-            return Err(ValueError::NotFinite { name, value: value.to_string() });
+            return Err(ValueError::NotFinite {
+                name,
+                value: value.to_string(),
+            });
         }
         match self.0.insert(name, value) {
             None => Ok(()),
@@ -88,7 +95,10 @@ impl Values {
     /// The value of a symbol as a floating-point number.
     pub fn get(&self, name: Symbol) -> Option<f64> {
         let value = self.0.get(&name)?;
-        value.as_number().map(to_f64).or_else(|| value.evaluate(&BTreeMap::new()).ok())
+        value
+            .as_number()
+            .map(to_f64)
+            .or_else(|| value.evaluate(&BTreeMap::new()).ok())
     }
 
     /// Whether nothing is given.
@@ -160,7 +170,9 @@ pub enum VerificationError {
     #[error(transparent)]
     Expression(#[from] ExprError),
     /// The amplitude is zero, and at rest there is nothing to compare.
-    #[error("at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against")]
+    #[error(
+        "at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against"
+    )]
     AtRest,
 }
 
@@ -225,6 +237,14 @@ pub fn judge(
 /// Time, displacement and velocity.
 pub type Sample = (f64, f64, f64);
 
+/// The motion by the formula and the true one, at the same instants of one true period.
+pub struct Motions {
+    /// By the formula.
+    pub formula: Vec<Sample>,
+    /// By Runge-Kutta.
+    pub truth: Vec<Sample>,
+}
+
 /// The motion by the formula and the true one, at the same instants of one true period; `None` where the formula's
 /// frequency is not real.
 ///
@@ -234,16 +254,27 @@ pub fn motions(
     oscillator: &Oscillator,
     solution: &Solution,
     at: &Values,
-) -> Result<Option<(Vec<Sample>, Vec<Sample>)>, VerificationError> {
+) -> Result<Option<Motions>, VerificationError> {
     let symbol = solution.amplitude.symbol();
     let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
     let truth = TrueMotion::of(oscillator, solution, &numbers)?;
     let motion = solution.motion(&|symbol| numbers.get(&symbol).copied()).ok();
-    let Some((frequency, motion)) = formula_frequency(solution, &numbers).zip(motion) else { return Ok(None) };
+    let Some((frequency, motion)) = formula_frequency(solution, &numbers).zip(motion) else {
+        return Ok(None);
+    };
     let velocity = motion.derivative();
     let times = (0..=SAMPLES).map(|k| truth.path.end().t * k as f64 / SAMPLES as f64);
-    let formula = |t: f64| (t, motion.evaluate(frequency * t), frequency * velocity.evaluate(frequency * t));
-    Ok(Some((times.clone().map(formula).collect(), times.map(|t| truth.sample(t)).collect())))
+    let formula = |t: f64| {
+        (
+            t,
+            motion.evaluate(frequency * t),
+            frequency * velocity.evaluate(frequency * t),
+        )
+    };
+    Ok(Some(Motions {
+        formula: times.clone().map(formula).collect(),
+        truth: times.map(|t| truth.sample(t)).collect(),
+    }))
 }
 
 /// omega by the formula: the root of the truncated omega^2, `None` where that is not positive.
@@ -290,7 +321,12 @@ impl TrueMotion {
             (AmplitudeConvention::FirstHarmonic, None) => numbers[&solution.amplitude.symbol()].abs(),
             _ => (path.at(0.0).map_or(start, |(x, _)| x) - physics.equilibrium).abs(),
         };
-        Ok(Self { frequency, path, shift, amplitude })
+        Ok(Self {
+            frequency,
+            path,
+            shift,
+            amplitude,
+        })
     }
 
     /// The true motion at the time `t` of the formula.
@@ -325,12 +361,19 @@ impl Physics {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let parts = oscillator.parts()?;
-        let conservative = [&parts.inertia, &parts.damping, &parts.forcing].iter().all(|part| part.is_zero());
+        let conservative = [&parts.inertia, &parts.damping, &parts.forcing]
+            .iter()
+            .all(|part| part.is_zero());
         let force = compiled_force(oscillator, numbers)?;
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
         let guess = formula_frequency(solution, numbers).unwrap_or(1.0);
         // A thousand periods of the formula: a motion that has not turned by then is not swinging.
-        Ok(Self { force, equilibrium, conservative, longest: 1000.0 * TAU / guess })
+        Ok(Self {
+            force,
+            equilibrium,
+            conservative,
+            longest: 1000.0 * TAU / guess,
+        })
     }
 
     fn force(&self) -> impl Fn(f64) -> f64 + '_ {
@@ -347,7 +390,9 @@ impl Physics {
         if solution.limit_cycle.is_some() {
             let motion = solution.motion(&|symbol| numbers.get(&symbol).copied());
             let highest = |motion: FourierSeries<f64>| {
-                (0..SAMPLES).map(|k| motion.evaluate(TAU * k as f64 / SAMPLES as f64)).fold(f64::MIN, f64::max)
+                (0..SAMPLES)
+                    .map(|k| motion.evaluate(TAU * k as f64 / SAMPLES as f64))
+                    .fold(f64::MIN, f64::max)
             };
             return Ok(motion.map(highest).unwrap_or(self.equilibrium + 1.0));
         }
@@ -377,7 +422,10 @@ fn compiled_force(
     let exact = |name: &Symbol| Rational::from_float(numbers[name]).map(|value| (*name, Expr::number(value)));
     let values = oscillator.parameters.iter().filter_map(exact).collect();
     let force = oscillator.force.substitute_all(&values)?;
-    Ok(CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()])?)
+    Ok(CompiledFunction::new(
+        &force,
+        &[oscillator.coordinate, oscillator.velocity()],
+    )?)
 }
 
 /// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to rounding here.
@@ -388,7 +436,9 @@ fn first_harmonic(path: &Trajectory) -> (f64, f64) {
         let x = path.at(period * phase).map_or(f64::NAN, |(x, _)| x);
         (x * (TAU * phase).cos(), x * (TAU * phase).sin())
     };
-    let sum = (0..SAMPLES).map(sample).fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
+    let sum = (0..SAMPLES)
+        .map(sample)
+        .fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
     (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
 }
 
@@ -417,7 +467,10 @@ fn residual(
 fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     const HALVINGS: i32 = 10;
     // The truth is good to 1e-14 by quadrature and 1e-11 by Runge-Kutta; an error a thousand times that is measured to 0.1 %.
-    let conservative = oscillator.parts().ok().is_some_and(|parts| parts.inertia.is_zero() && parts.damping.is_zero());
+    let conservative = oscillator
+        .parts()
+        .ok()
+        .is_some_and(|parts| parts.inertia.is_zero() && parts.damping.is_zero());
     let floor = if conservative { 1e-11 } else { 1e-8 };
     let error = |halving: i32| {
         let mut numbers = numbers.clone();

@@ -1,0 +1,187 @@
+//! One file in `examples/`, one run of the program, one snapshot in text and one in JSON. To add a case, add a file.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use lindstedt::export::json::{read_phases, read_solution, solution};
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+/// Standard output of a run that must succeed.
+fn output(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        output.stderr.is_empty(),
+        "{arguments:?} said {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).expect("the output is text")
+}
+
+fn snapshots(body: impl FnOnce()) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(body);
+}
+
+/// `derive` for a file with an equation, `impact` for any other.
+fn command_for(file: &Path) -> &'static str {
+    let text = std::fs::read_to_string(file).expect("an example can be read");
+    if text.lines().any(|line| line.starts_with("equation")) {
+        "derive"
+    } else {
+        "impact"
+    }
+}
+
+/// Floating-point numbers to eight digits, and what is rounding noise to its order of magnitude: the last digits
+/// depend on the machine's sine.
+fn rounded(value: &mut Value) {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap_or_default();
+            let digits = if number.abs() < 1e-8 { 0 } else { 7 };
+            *value = format!("{number:.digits$e}")
+                .parse()
+                .map_or(Value::Null, |rounded: f64| rounded.into());
+        }
+        Value::Array(list) => list.iter_mut().for_each(rounded),
+        Value::Object(map) => {
+            // Rounding noise by nature.
+            if map.contains_key("energy_drift") {
+                map.insert("energy_drift".into(), "noise".into());
+            }
+            if let Some(slope) = map.get_mut("slope")
+                && let Some(number) = slope.as_f64()
+            {
+                *slope = format!("{number:.2}").into();
+            }
+            for (key, entry) in map.iter_mut() {
+                let noise = key.ends_with("_error") && entry.as_f64().is_some_and(|error| error.abs() < 1e-8);
+                if noise { *entry = "noise".into() } else { rounded(entry) }
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_example_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("text", output(&[command_for(file), path]));
+            let mut document: Value = serde_json::from_str(&output(&[command_for(file), path, "--format", "json"]))
+                .expect("the output is JSON");
+            rounded(&mut document);
+            insta::assert_json_snapshot!("json", document);
+        });
+    });
+}
+
+#[test]
+fn every_example_reads_back_to_the_same_solution() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    let files = std::fs::read_dir(folder)
+        .expect("examples/ exists")
+        .filter_map(Result::ok)
+        .map(|entry| entry.path());
+    let mut count = 0;
+    for file in files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")) {
+        let command = command_for(&file);
+        let text = output(&[command, file.to_str().expect("a path in text"), "--format", "json"]);
+        let mut document: Value = serde_json::from_str(&text).expect("the output is JSON");
+        if command == "derive" {
+            let read = read_solution(&document).expect("a solution");
+            document["verification"] = Value::Null;
+            assert_eq!(solution(&read, None), document, "{}", file.display());
+        } else {
+            let phases = read_phases(&document).expect("three phases");
+            assert_eq!(phases.len(), 3);
+            for (phase, entry) in phases.iter().zip(document["phases"].as_array().expect("a list")) {
+                assert_eq!(phase.closed_form(), entry["closed_form"].as_str().expect("text"));
+                let (x, velocity) = phase.form.at(phase.end - phase.start);
+                assert_eq!(Some(x), entry["end_state"]["x"].as_f64());
+                assert_eq!(Some(velocity), entry["end_state"]["velocity"].as_f64());
+            }
+            read_solution(&document["law"]).expect("the law is a solution");
+        }
+        count += 1;
+    }
+    assert!(count >= 8, "only {count} examples");
+}
+
+#[test]
+fn help_says_what_there_is() {
+    snapshots(|| {
+        insta::assert_snapshot!("help", output(&["--help"]));
+        insta::assert_snapshot!("help-derive", output(&["derive", "--help"]));
+        insta::assert_snapshot!("help-impact", output(&["impact", "--help"]));
+    });
+}
+
+#[test]
+fn no_command_is_the_impact_of_the_paper() {
+    assert_eq!(output(&[]), output(&["impact"]));
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact-paper.toml");
+    assert_eq!(output(&[]), output(&["impact", example]));
+}
+
+#[test]
+fn exit_codes_are_those_of_the_manual() {
+    for (arguments, code) in [
+        (
+            vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5", "--tolerance", "0.01"],
+            0,
+        ),
+        (
+            vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5", "--tolerance", "1e-6"],
+            3,
+        ),
+        (vec!["derive", "x'' + 2*zeta*x' + sin(x) = 0"], 1),
+        (vec!["derive", "x'' + eps*x^3 + x", "--at", "A=1"], 1),
+        (vec!["derive", "x'' + sin(x) = 0", "--at", "B=1"], 2),
+        (vec!["derive", "x'' + sin(x) = 0", "--method", "magic"], 2),
+        (vec!["impact", "--tolerance", "0.1"], 0),
+        (vec!["impact", "--tolerance", "0.01"], 3),
+        (vec!["imapct"], 2),
+    ] {
+        let output = run(&arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert_eq!(output.stdout.is_empty(), code == 1 || code == 2, "{arguments:?}");
+        assert_eq!(output.stderr.is_empty(), code == 0 || code == 3, "{arguments:?}");
+    }
+}
+
+#[cfg(feature = "plot")]
+#[test]
+fn pictures_are_drawn_and_the_same_on_every_run() {
+    let folder = std::env::temp_dir().join(format!("lindstedt-pictures-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for pictures");
+    for arguments in [vec!["impact"], vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5"]] {
+        let draw = |name: &str| {
+            let path = folder.join(name);
+            let mut arguments = arguments.clone();
+            arguments.extend(["--plot", path.to_str().expect("a path in text")]);
+            output(&arguments);
+            std::fs::read_to_string(path).expect("the picture was written")
+        };
+        let picture = draw("first.svg");
+        assert!(picture.contains("<svg") && picture.contains("Runge-Kutta"));
+        assert_eq!(picture, draw("second.svg"));
+    }
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}

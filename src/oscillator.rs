@@ -269,6 +269,20 @@ impl Oscillator {
         }
     }
 
+    /// The degree of the force in the coordinate, where it is a polynomial in it.
+    ///
+    /// # Errors
+    /// The expanded force would be too long.
+    pub fn polynomial_degree(&self) -> Result<Option<u32>, OscillatorError> {
+        let own = [self.coordinate, self.velocity()];
+        let mut names = Names::new(self);
+        let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
+        let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
+        Ok(range
+            .filter(|range| range.0 >= 0)
+            .and_then(|range| u32::try_from(range.1).ok()))
+    }
+
     /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
         let Ok(rest) = self

@@ -4,6 +4,8 @@
 
 use std::fmt;
 
+use num_traits::Zero;
+
 use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::series::FourierSeries;
@@ -14,16 +16,19 @@ use crate::symbol::Symbol;
 pub enum Method {
     /// Strained time, secular terms eliminated order by order.
     LindstedtPoincare,
+    /// The whole nonlinearity at the first power of a bookkeeping parameter.
+    HomotopyPerturbation,
 }
 
 impl Method {
     /// Every method, in the order in which they are listed to users.
-    pub const ALL: [Self; 1] = [Self::LindstedtPoincare];
+    pub const ALL: [Self; 2] = [Self::LindstedtPoincare, Self::HomotopyPerturbation];
 
     /// The name on the command line and in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::LindstedtPoincare => "lindstedt-poincare",
+            Self::HomotopyPerturbation => "homotopy-perturbation",
         }
     }
 
@@ -31,6 +36,7 @@ impl Method {
     pub fn title(self) -> &'static str {
         match self {
             Self::LindstedtPoincare => "Lindstedt-Poincare",
+            Self::HomotopyPerturbation => "Homotopy perturbation",
         }
     }
 
@@ -156,6 +162,79 @@ impl Solution {
                 .or_else(|| value_of(symbol))
                 .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
         })
+    }
+
+    /// What the order counts: the small parameter, or the homotopy's `p`.
+    pub fn order_counts(&self) -> &'static str {
+        match self.method {
+            Method::HomotopyPerturbation => "p",
+            Method::LindstedtPoincare => self.small_parameter.name(),
+        }
+    }
+
+    /// omega^2 at given values: of the law where it is explicit, else the root of the relation that continues omega0^2
+    /// from amplitude zero; `None` where a value is missing or the branch ends before.
+    pub fn frequency_squared_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
+        if let Some(law) = &self.frequency_squared {
+            return self.evaluate(law, value_of).ok();
+        }
+        self.continued_root(self.relation.as_ref()?, value_of)
+    }
+
+    fn continued_root(&self, relation: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
+        const STEPS: i32 = 256;
+        let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
+        let highest = usize::try_from(relation.exponent_range(omega)?.1 / 2).ok()?;
+        // One polynomial in z = omega^2 for each step of the amplitude.
+        let coefficients = |part: f64| {
+            let value = |symbol| {
+                if symbol == amplitude {
+                    Some(part * value_of(symbol)?)
+                } else {
+                    value_of(symbol)
+                }
+            };
+            let mut coefficients = vec![Polynomial::zero(); highest + 1];
+            for (monomial, number) in relation.terms() {
+                let power = usize::try_from(monomial.exponent(omega) / 2).ok()?;
+                coefficients[power].add_term(monomial.without(omega), number.clone());
+            }
+            coefficients
+                .iter()
+                .map(|entry| self.evaluate(entry, &value).ok())
+                .collect::<Option<Vec<f64>>>()
+        };
+        let horner = |coefficients: &[f64], z: f64| {
+            coefficients
+                .iter()
+                .rev()
+                .fold((0.0, 0.0), |(value, slope), c| (value * z + c, slope * z + value))
+        };
+        // At rest the relation is z^(n-1) (z - omega0^2).
+        let at_rest = coefficients(0.0)?;
+        let mut z = -at_rest[highest.checked_sub(1)?] / at_rest[highest];
+        for step in 1..=STEPS {
+            let coefficients = coefficients(f64::from(step) / f64::from(STEPS))?;
+            let before = z;
+            let mut settled = false;
+            for _ in 0..50 {
+                let (value, slope) = horner(&coefficients, z);
+                let change = value / slope;
+                z -= change;
+                settled = change.abs() <= 4.0 * f64::EPSILON * z.abs();
+                if settled || !z.is_finite() {
+                    break;
+                }
+            }
+            // A root that does not settle, jumps or leaves the positive numbers is no continuation.
+            if !settled && (z - before).abs() > 1e-12 * z.abs() && horner(&coefficients, z).0.abs() > 1e-12 {
+                return None;
+            }
+            if !(z > 0.0 && (z / before - 1.0).abs() < 0.5) {
+                return None;
+            }
+        }
+        Some(z)
     }
 
     /// The motion as a numerical Fourier series in `theta`.

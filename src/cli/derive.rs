@@ -18,7 +18,7 @@ use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
 pub struct Arguments {
     /// An equation in quotes, a TOML file, or - for standard input
     problem: String,
-    /// How to derive: lindstedt-poincare
+    /// How to derive: lindstedt-poincare or homotopy-perturbation
     #[arg(long)]
     method: Option<String>,
     /// Highest power of the small parameter kept, inclusive
@@ -30,6 +30,9 @@ pub struct Arguments {
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
+    /// Degree of the Taylor polynomial that homotopy perturbation puts for the force
+    #[arg(long, value_name = "DEGREE")]
+    taylor: Option<u32>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -158,6 +161,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
         order,
         amplitude,
         small,
+        taylor: arguments.taylor,
     })
 }
 

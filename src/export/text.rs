@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant};
 use crate::exact::Polynomial;
-use crate::expr::Expr;
+use crate::exact::polynomial::Monomial;
 use crate::impact::Impact;
 use crate::solution::Solution;
+use crate::symbol::Symbol;
 use crate::verify::{Verdict, Verification};
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
@@ -27,22 +28,34 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
         "{} to order {} in {}, {}",
         solution.method.title(),
         solution.order,
-        solution.small_parameter,
+        solution.order_counts(),
         solution.amplitude
     );
     text.push('\n');
+    let small = solution.small_parameter;
     let mut law = |name: &str, law: &Option<Polynomial>| {
         if let Some(law) = law {
-            let _ = writeln!(text, "  {name:<8}= {law}");
+            let _ = writeln!(text, "  {name:<8}= {}", by_order(law, small));
         }
     };
     law("omega^2", &solution.frequency_squared);
     law("omega", &solution.frequency);
+    if let (None, Some(relation)) = (&solution.frequency_squared, &solution.relation) {
+        let _ = writeln!(
+            text,
+            "  0       = {}",
+            ordered(relation, |monomial| -monomial.exponent(Symbol::new("omega")))
+        );
+    }
+    if let Some(closed_form) = &solution.closed_form {
+        let _ = writeln!(text, "  {closed_form}");
+    }
     if let Some(amplitude) = &solution.limit_cycle {
         let _ = writeln!(
             text,
-            "\n  limit cycle of amplitude {} = {amplitude}",
-            solution.amplitude.symbol()
+            "\n  limit cycle of amplitude {} = {}",
+            solution.amplitude.symbol(),
+            by_order(amplitude, small)
         );
     }
     let _ = writeln!(text, "\n{}", motion(solution));
@@ -60,6 +73,26 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
     text
 }
 
+/// A polynomial with the lowest power of the small parameter first.
+pub fn by_order(polynomial: &Polynomial, small: Symbol) -> String {
+    ordered(polynomial, |monomial| monomial.exponent(small))
+}
+
+fn ordered(polynomial: &Polynomial, key: impl Fn(&Monomial) -> i32) -> String {
+    let mut terms: Vec<_> = polynomial.terms().collect();
+    terms.sort_by_key(|(monomial, _)| key(monomial));
+    let mut text = String::new();
+    for (monomial, coefficient) in terms {
+        let term = Polynomial::term(monomial.clone(), coefficient.clone()).to_string();
+        match (text.is_empty(), term.strip_prefix('-')) {
+            (true, _) => text.push_str(&term),
+            (false, Some(rest)) => text.extend([" - ", rest]),
+            (false, None) => text.extend([" + ", &term]),
+        }
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
     let mut lines = Vec::new();
@@ -73,9 +106,8 @@ fn motion(solution: &Solution) -> String {
                 1 => format!("*{function}(theta)"),
                 _ => format!("*{function}({k}*theta)"),
             };
-            let expression = Expr::from(&coefficient);
-            let single = expression.terms().len() == 1;
-            let text = expression.to_string();
+            let single = coefficient.single_term().is_some();
+            let text = by_order(&coefficient, solution.small_parameter);
             let (sign, text) = match (single, text.strip_prefix('-')) {
                 (true, Some(rest)) => ("-", rest.to_owned()),
                 (true, None) => ("+", text),

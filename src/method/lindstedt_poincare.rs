@@ -15,19 +15,17 @@
 //! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the first order,
 //! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`.
 
-use std::collections::BTreeSet;
-
 use num_bigint::BigInt;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, expand};
-use super::{Options, Refusal};
+use super::expansion::expand_exactly;
+use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
+use super::{Options, Refusal, first_term};
 use crate::exact::polynomial::Monomial;
-use crate::exact::rational::ratio;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::expr::Expr;
-use crate::oscillator::{Oscillator, Parts, PerturbedForce, SmallParameter, Term};
+use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, Method, Solution};
 use crate::symbol::Symbol;
@@ -51,9 +49,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .order
         .unwrap_or(if small == SmallParameter::Amplitude { 4 } else { 2 });
     let force = match oscillator.expand(small, order) {
-        // A linear damping term is no polynomial in the amplitude; it is named as what it is.
-        Err(_) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
+        // What stops the expansion is named as what it is.
+        Err(OscillatorError::NotSmall { .. }) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
             return Err(damping_or_excitation(&parts));
+        }
+        Err(OscillatorError::NotSmall { term, .. })
+            if parts.damping.terms().iter().any(|part| part.to_string() == term) =>
+        {
+            return Err(Refusal::Damping { method: TITLE, term });
         }
         expanded => expanded?,
     };
@@ -91,14 +94,19 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         AmplitudeConvention::Initial => Normalisation::Initial,
         AmplitudeConvention::FirstHarmonic => Normalisation::FirstHarmonic,
     };
+    let scheme = Scheme {
+        normalisation,
+        amplitude,
+        detuning: Detuning::Acceleration,
+    };
     let scaled = scaled_terms(&force.terms, &unit, cycle.as_ref(), &linear_frequency);
     let delta = match small {
         SmallParameter::Parameter(name) => name,
         SmallParameter::Amplitude => symbol,
     };
-    let series = expand_exactly(&scaled, order, normalisation, amplitude, delta).map_err(|error| {
+    let series = expand_exactly(&scaled, order, &scheme, Some(delta)).map_err(|error| {
         if parts.damping.is_zero() {
-            error
+            error.into()
         } else {
             damping_or_excitation(&parts)
         }
@@ -135,10 +143,6 @@ fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {
     definitions
         .iter()
         .map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning))
-}
-
-fn first_term(sum: &Expr) -> String {
-    sum.terms().first().unwrap_or(sum).to_string()
 }
 
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
@@ -298,140 +302,6 @@ fn scaled_terms(
         }
     };
     terms.iter().map(scale).collect()
-}
-
-/// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
-struct ExactSeries {
-    frequency: Polynomial,
-    frequency_squared: Polynomial,
-    displacement: FourierSeries<Polynomial>,
-}
-
-fn expand_exactly(
-    terms: &[Term],
-    order: u32,
-    normalisation: Normalisation,
-    amplitude: Amplitude,
-    delta: Symbol,
-) -> Result<ExactSeries, Refusal> {
-    let scales = scales(terms);
-    let reduced: Vec<Term> = terms
-        .iter()
-        .map(|term| Term {
-            coefficient: without(&term.coefficient, &scales, delta),
-            ..term.clone()
-        })
-        .collect();
-    let restore = |n: usize| {
-        let powers = scales
-            .iter()
-            .map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
-        let start = Monomial::power_of(delta, n as i32);
-        powers
-            .filter(|(symbol, _)| *symbol != delta)
-            .fold(start, |monomial, (symbol, power)| {
-                monomial.product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
-            })
-    };
-    let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
-    match numbers {
-        Some(numbers) => {
-            let constant = |number: Rational| FourierSeries::constant(number.numer().clone(), number.denom().clone());
-            let force = force_terms(&reduced, numbers.into_iter().map(constant));
-            let expansion = expand::<Integer>(&force, order as usize, normalisation, amplitude)?;
-            let polynomial = |numerator: &Integer, denominator: &Integer| {
-                Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
-            };
-            Ok(collect(&expansion, polynomial, restore))
-        }
-        None => {
-            let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
-            let expansion = expand::<Polynomial<Integer>>(&force, order as usize, normalisation, amplitude)?;
-            let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
-                numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
-            };
-            Ok(collect(&expansion, polynomial, restore))
-        }
-    }
-}
-
-fn force_terms<C>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeries<C>>) -> Vec<ForceTerm<C>> {
-    let pairs = terms.iter().zip(coefficients);
-    let force = |(term, coefficient): (&Term, _)| ForceTerm {
-        order: term.order,
-        position: term.position,
-        velocity: term.velocity,
-        coefficient,
-    };
-    pairs.map(force).collect()
-}
-
-/// A polynomial as whole coefficients over one denominator.
-fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomial<Integer>> {
-    let common = polynomial
-        .terms()
-        .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
-    let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
-    FourierSeries::constant(numerators, common)
-}
-
-/// Every symbol whose exponent is the same multiple of the order in all terms, with that multiple: such a symbol enters the
-/// result in step with the small parameter and can be left out while expanding.
-fn scales(terms: &[Term]) -> Vec<(Symbol, Rational)> {
-    let symbols: BTreeSet<Symbol> = terms.iter().flat_map(|term| term.coefficient.symbols()).collect();
-    let rate = |symbol: Symbol| {
-        let rates: BTreeSet<Rational> = terms
-            .iter()
-            .flat_map(|term| {
-                let exponents = term
-                    .coefficient
-                    .terms()
-                    .map(move |(monomial, _)| monomial.exponent(symbol));
-                exponents.map(|exponent| ratio(exponent.into(), term.order as i64))
-            })
-            .collect();
-        if rates.len() == 1 {
-            rates.into_iter().next()
-        } else {
-            None
-        }
-    };
-    symbols
-        .into_iter()
-        .filter_map(|symbol| Some((symbol, rate(symbol)?)))
-        .collect()
-}
-
-fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)], delta: Symbol) -> Polynomial {
-    let mut reduced = Polynomial::zero();
-    for (monomial, number) in coefficient.terms() {
-        let rest = scales.iter().fold(monomial.without(delta), |monomial, (symbol, _)| {
-            monomial.without(*symbol)
-        });
-        reduced.add_term(rest, number.clone());
-    }
-    reduced
-}
-
-/// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
-fn collect<C: Ring>(
-    expansion: &Expansion<C>,
-    polynomial: impl Fn(&C, &Integer) -> Polynomial,
-    restore: impl Fn(usize) -> Monomial,
-) -> ExactSeries {
-    let exact = |series: &FourierSeries<C>, n: usize| {
-        let monomial = restore(n);
-        series.map(|numerator, denominator| polynomial(numerator, denominator).times_monomial(&monomial))
-    };
-    let sum = |orders: &[FourierSeries<C>]| {
-        let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
-        exact.fold(FourierSeries::zero(), |sum, term| sum.sum(&term))
-    };
-    ExactSeries {
-        frequency: sum(&expansion.frequency).mean().0,
-        frequency_squared: sum(&expansion.frequency_squared).mean().0,
-        displacement: sum(&expansion.displacement),
-    }
 }
 
 /// The amplitude that a limit cycle has, in the convention of the answer.

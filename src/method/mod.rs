@@ -3,10 +3,12 @@
 //! One file per method, each opening with its reference and equations. To add one: write its file with a function
 //! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`], and add one line to [`solve`].
 
+pub mod expansion;
+pub mod homotopy_perturbation;
 pub mod lindstedt_poincare;
 pub mod secular;
 
-use crate::expr::ExprError;
+use crate::expr::{Expr, ExprError, parse_expression};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 
@@ -24,6 +26,8 @@ pub struct Options {
     pub amplitude: Option<AmplitudeConvention>,
     /// The name of the small parameter; `A` or `a` for the amplitude.
     pub small: Option<String>,
+    /// Degree of the Taylor polynomial by which homotopy perturbation replaces the force.
+    pub taylor: Option<u32>,
 }
 
 /// Why a method does not answer, and what to do instead.
@@ -47,6 +51,20 @@ pub enum Refusal {
         method: &'static str,
         /// The forcing term.
         term: String,
+    },
+    /// Terms with velocities, in a method for forces of position alone.
+    #[error("{method} is for forces of the position alone, but `{term}` depends on the velocity")]
+    Velocity {
+        /// The method's name in running text.
+        method: &'static str,
+        /// The term.
+        term: String,
+    },
+    /// A method that measures the amplitude in one way only.
+    #[error("{method} measures the amplitude as A = x(0)")]
+    Convention {
+        /// The method's name in running text.
+        method: &'static str,
     },
     /// A self-excited oscillator whose amplitude the equation determines, asked for in powers of that amplitude.
     #[error("the term `{term}` feeds or drains energy, so the amplitude is not free and nothing can be expanded in it")]
@@ -88,10 +106,16 @@ impl Refusal {
             Self::Forcing { .. } => {
                 Some("leave the term out to get the frequency of the free vibration (the backbone curve)".to_owned())
             }
+            Self::Velocity { .. } => Some("try --method lindstedt-poincare".to_owned()),
+            Self::Convention { .. } => Some("leave out --amplitude first-harmonic".to_owned()),
             Self::AmplitudeNotFree { .. } => {
                 Some("give the term a small factor, as in eps*(1 - x^2)*x', and expand in that".to_owned())
             }
-            Self::LimitCycle { .. } => Some("give numbers for the parameters in it".to_owned()),
+            Self::LimitCycle { equation, .. } => {
+                // Numbers alone do not help where there are numbers already.
+                let symbols = parse_expression(equation).map(|equation| equation.symbols().len());
+                symbols.is_ok_and(|count| count > 1).then(|| "give numbers for the parameters in it".to_owned())
+            }
             Self::Order { .. } | Self::Secular(_) => Some("try a lower order".to_owned()),
             Self::Expression(_) => None,
         }
@@ -116,5 +140,32 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     match options.method.unwrap_or(Method::LindstedtPoincare) {
         Method::LindstedtPoincare => lindstedt_poincare::solve(oscillator, options),
+        Method::HomotopyPerturbation => homotopy_perturbation::solve(oscillator, options),
     }
+}
+
+fn forcing(method: &'static str, part: &Expr) -> Refusal {
+    Refusal::Forcing {
+        method,
+        term: first_term(part),
+    }
+}
+
+fn damping(method: &'static str, part: &Expr) -> Refusal {
+    Refusal::Damping {
+        method,
+        term: first_term(part),
+    }
+}
+
+fn velocity(method: &'static str, part: &Expr) -> Refusal {
+    Refusal::Velocity {
+        method,
+        term: first_term(part),
+    }
+}
+
+/// The term of a sum that a refusal names.
+fn first_term(sum: &Expr) -> String {
+    sum.terms().first().unwrap_or(sum).to_string()
 }

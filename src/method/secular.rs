@@ -50,6 +50,26 @@ pub enum Amplitude {
     Determined,
 }
 
+/// Which series the frequency's corrections `W_i` multiply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detuning {
+    /// `omega^2 = 1 + delta W_1 + ...` before `y''`: Lindstedt and Poincare.
+    Acceleration,
+    /// `1 = omega^2 (1 - delta W_1 - ...)` before `y`, all in units of omega^2: homotopy perturbation.
+    Displacement,
+}
+
+/// The choices that tell one method from another.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme {
+    /// What pins down the homogeneous solutions.
+    pub normalisation: Normalisation,
+    /// Free or determined.
+    pub amplitude: Amplitude,
+    /// Where the frequency is expanded.
+    pub detuning: Detuning,
+}
+
 /// The result, order by order.
 #[derive(Clone, Debug)]
 pub struct Expansion<C> {
@@ -89,13 +109,8 @@ pub enum SecularError {
 ///
 /// # Errors
 /// See [`SecularError`].
-pub fn expand<C: Ring>(
-    force: &[ForceTerm<C>],
-    highest: usize,
-    normalisation: Normalisation,
-    amplitude: Amplitude,
-) -> Result<Expansion<C>, SecularError> {
-    let mut order_by_order = OrderByOrder::new(force, highest, normalisation, amplitude);
+pub fn expand<C: Ring>(force: &[ForceTerm<C>], highest: usize, scheme: &Scheme) -> Result<Expansion<C>, SecularError> {
+    let mut order_by_order = OrderByOrder::new(force, highest, *scheme);
     for order in 1..=highest {
         order_by_order.solve_order(order)?;
     }
@@ -109,20 +124,20 @@ struct OrderByOrder<'a, C> {
     convolutions: Convolutions<C>,
     position: Node,
     velocity: Node,
-    normalisation: Normalisation,
-    amplitude: Amplitude,
+    scheme: Scheme,
     /// How each series changes when the amplitude of `y_0` does.
     variations: Vec<FourierSeries<C>>,
-    accelerations: Vec<FourierSeries<C>>,
+    /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
+    detuned: Vec<FourierSeries<C>>,
     result: Expansion<C>,
 }
 
 impl<'a, C: Ring> OrderByOrder<'a, C> {
-    fn new(force: &'a [ForceTerm<C>], highest: usize, normalisation: Normalisation, amplitude: Amplitude) -> Self {
+    fn new(force: &'a [ForceTerm<C>], highest: usize, scheme: Scheme) -> Self {
         let mut convolutions = Convolutions::new();
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
-        let last = if amplitude == Amplitude::Determined {
+        let last = if scheme.amplitude == Amplitude::Determined {
             highest + 1
         } else {
             highest
@@ -155,24 +170,24 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             right_side: vec![],
             removed: vec![],
         };
-        let accelerations = vec![start.derivative().derivative()];
+        // y_0'' and -y_0 are the same.
+        let detuned = vec![start.times(-1)];
         Self {
             force,
             products,
             convolutions,
             position,
             velocity,
-            normalisation,
-            amplitude,
+            scheme,
             variations,
-            accelerations,
+            detuned,
             result,
         }
     }
 
     fn solve_order(&mut self, order: usize) -> Result<(), SecularError> {
         let mut right_side = self.right_side(order);
-        if self.amplitude == Amplitude::Determined && order > 1 {
+        if self.scheme.amplitude == Amplitude::Determined && order > 1 {
             right_side = self.fix_amplitude(order, right_side)?;
         }
         let (particular, resonance) = right_side.solve_oscillator();
@@ -209,11 +224,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             }
         }
         for lower in 1..order {
-            terms.push((
-                -1,
-                &self.result.frequency_squared[lower],
-                &self.accelerations[order - lower],
-            ));
+            terms.push((-1, &self.result.frequency_squared[lower], &self.detuned[order - lower]));
         }
         sum_of_products(&terms)
     }
@@ -232,7 +243,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             }
         }
         if let Some(first) = self.result.frequency_squared.get(1) {
-            terms.push((-1, first, &self.accelerations[0]));
+            terms.push((-1, first, &self.detuned[0]));
         }
         let change = sum_of_products(&terms);
         let needed = right_side.sine(1).times(-1);
@@ -244,7 +255,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         };
         self.convolutions.correct(order - 1, &correction, &self.variations);
         let corrected = self.result.displacement[order - 1].sum(&correction.product(&FourierSeries::cos(1)));
-        self.accelerations[order - 1] = corrected.derivative().derivative();
+        self.detuned[order - 1] = self.detuned(&corrected);
         self.result.displacement[order - 1] = corrected;
         Ok(linear_combination(&[
             (1, &right_side),
@@ -253,7 +264,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
     }
 
     fn fix_last_amplitude(&mut self, highest: usize) -> Result<(), SecularError> {
-        if self.amplitude == Amplitude::Determined && highest > 0 {
+        if self.scheme.amplitude == Amplitude::Determined && highest > 0 {
             let right_side = self.right_side(highest + 1);
             self.fix_amplitude(highest + 1, right_side)?;
         }
@@ -268,22 +279,29 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         self.result.frequency.push(frequency);
     }
 
+    fn detuned(&self, displacement: &FourierSeries<C>) -> FourierSeries<C> {
+        match self.scheme.detuning {
+            Detuning::Acceleration => displacement.derivative().derivative(),
+            Detuning::Displacement => displacement.times(-1),
+        }
+    }
+
     /// Adds the homogeneous solution that the amplitude convention asks for.
     fn normalised(&self, particular: FourierSeries<C>) -> FourierSeries<C> {
-        if self.normalisation == Normalisation::FirstHarmonic {
+        if self.scheme.normalisation == Normalisation::FirstHarmonic {
             return particular;
         }
         let sine = particular.derivative().at_zero();
         let with_phase = particular.difference(&sine.product(&FourierSeries::sin(1)));
-        match self.amplitude {
+        match self.scheme.amplitude {
             Amplitude::Determined => with_phase,
             Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&FourierSeries::cos(1))),
         }
     }
 
     fn push_displacement(&mut self, order: usize, displacement: FourierSeries<C>) {
-        let derivative = displacement.derivative();
-        self.accelerations.push(derivative.derivative());
+        let detuned = self.detuned(&displacement);
+        self.detuned.push(detuned);
         self.convolutions.push(self.position, displacement.clone());
         self.result.displacement.push(displacement);
         let derivatives: Vec<_> = self.result.displacement.iter().map(FourierSeries::derivative).collect();
@@ -321,9 +339,17 @@ mod tests {
         }
     }
 
+    fn scheme(amplitude: Amplitude) -> Scheme {
+        Scheme {
+            normalisation: Normalisation::Initial,
+            amplitude,
+            detuning: Detuning::Acceleration,
+        }
+    }
+
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
-        let duffing = expand(&[term(1, 3, 0, (1, 1))], 4, Normalisation::Initial, Amplitude::Free).expect("periodic");
+        let duffing = expand(&[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free)).expect("periodic");
         let expected = [
             ratio(1, 1),
             ratio(3, 4),
@@ -334,7 +360,7 @@ mod tests {
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
-        let cycle = expand(&force, 4, Normalisation::Initial, Amplitude::Determined).expect("a limit cycle");
+        let cycle = expand(&force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
         let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
         assert_eq!(numbers(&cycle.frequency), expected);
         let amplitudes: Vec<_> = cycle
@@ -355,7 +381,7 @@ mod tests {
 
     #[test]
     fn viscous_damping_leaves_a_secular_sine() {
-        let damped = expand(&[term(1, 0, 1, (2, 1))], 3, Normalisation::Initial, Amplitude::Free);
+        let damped = expand(&[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
         assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
     }
 }

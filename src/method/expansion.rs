@@ -1,0 +1,159 @@
+//! From a force with symbols to an exact expansion over whole numbers, and back.
+//!
+//! A symbol that enters in step with the order of a term (Duffing depends on `eps*A^2` alone) is left out while expanding and
+//! put back afterwards. Where that takes care of all symbols the expansion runs over whole numbers, otherwise over
+//! polynomials with whole coefficients.
+
+use std::collections::BTreeSet;
+
+use num_integer::Integer as _;
+use num_traits::{One, ToPrimitive, Zero};
+
+use super::secular::{Expansion, ForceTerm, Scheme, SecularError, expand};
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::ratio;
+use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::oscillator::Term;
+use crate::series::FourierSeries;
+use crate::symbol::Symbol;
+
+/// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
+pub struct ExactSeries {
+    /// omega.
+    pub frequency: Polynomial,
+    /// omega^2.
+    pub frequency_squared: Polynomial,
+    /// The motion.
+    pub displacement: FourierSeries<Polynomial>,
+}
+
+/// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
+/// term of the result.
+///
+/// # Errors
+/// See [`SecularError`].
+pub fn expand_exactly(
+    terms: &[Term],
+    order: u32,
+    scheme: &Scheme,
+    delta: Option<Symbol>,
+) -> Result<ExactSeries, SecularError> {
+    let scales = scales(terms);
+    let reduced: Vec<Term> = terms
+        .iter()
+        .map(|term| Term {
+            coefficient: without(&term.coefficient, &scales),
+            ..term.clone()
+        })
+        .collect();
+    let restore = |n: usize| {
+        let powers = scales
+            .iter()
+            .map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
+        let start = delta.map_or_else(Monomial::one, |delta| Monomial::power_of(delta, n as i32));
+        powers
+            .filter(|(symbol, _)| Some(*symbol) != delta)
+            .fold(start, |monomial, (symbol, power)| {
+                monomial.product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
+            })
+    };
+    let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
+    match numbers {
+        Some(numbers) => {
+            let constant = |number: Rational| FourierSeries::constant(number.numer().clone(), number.denom().clone());
+            let force = force_terms(&reduced, numbers.into_iter().map(constant));
+            let expansion = expand::<Integer>(&force, order as usize, scheme)?;
+            let polynomial = |numerator: &Integer, denominator: &Integer| {
+                Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
+            };
+            Ok(collect(&expansion, polynomial, restore))
+        }
+        None => {
+            let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
+            let expansion = expand::<Polynomial<Integer>>(&force, order as usize, scheme)?;
+            let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
+                numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
+            };
+            Ok(collect(&expansion, polynomial, restore))
+        }
+    }
+}
+
+fn force_terms<C>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeries<C>>) -> Vec<ForceTerm<C>> {
+    let pairs = terms.iter().zip(coefficients);
+    let force = |(term, coefficient): (&Term, _)| ForceTerm {
+        order: term.order,
+        position: term.position,
+        velocity: term.velocity,
+        coefficient,
+    };
+    pairs.map(force).collect()
+}
+
+/// A polynomial as whole coefficients over one denominator.
+fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomial<Integer>> {
+    let common = polynomial
+        .terms()
+        .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
+    let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
+    FourierSeries::constant(numerators, common)
+}
+
+/// Every symbol whose exponent is the same multiple of the order in all terms, with that multiple: such a symbol enters the
+/// result in step with the small parameter and can be left out while expanding.
+fn scales(terms: &[Term]) -> Vec<(Symbol, Rational)> {
+    let symbols: BTreeSet<Symbol> = terms.iter().flat_map(|term| term.coefficient.symbols()).collect();
+    let rate = |symbol: Symbol| {
+        let rates: BTreeSet<Rational> = terms
+            .iter()
+            .flat_map(|term| {
+                let exponents = term
+                    .coefficient
+                    .terms()
+                    .map(move |(monomial, _)| monomial.exponent(symbol));
+                exponents.map(|exponent| ratio(exponent.into(), term.order as i64))
+            })
+            .collect();
+        if rates.len() == 1 {
+            rates.into_iter().next()
+        } else {
+            None
+        }
+    };
+    symbols
+        .into_iter()
+        .filter_map(|symbol| Some((symbol, rate(symbol)?)))
+        .collect()
+}
+
+fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomial {
+    let mut reduced = Polynomial::zero();
+    for (monomial, number) in coefficient.terms() {
+        let rest = scales
+            .iter()
+            .fold(monomial.clone(), |monomial, (symbol, _)| monomial.without(*symbol));
+        reduced.add_term(rest, number.clone());
+    }
+    reduced
+}
+
+/// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
+fn collect<C: Ring>(
+    expansion: &Expansion<C>,
+    polynomial: impl Fn(&C, &Integer) -> Polynomial,
+    restore: impl Fn(usize) -> Monomial,
+) -> ExactSeries {
+    let exact = |series: &FourierSeries<C>, n: usize| {
+        let monomial = restore(n);
+        series.map(|numerator, denominator| polynomial(numerator, denominator).times_monomial(&monomial))
+    };
+    let sum = |orders: &[FourierSeries<C>]| {
+        let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
+        exact.fold(FourierSeries::zero(), |sum, term| sum.sum(&term))
+    };
+    ExactSeries {
+        frequency: sum(&expansion.frequency).mean().0,
+        frequency_squared: sum(&expansion.frequency_squared).mean().0,
+        displacement: sum(&expansion.displacement),
+    }
+}

@@ -1,0 +1,146 @@
+//! Homotopy perturbation: the whole nonlinearity at the first power of a bookkeeping parameter.
+//!
+//! References: J.-H. He, *Homotopy perturbation technique*, Comput. Methods Appl. Mech. Eng. 178 (1999) 257-262; the paper's
+//! equation (12) is the first order of this method on its equation (11).
+//!
+//! ```text
+//! x'' + omega^2 x + p [(omega0^2 - omega^2) x + N(x)] = 0,    x = x_0 + p x_1 + ...,   x_0 = A cos(omega t)
+//! omega0^2 = omega^2 + p a_1 + p^2 a_2 + ...,                 x_k(0) = x_k'(0) = 0
+//! omega^2 (x_n'' + x_n) = - sum_(i=1..n) a_i x_(n-i) - N_(n-1),   no secular term fixes a_n
+//! ```
+//!
+//! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at order one, a square root at
+//! order two, implicit above. In units of omega^2 this is [`secular::expand`](super::secular::expand) with the corrections
+//! before `y` instead of `y''`. A force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`.
+
+use num_traits::{One, Zero};
+
+use super::expansion::expand_exactly;
+use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
+use super::{Options, Refusal};
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::ratio;
+use crate::exact::{Polynomial, Rational, Ring};
+use crate::expr::{Expr, ExprError};
+use crate::oscillator::{Oscillator, SmallParameter, Term};
+use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::symbol::Symbol;
+
+const TITLE: &str = "homotopy perturbation";
+
+/// Derives the relation between frequency and amplitude, and the motion, to an order in the bookkeeping parameter.
+///
+/// # Errors
+/// Damping, forcing, velocities, or a force that cannot be expanded, each by name.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let parts = oscillator.parts()?;
+    for (part, refusal) in [
+        (&parts.forcing, super::forcing as fn(&'static str, &Expr) -> Refusal),
+        (&parts.damping, super::damping),
+        (&parts.inertia, super::velocity),
+    ] {
+        if !part.is_zero() {
+            return Err(refusal(TITLE, part));
+        }
+    }
+    if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
+        return Err(Refusal::Convention { method: TITLE });
+    }
+    let order = options.order.unwrap_or(2);
+    let degree = match oscillator.polynomial_degree()? {
+        Some(degree) if options.taylor.is_none() => degree,
+        _ => options.taylor.unwrap_or(2 * order + 1),
+    };
+    let force = oscillator.expand(SmallParameter::Amplitude, degree.saturating_sub(1))?;
+    let (amplitude, omega) = (Symbol::new("A"), Symbol::new("omega"));
+    // Everything beside the linear force stands at p^1, in units of omega^2.
+    let term = |term: &Term| {
+        let unit = Monomial::power_of(amplitude, term.position as i32 - 1).product(&Monomial::power_of(omega, -2));
+        Term {
+            order: 1,
+            coefficient: term.coefficient.times_monomial(&unit),
+            ..term.clone()
+        }
+    };
+    let terms: Vec<Term> = force.terms.iter().map(term).collect();
+    let scheme = Scheme {
+        normalisation: Normalisation::Initial,
+        amplitude: Amplitude::Free,
+        detuning: Detuning::Displacement,
+    };
+    let series = expand_exactly(&terms, order, &scheme, None)?;
+
+    // 1 + W_1 + W_2 + ... in units of omega^2 holds the corrections: omega0^2 = omega^2 (1 - W_1 - ...).
+    let squared = Polynomial::term(Monomial::power_of(omega, 2), Rational::one());
+    let mut corrections = series.frequency_squared;
+    corrections.accumulate(&Polynomial::constant(-Rational::one()));
+    let mut explicit = corrections.product(&squared);
+    explicit.accumulate(&force.linear);
+    let mut relation = explicit.clone();
+    relation.negate();
+    relation.accumulate(&squared);
+    // Whole powers of omega^2: multiply out what stands below the line.
+    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
+    let relation = relation.times_monomial(&Monomial::power_of(omega, -lowest));
+
+    let frequency_squared = (lowest == 0).then_some(explicit);
+    let closed_form = match frequency_squared {
+        None => quadratic_root(&relation, omega)?.map(|root| format!("omega^2 = {root}")),
+        Some(_) => None,
+    };
+    let small = match oscillator.small_parameter(options.small.as_deref()) {
+        Ok(SmallParameter::Parameter(name)) => name,
+        _ => amplitude,
+    };
+    let mut validity = vec![format!(
+        "truncated after p^{order}; the frequency is the root that continues omega0^2 from A = 0"
+    )];
+    if oscillator.polynomial_degree()?.is_none() {
+        validity.push(format!("the force entered as its Taylor polynomial of degree {degree}"));
+    }
+    Ok(Solution {
+        equation: oscillator.equation(),
+        method: Method::HomotopyPerturbation,
+        order,
+        small_parameter: small,
+        amplitude: AmplitudeConvention::Initial,
+        parameters: oscillator.parameters.clone(),
+        definitions: force.definitions,
+        equilibrium: Expr::zero(),
+        frequency: None,
+        frequency_squared,
+        relation: Some(relation),
+        closed_form,
+        displacement: series
+            .displacement
+            .map(|coefficient, _| coefficient.product(&Polynomial::symbol(amplitude))),
+        limit_cycle: None,
+        validity,
+    })
+}
+
+/// The upper root of a relation that is quadratic in `omega^2`, as an expression; `None` where it is of higher degree.
+fn quadratic_root(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
+    let coefficient = |power: i32| {
+        let mut result = Polynomial::zero();
+        for (monomial, number) in relation
+            .terms()
+            .filter(|(monomial, _)| monomial.exponent(omega) == power)
+        {
+            result.add_term(monomial.without(omega), number.clone());
+        }
+        result
+    };
+    if relation.exponent_range(omega).is_none_or(|range| range.1 != 4)
+        || coefficient(4).as_number() != Some(Rational::one())
+    {
+        return Ok(None);
+    }
+    // z^2 - b z + c = 0
+    let mut b = coefficient(2);
+    b.negate();
+    let mut discriminant = b.product(&b);
+    discriminant.accumulate(&coefficient(0).product(&Polynomial::constant(ratio(-4, 1))));
+    let root = Expr::from(&discriminant).sqrt()?;
+    Ok(Some(Expr::divide(&(&Expr::from(&b) + &root), &Expr::from(2))?))
+}

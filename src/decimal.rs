@@ -1,5 +1,7 @@
 //! Floating-point numbers as people write them.
 
+use crate::exact::Rational;
+
 /// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
 pub fn decimal(value: f64) -> String {
     significant(value, 6)
@@ -27,6 +29,18 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}e{exponent}", trimmed(mantissa))
 }
 
+/// Fifteen significant digits of a number, as a fraction.
+pub fn rounded(value: f64) -> Rational {
+    let text = format!("{value:.14e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let digits: num_bigint::BigInt = mantissa.replace('.', "").parse().unwrap_or_default();
+    let power = exponent.parse::<i32>().unwrap_or(0) - 14;
+    let ten = Rational::from_integer(10.into());
+    let scale = num_traits::pow(ten, power.unsigned_abs() as usize);
+    let digits = Rational::from_integer(digits);
+    if power < 0 { digits / scale } else { digits * scale }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,5 +60,15 @@ mod tests {
         ] {
             assert_eq!(decimal(value), expected);
         }
+    }
+
+    #[test]
+    fn rounding_keeps_fifteen_digits() {
+        assert_eq!(rounded(0.1), Rational::new(1.into(), 10.into()));
+        assert_eq!(
+            rounded(-2.5e20),
+            Rational::from_integer((-250_000_000_000_000_000_000_i128).into())
+        );
+        assert_eq!(rounded(0.0), Rational::from_integer(0.into()));
     }
 }

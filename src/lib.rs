@@ -26,8 +26,10 @@
 //! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
 //! | series | [`series`] | Taylor, Fourier, running convolutions |
 //! | answer and question | [`solution`], [`oscillator`] | what a method returns, and what it is given |
+//! | numbers alone | [`ode`] | Runge-Kutta, quadrature, roots |
+//! | equilibrium | [`equilibrium`] | where the motion swings about |
 //! | method | [`method`] | one file each |
-//! | verify | [`ode`], [`verify`] | Runge-Kutta, quadrature; the verdict |
+//! | verify | [`verify`] | the true motion and the verdict |
 //! | contact | [`contact`], [`impact`] | the three phases of a pendulum that hits an elastic barrier |
 //! | in and out | [`problem`], [`export`] | problem files; text, JSON, pictures |
 
@@ -47,8 +49,11 @@ pub mod solution;
 
 pub mod oscillator;
 
-pub mod method;
 pub mod ode;
+
+pub mod equilibrium;
+
+pub mod method;
 pub mod verify;
 
 pub mod contact;

@@ -98,9 +98,15 @@ pub enum OscillatorError {
         "the coefficient `{0}` of the acceleration vanishes at rest, so the equation does not determine the motion there"
     )]
     VanishingMass(String),
-    /// There is a force at rest.
-    #[error("the force at rest is `{0}`, not zero: x = 0 is no equilibrium")]
+    /// There is a force at rest, and nowhere near a stable equilibrium.
+    #[error("the force at rest is `{0}`, not zero, and no stable equilibrium was found")]
     NoEquilibrium(String),
+    /// The equilibrium depends on parameters.
+    #[error("the force at rest is `{0}`, so the equilibrium depends on parameters")]
+    SymbolicEquilibrium(String),
+    /// The equilibrium is unstable.
+    #[error("x = 0 is an unstable equilibrium{}", stable(.0))]
+    Unstable(Vec<String>),
     /// No linear restoring force.
     #[error("the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0")]
     NoRestoringForce(String),
@@ -126,6 +132,13 @@ pub enum OscillatorError {
     UnknownParameter(Symbol),
 }
 
+fn stable(positions: &[String]) -> String {
+    match positions.is_empty() {
+        true => ", and there is no stable one".to_owned(),
+        false => format!("; stable ones are at x = {}", positions.join(", ")),
+    }
+}
+
 fn list(symbols: &[Symbol]) -> String {
     symbols
         .iter()
@@ -143,6 +156,13 @@ impl OscillatorError {
             }
             Self::NotSmall { .. } | Self::NotPolynomial(_) => {
                 Some("expand in the amplitude instead: `--small A`".to_owned())
+            }
+            Self::SymbolicEquilibrium(_) => {
+                Some("give numbers for the parameters, or measure x from the equilibrium".to_owned())
+            }
+            Self::Unstable(stable) => {
+                let position = stable.first()?;
+                Some(format!("measure x from a stable one: write x + ({position}) for x"))
             }
             _ => None,
         }
@@ -365,7 +385,7 @@ impl Oscillator {
                 }
             }
         }
-        let negative = linear.as_number().is_some_and(|number| number.is_negative());
+        let negative = linear.single_term().is_some_and(|(_, number)| number.is_negative());
         if linear.is_zero() || negative {
             return Err(OscillatorError::NoRestoringForce(
                 (&Expr::from(&linear) * &Expr::from(position)).to_string(),

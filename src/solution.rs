@@ -7,6 +7,7 @@ use std::fmt;
 use num_traits::Zero;
 
 use crate::exact::Polynomial;
+use crate::exact::rational::{Rational, to_f64};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::symbol::Symbol;
@@ -132,6 +133,8 @@ pub struct Solution {
     pub displacement: FourierSeries<Polynomial>,
     /// Self-excited oscillators: the amplitude (in the convention above) that the equation itself determines.
     pub limit_cycle: Option<Polynomial>,
+    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
+    pub numerical: bool,
     /// What is known of where the formula holds.
     pub validity: Vec<String>,
 }
@@ -164,6 +167,25 @@ impl Solution {
         })
     }
 
+    /// Rounds every coefficient to fifteen digits and says so.
+    pub fn round_coefficients(&mut self) {
+        let round = |number: &Rational| crate::decimal::rounded(to_f64(number));
+        let rounded = |polynomial: &Polynomial| polynomial.map(round);
+        for law in [
+            &mut self.frequency,
+            &mut self.frequency_squared,
+            &mut self.relation,
+            &mut self.limit_cycle,
+        ] {
+            *law = law.as_ref().map(rounded);
+        }
+        self.displacement = self.displacement.map(|coefficient, _| rounded(coefficient));
+        self.closed_form = None;
+        self.numerical = true;
+        self.validity
+            .push("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction".to_owned());
+    }
+
     /// What the order counts: the small parameter, or the homotopy's `p`.
     pub fn order_counts(&self) -> &'static str {
         match self.method {
@@ -182,7 +204,8 @@ impl Solution {
     }
 
     fn continued_root(&self, relation: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
-        const STEPS: i32 = 256;
+        const LONGEST_STEP: f64 = 1.0 / 32.0;
+        const SHORTEST_STEP: f64 = 1e-9;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
         let highest = usize::try_from(relation.exponent_range(omega)?.1 / 2).ok()?;
         // One polynomial in z = omega^2 for each step of the amplitude.
@@ -204,33 +227,21 @@ impl Solution {
                 .map(|entry| self.evaluate(entry, &value).ok())
                 .collect::<Option<Vec<f64>>>()
         };
-        let horner = |coefficients: &[f64], z: f64| {
-            coefficients
-                .iter()
-                .rev()
-                .fold((0.0, 0.0), |(value, slope), c| (value * z + c, slope * z + value))
-        };
         // At rest the relation is z^(n-1) (z - omega0^2).
         let at_rest = coefficients(0.0)?;
         let mut z = -at_rest[highest.checked_sub(1)?] / at_rest[highest];
-        for step in 1..=STEPS {
-            let coefficients = coefficients(f64::from(step) / f64::from(STEPS))?;
-            let before = z;
-            let mut settled = false;
-            for _ in 0..50 {
-                let (value, slope) = horner(&coefficients, z);
-                let change = value / slope;
-                z -= change;
-                settled = change.abs() <= 4.0 * f64::EPSILON * z.abs();
-                if settled || !z.is_finite() {
-                    break;
+        let (mut part, mut step) = (0.0, LONGEST_STEP);
+        while part < 1.0 {
+            let next = f64::min(part + step, 1.0);
+            match newton(&coefficients(next)?, z) {
+                // A root that moved little is the same branch; any other asks for a shorter step.
+                Some(root) if root > 0.0 && (root / z).ln().abs() < 0.2 => {
+                    (z, part) = (root, next);
+                    step = f64::min(2.0 * step, LONGEST_STEP);
                 }
+                _ => step *= 0.5,
             }
-            // A root that does not settle, jumps or leaves the positive numbers is no continuation.
-            if !settled && (z - before).abs() > 1e-12 * z.abs() && horner(&coefficients, z).0.abs() > 1e-12 {
-                return None;
-            }
-            if !(z > 0.0 && (z / before - 1.0).abs() < 0.5) {
+            if step < SHORTEST_STEP {
                 return None;
             }
         }
@@ -262,4 +273,30 @@ impl Solution {
         laws.into_iter()
             .any(|law| law.symbols().contains(&self.amplitude.symbol()))
     }
+}
+
+/// The root of a polynomial, lowest coefficient first, that Newton's iteration reaches from `start`; `None` where it does
+/// not settle, as it does not where two roots meet.
+fn newton(coefficients: &[f64], start: f64) -> Option<f64> {
+    const ITERATIONS: usize = 40;
+    let mut root = start;
+    for _ in 0..ITERATIONS {
+        let horner = |(value, slope): (f64, f64), coefficient: &f64| (value * root + coefficient, slope * root + value);
+        let (value, slope) = coefficients.iter().rev().fold((0.0, 0.0), horner);
+        let change = value / slope;
+        root -= change;
+        if change.abs() <= 1e-15 * root.abs() || value == 0.0 {
+            return Some(root);
+        }
+    }
+    // The last digits may go on turning in a circle.
+    let scale = coefficients
+        .iter()
+        .rev()
+        .fold(0.0, |sum, coefficient| sum * root.abs() + coefficient.abs());
+    let value = coefficients
+        .iter()
+        .rev()
+        .fold(0.0, |sum, coefficient| sum * root + coefficient);
+    (value.abs() <= 1e-14 * scale).then_some(root)
 }

@@ -107,6 +107,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Val
         "limit_cycle": solution.limit_cycle.as_ref().map(|amplitude| json!({ "amplitude": polynomial(amplitude, small) })),
         "modulation": null,
         "response": null,
+        "numerical": solution.numerical,
         "validity": solution.validity,
         "verification": verification.map(self::verification),
     })
@@ -326,6 +327,7 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         closed_form: document["closed_form"].as_str().map(str::to_owned),
         displacement: read_displacement(&document["displacement"]["harmonics"])?,
         limit_cycle,
+        numerical: document["numerical"].as_bool().unwrap_or(false),
         validity: strings("validity")?,
     })
 }

@@ -2,10 +2,13 @@
 
 use std::fmt::Write as _;
 
+use num_traits::One;
+
 use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant};
-use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
+use crate::exact::{Polynomial, Rational};
 use crate::impact::Impact;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
@@ -32,10 +35,9 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
         solution.amplitude
     );
     text.push('\n');
-    let small = solution.small_parameter;
     let mut law = |name: &str, law: &Option<Polynomial>| {
         if let Some(law) = law {
-            let _ = writeln!(text, "  {name:<8}= {}", by_order(law, small));
+            let _ = writeln!(text, "  {name:<8}= {}", by_order(law, solution));
         }
     };
     law("omega^2", &solution.frequency_squared);
@@ -44,7 +46,8 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
         let _ = writeln!(
             text,
             "  0       = {}",
-            ordered(relation, |monomial| -monomial.exponent(Symbol::new("omega")))
+            ordered(relation, solution.numerical, |monomial| -monomial
+                .exponent(Symbol::new("omega")))
         );
     }
     if let Some(closed_form) = &solution.closed_form {
@@ -55,7 +58,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
             text,
             "\n  limit cycle of amplitude {} = {}",
             solution.amplitude.symbol(),
-            by_order(amplitude, small)
+            by_order(amplitude, solution)
         );
     }
     let _ = writeln!(text, "\n{}", motion(solution));
@@ -74,16 +77,18 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
 }
 
 /// A polynomial with the lowest power of the small parameter first.
-pub fn by_order(polynomial: &Polynomial, small: Symbol) -> String {
-    ordered(polynomial, |monomial| monomial.exponent(small))
+pub fn by_order(polynomial: &Polynomial, solution: &Solution) -> String {
+    ordered(polynomial, solution.numerical, |monomial| {
+        monomial.exponent(solution.small_parameter)
+    })
 }
 
-fn ordered(polynomial: &Polynomial, key: impl Fn(&Monomial) -> i32) -> String {
+fn ordered(polynomial: &Polynomial, numerical: bool, key: impl Fn(&Monomial) -> i32) -> String {
     let mut terms: Vec<_> = polynomial.terms().collect();
     terms.sort_by_key(|(monomial, _)| key(monomial));
     let mut text = String::new();
     for (monomial, coefficient) in terms {
-        let term = Polynomial::term(monomial.clone(), coefficient.clone()).to_string();
+        let term = single_term(monomial, coefficient, numerical);
         match (text.is_empty(), term.strip_prefix('-')) {
             (true, _) => text.push_str(&term),
             (false, Some(rest)) => text.extend([" - ", rest]),
@@ -91,6 +96,19 @@ fn ordered(polynomial: &Polynomial, key: impl Fn(&Monomial) -> i32) -> String {
         }
     }
     if text.is_empty() { "0".to_owned() } else { text }
+}
+
+/// One term; rounded coefficients print as decimals.
+fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> String {
+    let term = |number: Rational| Polynomial::term(monomial.clone(), number).to_string();
+    if !numerical || coefficient.is_integer() {
+        return term(coefficient.clone());
+    }
+    let number = decimal(to_f64(coefficient));
+    match monomial.factors().is_empty() {
+        true => number,
+        false => format!("{number}*{}", term(Rational::one())),
+    }
 }
 
 /// The motion, one harmonic a line.
@@ -107,7 +125,7 @@ fn motion(solution: &Solution) -> String {
                 _ => format!("*{function}({k}*theta)"),
             };
             let single = coefficient.single_term().is_some();
-            let text = by_order(&coefficient, solution.small_parameter);
+            let text = by_order(&coefficient, solution);
             let (sign, text) = match (single, text.strip_prefix('-')) {
                 (true, Some(rest)) => ("-", rest.to_owned()),
                 (true, None) => ("+", text),

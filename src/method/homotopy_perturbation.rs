@@ -115,6 +115,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             .displacement
             .map(|coefficient, _| coefficient.product(&Polynomial::symbol(amplitude))),
         limit_cycle: None,
+        numerical: false,
         validity,
     })
 }

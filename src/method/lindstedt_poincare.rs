@@ -135,6 +135,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         closed_form: None,
         displacement,
         limit_cycle,
+        numerical: false,
         validity,
     })
 }

@@ -8,8 +8,15 @@ pub mod homotopy_perturbation;
 pub mod lindstedt_poincare;
 pub mod secular;
 
+use num_traits::{One, Zero};
+
+use crate::decimal::decimal;
+use crate::equilibrium::centred;
+use crate::exact::rational::to_f64;
+use crate::exact::{Integer, Polynomial};
 use crate::expr::{Expr, ExprError, parse_expression};
 use crate::oscillator::{Oscillator, OscillatorError};
+use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 
 /// The highest order any method accepts.
@@ -138,10 +145,38 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if let Some(asked) = options.order.filter(|&order| order > HIGHEST_ORDER) {
         return Err(Refusal::Order { asked });
     }
-    match options.method.unwrap_or(Method::LindstedtPoincare) {
-        Method::LindstedtPoincare => lindstedt_poincare::solve(oscillator, options),
-        Method::HomotopyPerturbation => homotopy_perturbation::solve(oscillator, options),
+    let method = options.method.unwrap_or(Method::LindstedtPoincare);
+    // Every method expands about x = 0: the equation is seen from its equilibrium, and the answer moved back.
+    let degree = match method {
+        Method::LindstedtPoincare => options.order.unwrap_or(4) + 1,
+        Method::HomotopyPerturbation => options.taylor.unwrap_or(2 * options.order.unwrap_or(2) + 1),
+    };
+    let centred = centred(oscillator, degree)?;
+    let mut solution = match method {
+        Method::LindstedtPoincare => lindstedt_poincare::solve(&centred.oscillator, options),
+        Method::HomotopyPerturbation => homotopy_perturbation::solve(&centred.oscillator, options),
+    }?;
+    if centred.position.is_zero() {
+        return Ok(solution);
     }
+    let position = Polynomial::constant(centred.position.clone());
+    solution.displacement = solution
+        .displacement
+        .sum(&FourierSeries::constant(position, Integer::one()));
+    solution.equation = oscillator.equation();
+    if centred.numerical {
+        solution.round_coefficients();
+    }
+    let position = if centred.numerical {
+        decimal(to_f64(&centred.position))
+    } else {
+        centred.position.to_string()
+    };
+    solution
+        .validity
+        .push(format!("swings about the equilibrium x = {position}"));
+    solution.equilibrium = Expr::number(centred.position);
+    Ok(solution)
 }
 
 fn forcing(method: &'static str, part: &Expr) -> Refusal {

@@ -62,11 +62,17 @@ pub fn taylor(expression: &Expr, point: &[(Symbol, Rational)], degree: u32) -> R
     if degree > HIGHEST_DEGREE {
         return Err(TaylorError::Degree(degree));
     }
-    Expansion {
+    let expansion = Expansion {
         point,
         length: degree as usize + 1,
+    };
+    let mut parts = expansion.of(expression)?;
+    if let [(variable, _)] = point {
+        for (power, part) in (0_i64..).zip(&mut parts) {
+            *part = &*part * &Expr::integer_power(&Expr::from(*variable), power)?;
+        }
     }
-    .of(expression)
+    Ok(parts)
 }
 
 /// A truncated power series in `s`; as many entries as the expansion is long.
@@ -127,8 +133,13 @@ impl Expansion<'_> {
             None => self.constant(itself.clone()),
             Some((_, centre)) => {
                 let mut series = self.constant(Expr::number(centre.clone()));
+                // One variable alone is put back at the end: until then `sqrt(x^4)` is the square root of a number.
                 if let Some(first) = series.get_mut(1) {
-                    *first = itself.clone();
+                    *first = if self.point.len() == 1 {
+                        Expr::one()
+                    } else {
+                        itself.clone()
+                    };
                 }
                 series
             }

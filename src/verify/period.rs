@@ -11,7 +11,7 @@
 //!
 //! Any other periodic motion: the Runge-Kutta return to a turning point.
 
-use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
 use crate::ode::root::{RootError, find_root};
 use crate::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory, integrate};
 
@@ -73,14 +73,14 @@ pub enum PeriodError {
 pub fn conservative_period(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
     let end = turning_point(force, equilibrium, start)?;
     let (middle, radius) = (0.5 * (start + end), 0.5 * (start - end));
-    let mean_force = |from: f64, to: f64| integrate_smooth(|u| force(from + (to - from) * u), 0.0, 1.0, TOLERANCE);
+    let mean_force = |from: f64, to: f64| integral(&|u| force(from + (to - from) * u), 0.0, 1.0);
     let mut failure = None;
     let integrand = |phi: f64| {
         let x = middle + radius * phi.sin();
         let quotient = if phi >= 0.0 {
-            mean_force(x, start).map(|(mean, _)| mean / (x - end))
+            mean_force(x, start).map(|mean| mean / (x - end))
         } else {
-            mean_force(end, x).map(|(mean, _)| -mean / (start - x))
+            mean_force(end, x).map(|mean| -mean / (start - x))
         };
         match quotient {
             Ok(quotient) => 1.0 / (2.0 * quotient).sqrt(),
@@ -93,8 +93,35 @@ pub fn conservative_period(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: 
     let quarter = std::f64::consts::FRAC_PI_2;
     match integrate_smooth(integrand, -quarter, quarter, TOLERANCE) {
         Ok((half, _)) => Ok(2.0 * half),
+        // The force itself is rounded where it is a small difference, as x^2 - 4 near x = 2: no panel gets below that.
+        Err(QuadratureError::NotConverged {
+            value, error_estimate, ..
+        }) if error_estimate < 1e-9 * value => Ok(2.0 * value),
         Err(error) => Err(failure.unwrap_or(error).into()),
     }
+}
+
+/// The integral of a force: panels are doubled until the value settles, or until doubling no longer brings it closer,
+/// which is where the rounding of the force itself begins.
+fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Result<f64, QuadratureError> {
+    const MOST_PANELS: i32 = 64;
+    let with_panels = |panels: i32| {
+        let place = |k: i32| from + (to - from) * f64::from(k) / f64::from(panels);
+        let nodes = (0..panels).flat_map(|k| nodes_and_weights(place(k), place(k + 1)));
+        nodes.map(|(x, weight)| weight * function(x)).sum::<f64>()
+    };
+    let (mut value, mut change) = (with_panels(1), f64::INFINITY);
+    let mut panels = 2;
+    while panels <= MOST_PANELS {
+        let finer = with_panels(panels);
+        let next = (finer - value).abs();
+        if next <= TOLERANCE * finer.abs() || (next >= 0.5 * change && next <= 1e-9 * finer.abs()) {
+            return Ok(finer);
+        }
+        (value, change) = (finer, next);
+        panels *= 2;
+    }
+    integrate_smooth(function, from, to, TOLERANCE).map(|(value, _)| value)
 }
 
 /// The other turning point of a conservative motion released at rest from `start`.
@@ -118,7 +145,7 @@ pub fn turning_point(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: f64) -
     {
         return Ok(equilibrium - amplitude);
     }
-    let gained = |from: f64, to: f64| integrate_smooth(force, to, from, TOLERANCE).map(|(energy, _)| energy);
+    let gained = |from: f64, to: f64| integral(force, to, from);
     let (mut x, mut energy, mut step) = (start, 0.0, -amplitude / STEPS_PER_AMPLITUDE);
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
         let next = x + step;
@@ -241,6 +268,18 @@ mod tests {
         let period = conservative_period(&|x: f64| x + x * x, 0.0, 0.25).unwrap();
         let swing = swing(&|_, x, _| -x - x * x, 0.0, 0.25, 100.0).unwrap();
         assert!((period - swing.end().t).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_force_that_is_a_small_difference_is_good_to_its_rounding() {
+        for amplitude in [0.3, 0.01, 1e-3] {
+            let shifted = conservative_period(&|x: f64| x * x - 4.0, 2.0, 2.0 + amplitude).unwrap();
+            let direct = conservative_period(&|d: f64| 4.0 * d + d * d, 0.0, amplitude).unwrap();
+            assert!(
+                (shifted / direct - 1.0).abs() < 1e-13 / amplitude,
+                "{amplitude}: {shifted} {direct}"
+            );
+        }
     }
 
     #[test]

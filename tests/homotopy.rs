@@ -1,0 +1,124 @@
+//! Homotopy perturbation against published relations, other methods and the exact frequency.
+
+use lindstedt::exact::Polynomial;
+use lindstedt::expr::parse_expression;
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::{Method, Solution};
+use lindstedt::{Oscillator, Symbol};
+
+fn derive(equation: &str, order: u32) -> Solution {
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    let method = Some(Method::HomotopyPerturbation);
+    solve(
+        &oscillator,
+        &Options {
+            method,
+            order: Some(order),
+            ..Options::default()
+        },
+    )
+    .expect("a solution")
+}
+
+fn polynomial(text: &str) -> Polynomial {
+    let expression = parse_expression(text).expect("an expression");
+    expression
+        .to_polynomial(&mut |_| None)
+        .expect("short")
+        .expect("a polynomial")
+}
+
+/// omega at eps = s, A = 1.
+fn frequency(solution: &Solution, s: f64) -> f64 {
+    let value = |symbol: Symbol| Some(if symbol.name() == "eps" { s } else { 1.0 });
+    solution.frequency_squared_at(&value).expect("a root").sqrt()
+}
+
+const DUFFING: &str = "x'' + x + eps*x^3 = 0";
+
+#[test]
+fn the_relation_of_duffing_to_order_six() {
+    // Om = 1 + 3/4 s - 3/128 s^2/Om + 21/131072 s^4/Om^3 - 33/16777216 s^6/Om^5, times Om^5.
+    let expected = "omega^12 - omega^10 - 3*eps*A^2*omega^10/4 + 3*eps^2*A^4*omega^8/128 - 21*eps^4*A^8*omega^4/131072 \
+                    + 33*eps^6*A^12/16777216";
+    assert_eq!(derive(DUFFING, 6).relation, Some(polynomial(expected)));
+}
+
+#[test]
+fn odd_orders_of_duffing_beyond_the_first_add_nothing() {
+    // In units of omega^2 the motion solves y'' + b y + c y^3 = 0 with period 2 pi and amplitude 1, so that
+    // b = (2K/pi)^2 (1 - 2m) and c = 2m (2K/pi)^2. Jacobi's imaginary modulus, m -> -m/(1 - m), K -> sqrt(1 - m) K, turns c
+    // into -c and leaves b + 3c/4 as it is: beyond the first, all corrections of b are even in c.
+    for order in [2, 4] {
+        assert_eq!(derive(DUFFING, order).relation, derive(DUFFING, order + 1).relation);
+    }
+    assert_ne!(derive(DUFFING, 3).relation, derive(DUFFING, 4).relation);
+}
+
+#[test]
+fn the_first_order_is_the_papers_equation_12() {
+    let solution = derive("x'' + x - x^3/6 = 0", 1);
+    assert_eq!(solution.frequency_squared, Some(polynomial("1 - A^2/8")));
+    assert_eq!(
+        derive("x'' + sin(x) = 0", 1).frequency_squared,
+        Some(polynomial("1 - A^2/8"))
+    );
+}
+
+#[test]
+fn the_second_order_is_a_square_root() {
+    let solution = derive(DUFFING, 2);
+    let text = solution.closed_form.as_deref().expect("a closed form");
+    let root = parse_expression(text.strip_prefix("omega^2 = ").expect("omega^2 = ...")).expect("an expression");
+    for s in [-0.5, 0.1, 1.0, 2.0, 100.0] {
+        let value = root
+            .evaluate(&[("eps".into(), s), ("A".into(), 1.0)].into())
+            .expect("a number");
+        assert!((value.sqrt() / frequency(&solution, s) - 1.0).abs() < 1e-14);
+        let by_hand: f64 = 0.5 * (1.0 + 0.75 * s + f64::sqrt(1.0 + 1.5 * s + 15.0 / 32.0 * s * s));
+        assert!((value - by_hand).abs() < 1e-13 * by_hand);
+    }
+}
+
+#[test]
+fn uniformly_close_to_the_elliptic_frequency() {
+    for (order, bound) in [(1, 0.022_3), (2, 0.000_31), (4, 0.000_008)] {
+        let solution = derive(DUFFING, order);
+        for s in [0.01, 0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1e4, 1e6] {
+            let exact = std::f64::consts::PI * f64::sqrt(1.0 + s)
+                / (2.0 * ellip::ellipk(s / (2.0 * (1.0 + s))).expect("an elliptic integral"));
+            let error = frequency(&solution, s) / exact - 1.0;
+            assert!(error.abs() <= bound, "order {order}, s = {s}: {error}");
+        }
+        // At s = -0.9 the errors are 12.6, -1.5 and 0.2 %.
+        let exact = std::f64::consts::PI * f64::sqrt(0.1) / (2.0 * ellip::ellipk(-4.5).expect("an elliptic integral"));
+        let expected = [(1, 0.126), (2, -0.015), (4, 0.002)]
+            .iter()
+            .find(|entry| entry.0 == order)
+            .expect("listed")
+            .1;
+        let error = frequency(&solution, -0.9) / exact - 1.0;
+        assert!((error / expected - 1.0_f64).abs() < 0.3, "order {order}: {error}");
+    }
+}
+
+#[test]
+fn every_order_of_the_motion() {
+    let solution = derive(DUFFING, 1);
+    assert_eq!(
+        solution.displacement.cosine(3).mean().0,
+        polynomial("eps*A^3/(32*omega^2)")
+    );
+    // The conditions x(0) = A, x'(0) = 0 hold at every order.
+    for order in 1..5 {
+        assert_eq!(derive(DUFFING, order).displacement.at_zero().mean().0, polynomial("A"));
+    }
+}
+
+#[test]
+fn a_branch_that_ends_gives_no_number() {
+    // omega^2 = 1 - A^2/8 is zero at sqrt 8.
+    let value = |symbol: Symbol| (symbol.name() == "A").then_some(2.9);
+    let squared = derive("x'' + x - x^3/6 = 0", 2).frequency_squared_at(&value);
+    assert!(squared.is_none_or(|squared| squared > 0.0), "{squared:?}");
+}

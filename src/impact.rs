@@ -7,7 +7,7 @@
 //! return    x = A cos(omega (t - t2) + acos(x_c/A))                                   (16)
 //! ```
 //!
-//! The law comes from [`method::solve`](crate::method::solve) on `x'' + sin x = 0`, the phases from
+//! The law comes from [`method::solve`] on `x'' + sin x = 0`, the phases from
 //! [`contact::phases`](crate::contact::phases), the judgement from Runge-Kutta on equation (9) as it stands.
 
 use crate::contact::linearisation::Rule;

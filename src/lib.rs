@@ -31,7 +31,7 @@
 //! | method | [`method`] | one file each |
 //! | verify | [`verify`] | the true motion and the verdict |
 //! | contact | [`contact`], [`impact`] | the three phases of a pendulum that hits an elastic barrier |
-//! | in and out | [`problem`], [`export`] | problem files; text, JSON, pictures |
+//! | in and out | [`catalog`], [`problem`], [`export`] | classical oscillators, problem files; text, LaTeX, JSON, pictures |
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -59,6 +59,7 @@ pub mod verify;
 pub mod contact;
 pub mod impact;
 
+pub mod catalog;
 pub mod problem;
 
 pub mod export;

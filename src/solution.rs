@@ -137,6 +137,24 @@ pub struct Solution {
     pub numerical: bool,
     /// What is known of where the formula holds.
     pub validity: Vec<String>,
+    /// The derivation, order by order, where it was asked for.
+    pub steps: Vec<Step>,
+}
+
+/// One order of a derivation, `y_n'' + y_n = right_side + (resonance + W_n) cos(theta)`, in units of the amplitude and of the
+/// linear frequency (of omega in homotopy perturbation). Every part carries its power of the small parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The order `n`, from one on.
+    pub order: u32,
+    /// What drives `y_n` beside the secular term.
+    pub right_side: FourierSeries<Polynomial>,
+    /// The coefficient of the secular `cos(theta)` that the nonlinear terms leave.
+    pub resonance: Polynomial,
+    /// `W_n`, which the secular condition fixes.
+    pub correction: Polynomial,
+    /// `y_n`.
+    pub displacement: FourierSeries<Polynomial>,
 }
 
 impl Solution {
@@ -180,6 +198,12 @@ impl Solution {
             *law = law.as_ref().map(rounded);
         }
         self.displacement = self.displacement.map(|coefficient, _| rounded(coefficient));
+        for step in &mut self.steps {
+            step.resonance = rounded(&step.resonance);
+            step.correction = rounded(&step.correction);
+            step.right_side = step.right_side.map(|coefficient, _| rounded(coefficient));
+            step.displacement = step.displacement.map(|coefficient, _| rounded(coefficient));
+        }
         self.closed_form = None;
         self.numerical = true;
         self.validity

@@ -84,6 +84,7 @@ fn every_example_prints_what_it_printed() {
         insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples"), "*.toml", |file| {
             let path = file.to_str().expect("a path in text");
             insta::assert_snapshot!("text", output(&[command_for(file), path]));
+            insta::assert_snapshot!("latex", output(&[command_for(file), path, "--format", "latex"]));
             let mut document: Value = serde_json::from_str(&output(&[command_for(file), path, "--format", "json"]))
                 .expect("the output is JSON");
             rounded(&mut document);
@@ -130,6 +131,14 @@ fn help_says_what_there_is() {
         insta::assert_snapshot!("help", output(&["--help"]));
         insta::assert_snapshot!("help-derive", output(&["derive", "--help"]));
         insta::assert_snapshot!("help-impact", output(&["impact", "--help"]));
+        insta::assert_snapshot!("help-catalog", output(&["catalog", "--help"]));
+        insta::assert_snapshot!("catalog", output(&["catalog"]));
+        let duffing = ["derive", "duffing", "--steps"];
+        insta::assert_snapshot!("steps", output(&duffing));
+        insta::assert_snapshot!(
+            "steps-latex",
+            output(&[duffing.as_slice(), &["--format", "latex"]].concat())
+        );
     });
 }
 
@@ -164,6 +173,139 @@ fn exit_codes_are_those_of_the_manual() {
         assert_eq!(output.stdout.is_empty(), code == 1 || code == 2, "{arguments:?}");
         assert_eq!(output.stderr.is_empty(), code == 0 || code == 3, "{arguments:?}");
     }
+}
+
+/// Everything that prints as LaTeX: the examples, and a derivation by either method.
+fn latex_documents() -> Vec<(String, String)> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    let files = std::fs::read_dir(folder)
+        .expect("examples/ exists")
+        .filter_map(Result::ok)
+        .map(|entry| entry.path());
+    let mut documents: Vec<(String, String)> = files
+        .filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
+        .map(|file| {
+            let path = file.to_str().expect("a path in text");
+            (
+                path.to_owned(),
+                output(&[command_for(&file), path, "--format", "latex"]),
+            )
+        })
+        .collect();
+    for method in ["lindstedt-poincare", "homotopy-perturbation"] {
+        let steps = [
+            "derive",
+            "helmholtz",
+            "--steps",
+            "--order",
+            "3",
+            "--format",
+            "latex",
+            "--method",
+            method,
+        ];
+        documents.push((method.to_owned(), output(&steps)));
+    }
+    documents.sort();
+    documents
+}
+
+#[test]
+fn latex_is_balanced_and_uses_known_commands_only() {
+    const COMMANDS: [&str; 48] = [
+        "begin",
+        "end",
+        "frac",
+        "sqrt",
+        "left",
+        "right",
+        "omega",
+        "theta",
+        "varepsilon",
+        "gamma",
+        "mu",
+        "zeta",
+        "lambda",
+        "alpha",
+        "beta",
+        "kappa",
+        "cos",
+        "sin",
+        "tan",
+        "sinh",
+        "cosh",
+        "tanh",
+        "arcsin",
+        "arccos",
+        "arctan",
+        "exp",
+        "ln",
+        "max",
+        "min",
+        "operatorname",
+        "pi",
+        "dot",
+        "ddot",
+        "mathrm",
+        "quad",
+        "qquad",
+        "cdot",
+        "text",
+        "hline",
+        "dots",
+        "delta",
+        "eta",
+        "nu",
+        "xi",
+        "rho",
+        "sigma",
+        "tau",
+        "phi",
+    ];
+    for (name, document) in latex_documents() {
+        let lines: Vec<&str> = document.lines().filter(|line| !line.starts_with('%')).collect();
+        let text = lines.join("\n");
+        let (mut depth, mut delimiters) = (0_i32, 0_i32);
+        for letter in text.chars() {
+            depth += i32::from(letter == '{') - i32::from(letter == '}');
+            assert!(depth >= 0, "{name}: a brace closes what was not opened");
+        }
+        assert_eq!(depth, 0, "{name}: braces");
+        for command in text.split('\\').skip(1) {
+            let word: String = command.chars().take_while(char::is_ascii_alphabetic).collect();
+            assert!(word.is_empty() || COMMANDS.contains(&word.as_str()), "{name}: \\{word}");
+            delimiters += i32::from(word == "left") - i32::from(word == "right");
+            assert!(delimiters >= 0, "{name}: \\right without \\left");
+        }
+        assert_eq!(delimiters, 0, "{name}: \\left without \\right");
+        assert!(text.contains("\\begin{align*}") && text.matches("\\begin{").count() == text.matches("\\end{").count());
+    }
+}
+
+/// Where LaTeX is on the machine, it has the last word.
+#[test]
+fn latex_compiles_where_latex_is() {
+    let version = Command::new("pdflatex").arg("--version").output();
+    if !version.is_ok_and(|output| output.status.success()) {
+        return;
+    }
+    let folder = std::env::temp_dir().join(format!("lindstedt-latex-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let bodies: Vec<String> = latex_documents().into_iter().map(|(_, document)| document).collect();
+    let head = "\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n";
+    std::fs::write(
+        folder.join("all.tex"),
+        format!("{head}{}\n\\end{{document}}\n", bodies.join("\n")),
+    )
+    .expect("the document is written");
+    let arguments = ["-interaction=nonstopmode", "-halt-on-error", "all.tex"];
+    let run = Command::new("pdflatex")
+        .args(arguments)
+        .current_dir(&folder)
+        .output()
+        .expect("pdflatex starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stdout));
+    std::fs::remove_dir_all(folder).expect("the folder goes");
 }
 
 #[cfg(feature = "plot")]

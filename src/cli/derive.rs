@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use lindstedt::export::{json, text};
+use lindstedt::catalog;
+use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{self, Options};
 use lindstedt::problem::Problem;
@@ -16,7 +17,7 @@ use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// An equation in quotes, a TOML file, or - for standard input
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     problem: String,
     /// How to derive: lindstedt-poincare or homotopy-perturbation
     #[arg(long)]
@@ -36,6 +37,9 @@ pub struct Arguments {
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
+    /// Print the derivation, order by order, before the result
+    #[arg(long)]
+    steps: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -78,7 +82,22 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     };
     let text = match arguments.common.format {
-        Format::Text => text::solution(&solution, verification.as_ref(), tolerance),
+        Format::Text => {
+            let derivation = if arguments.steps {
+                text::steps(&solution) + "\n"
+            } else {
+                String::new()
+            };
+            derivation + &text::solution(&solution, verification.as_ref(), tolerance)
+        }
+        Format::Latex => {
+            let derivation = if arguments.steps {
+                latex::steps(&solution)
+            } else {
+                String::new()
+            };
+            derivation + &latex::solution(&solution, verification.as_ref())
+        }
         Format::Json => json_text(&json::solution(&solution, verification.as_ref())),
     };
     let picture = match (&arguments.common.plot, &verification) {
@@ -119,6 +138,19 @@ fn problem(text: &str) -> Result<Problem, Failure> {
     }
     if text.ends_with(".toml") || path.is_file() {
         return parsed(read(path)?);
+    }
+    if let Some(entry) = catalog::find(text) {
+        return Ok(Problem {
+            equation: Some(entry.equation.to_owned()),
+            ..Problem::default()
+        });
+    }
+    // A single word that is no equation is a name with a slip in it.
+    let is_word = text.len() > 3 && text.chars().all(|letter| letter.is_ascii_alphabetic() || letter == '-');
+    if is_word && let Some(near) = nearest(text, catalog::CATALOG.iter().map(|entry| entry.name)) {
+        let message =
+            format!("`{text}` is neither an equation nor a name of the catalogue\n  help: did you mean `{near}`?");
+        return Err(Failure::Refused(message));
     }
     Ok(Problem {
         equation: Some(text.to_owned()),

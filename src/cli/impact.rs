@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lindstedt::contact::phases::Column;
-use lindstedt::export::{json, text};
+use lindstedt::export::{json, latex, text};
 use lindstedt::impact::{Impact, Setup, solve};
 use lindstedt::problem::{Barrier, Problem};
 
@@ -43,6 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let tolerance = tolerance(&arguments.common);
     let text = match arguments.common.format {
         Format::Text => text::impact(&impact, tolerance),
+        Format::Latex => latex::impact(&impact, tolerance),
         Format::Json => json_text(&json::impact(&impact, tolerance)),
     };
     let picture = match &arguments.common.plot {

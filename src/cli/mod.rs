@@ -3,6 +3,7 @@
 //! Results go to standard output or the file of `--output`, all else to standard error. Exit codes: 0 done, 1 refused or
 //! failed, 2 wrong usage, 3 verdict failed, 70 internal error.
 
+mod catalog;
 mod derive;
 mod impact;
 
@@ -36,6 +37,8 @@ enum Command {
     Derive(derive::Arguments),
     /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
     Impact(impact::Arguments),
+    /// List the classical oscillators that `derive` knows by name
+    Catalog(catalog::Arguments),
 }
 
 /// What every command takes.
@@ -64,6 +67,7 @@ struct Common {
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
     Text,
+    Latex,
     Json,
 }
 
@@ -121,6 +125,7 @@ pub fn run() -> ExitCode {
     let common = match &command {
         Command::Derive(arguments) => arguments.common.clone(),
         Command::Impact(arguments) => arguments.common.clone(),
+        Command::Catalog(arguments) => arguments.common.clone(),
     };
     let (sender, receiver) = channel();
     // The work has a thread of its own so that a time limit can end it, wherever it is.
@@ -128,6 +133,7 @@ pub fn run() -> ExitCode {
         let outcome = match command {
             Command::Derive(arguments) => derive::run(&arguments),
             Command::Impact(arguments) => impact::run(&arguments),
+            Command::Catalog(arguments) => catalog::run(&arguments),
         };
         let _ = sender.send(outcome);
     });

@@ -28,7 +28,6 @@ use num_complex::Complex64;
 use thiserror::Error;
 
 use super::linearisation::{self, Line, LinearisationError, Rule};
-use crate::decimal::significant;
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 
 /// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the barrier.
@@ -494,6 +493,25 @@ fn signed_term(value: f64, digits: usize) -> String {
     format!(" {sign} {}", significant(value.abs(), digits))
 }
 
+/// A number to so many significant digits, trailing zeros dropped; with an exponent where it is below 1e-4.
+fn significant(value: f64, digits: usize) -> String {
+    let scientific = format!("{value:.*e}", digits - 1);
+    let trim = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
+    };
+    let Some((mantissa, exponent)) = scientific.split_once('e') else {
+        return scientific;
+    };
+    match exponent.parse::<i32>() {
+        Ok(power) if (-4..16).contains(&power) => {
+            let decimals = usize::try_from(digits as i32 - 1 - power).unwrap_or(0);
+            trim(&format!("{value:.decimals$}"))
+        }
+        _ => format!("{}e{exponent}", trim(mantissa)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -652,7 +670,7 @@ mod tests {
             (1_066.234_5, "1066.23"),
             (1e-7, "1e-7"),
             (2e20, "2e20"),
-            (999_999.7, "1e6"),
+            (999_999.7, "1000000"),
         ] {
             assert_eq!(significant(value, 6), text);
         }

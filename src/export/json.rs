@@ -329,6 +329,7 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         limit_cycle,
         numerical: document["numerical"].as_bool().unwrap_or(false),
         validity: strings("validity")?,
+        steps: vec![],
     })
 }
 

@@ -1,6 +1,7 @@
-//! Handing a result on: [`text`] to read, [`json`] for programs, `figure` (feature `plot`) to look at.
+//! Handing a result on: [`text`] to read, [`json`] for programs, [`latex`] for an article, `figure` (feature `plot`) to look at.
 
 #[cfg(feature = "plot")]
 pub mod figure;
 pub mod json;
+pub mod latex;
 pub mod text;

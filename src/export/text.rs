@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use num_traits::One;
+use num_traits::{One, Zero};
 
 use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant};
@@ -10,7 +10,8 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
 use crate::impact::Impact;
-use crate::solution::Solution;
+use crate::series::FourierSeries;
+use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 use crate::verify::{Verdict, Verification};
 
@@ -111,12 +112,12 @@ fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> 
     }
 }
 
-/// The motion, one harmonic a line.
-fn motion(solution: &Solution) -> String {
-    let mut lines = Vec::new();
-    for (k, cosine, sine) in solution.displacement.harmonics() {
+/// The terms of a Fourier series in theta, each with its sign.
+fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<(char, String)> {
+    let mut waves = Vec::new();
+    for (k, cosine, sine) in series.harmonics() {
         for (function, coefficient) in [("cos", cosine), ("sin", sine)] {
-            if num_traits::Zero::is_zero(&coefficient) {
+            if coefficient.is_zero() {
                 continue;
             }
             let wave = match k {
@@ -124,29 +125,104 @@ fn motion(solution: &Solution) -> String {
                 1 => format!("*{function}(theta)"),
                 _ => format!("*{function}({k}*theta)"),
             };
-            let single = coefficient.single_term().is_some();
             let text = by_order(&coefficient, solution);
-            let (sign, text) = match (single, text.strip_prefix('-')) {
-                (true, Some(rest)) => ("-", rest.to_owned()),
-                (true, None) => ("+", text),
-                (false, _) if k == 0 => ("+", text),
-                (false, _) => ("+", format!("({text})")),
+            let (sign, text) = match (coefficient.single_term().is_some(), text.strip_prefix('-')) {
+                (true, Some(rest)) => ('-', rest.to_owned()),
+                (true, None) => ('+', text),
+                (false, _) if k == 0 => ('+', text),
+                (false, _) => ('+', format!("({text})")),
             };
             let bare = text == "1" && k > 0;
-            let term = if bare {
-                wave.trim_start_matches('*').to_owned()
-            } else {
-                format!("{text}{wave}")
-            };
-            lines.push(match (lines.is_empty(), sign) {
-                (true, "+") => format!("  x(t) = {term}").replacen('x', solution_coordinate(solution), 1),
-                (true, _) => format!("  x(t) = -{term}").replacen('x', solution_coordinate(solution), 1),
-                (false, _) => format!("         {sign} {term}"),
-            });
+            waves.push((
+                sign,
+                if bare {
+                    wave.trim_start_matches('*').to_owned()
+                } else {
+                    format!("{text}{wave}")
+                },
+            ));
         }
+    }
+    waves
+}
+
+/// A Fourier series in one line.
+fn in_one_line(series: &FourierSeries<Polynomial>, solution: &Solution) -> String {
+    let mut text = String::new();
+    for (sign, wave) in waves(series, solution) {
+        match (text.is_empty(), sign) {
+            (true, '+') => text.push_str(&wave),
+            (true, _) => text.extend(["-", &wave]),
+            (false, _) => text.push_str(&format!(" {sign} {wave}")),
+        }
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+/// The motion, one harmonic a line.
+fn motion(solution: &Solution) -> String {
+    let name = solution_coordinate(solution);
+    let mut lines = Vec::new();
+    for (sign, wave) in waves(&solution.displacement, solution) {
+        lines.push(match (lines.is_empty(), sign) {
+            (true, '+') => format!("  {name}(t) = {wave}"),
+            (true, _) => format!("  {name}(t) = -{wave}"),
+            (false, _) => format!("         {sign} {wave}"),
+        });
     }
     lines.push("         theta = omega*t".to_owned());
     lines.join("\n")
+}
+
+/// The derivation, order by order, for someone who wants to follow it with a pencil.
+pub fn steps(solution: &Solution) -> String {
+    let homotopy = solution.method == Method::HomotopyPerturbation;
+    let amplitude = match &solution.limit_cycle {
+        None => solution.amplitude.symbol().to_string(),
+        Some(amplitude) => by_order(&amplitude.truncated(solution.small_parameter, 0), solution),
+    };
+    let name = solution_coordinate(solution);
+    let mut text = String::from("Derivation\n");
+    let frame = match homotopy {
+        true => [
+            format!("  {name} = {amplitude}*(y0 + p*y1 + p^2*y2 + ...), theta = omega*t, derivatives in theta"),
+            "  omega0^2 = omega^2*(1 - p*W1 - p^2*W2 - ...); the nonlinear terms stand at p, all in units of omega^2"
+                .to_owned(),
+        ],
+        false => [
+            format!("  {name} = {amplitude}*(y0 + y1 + y2 + ...), theta = omega*t, derivatives in theta"),
+            "  omega^2 = omega0^2*(1 + W1 + W2 + ...); each order carries its power of the small parameter".to_owned(),
+        ],
+    };
+    for line in frame {
+        let _ = writeln!(text, "{line}");
+    }
+    text.push_str("\n  order 0\n    y0'' + y0 = 0\n    y0 = cos(theta)\n");
+    for step in &solution.steps {
+        let n = step.order;
+        let right_side = in_one_line(&step.right_side, solution);
+        let resonance = by_order(&step.resonance, solution);
+        let _ = writeln!(text, "\n  order {n}");
+        let _ = writeln!(
+            text,
+            "    y{n}'' + y{n} = {right_side} + ({resonance} + W{n})*cos(theta)"
+        );
+        let _ = writeln!(text, "    no secular term:  {resonance} + W{n} = 0");
+        let _ = writeln!(
+            text,
+            "    fixes             W{n} = {}",
+            by_order(&step.correction, solution)
+        );
+        if solution.limit_cycle.is_some() {
+            let _ = writeln!(
+                text,
+                "    the cos(theta) part of y{n}, its amplitude, is fixed by the secular sin(theta) of order {}",
+                n + 1
+            );
+        }
+        let _ = writeln!(text, "    y{n} = {}", in_one_line(&step.displacement, solution));
+    }
+    text
 }
 
 fn solution_coordinate(solution: &Solution) -> &str {

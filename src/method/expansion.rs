@@ -15,6 +15,7 @@ use crate::exact::rational::ratio;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::oscillator::Term;
 use crate::series::FourierSeries;
+use crate::solution::Step;
 use crate::symbol::Symbol;
 
 /// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
@@ -25,6 +26,8 @@ pub struct ExactSeries {
     pub frequency_squared: Polynomial,
     /// The motion.
     pub displacement: FourierSeries<Polynomial>,
+    /// Each order by itself.
+    pub steps: Vec<Step>,
 }
 
 /// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
@@ -151,9 +154,17 @@ fn collect<C: Ring>(
         let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
         exact.fold(FourierSeries::zero(), |sum, term| sum.sum(&term))
     };
+    let step = |n: usize| Step {
+        order: n as u32,
+        right_side: exact(&expansion.right_side[n - 1], n),
+        resonance: exact(&expansion.removed[n - 1], n).mean().0,
+        correction: exact(&expansion.frequency_squared[n], n).mean().0,
+        displacement: exact(&expansion.displacement[n], n),
+    };
     ExactSeries {
         frequency: sum(&expansion.frequency).mean().0,
         frequency_squared: sum(&expansion.frequency_squared).mean().0,
         displacement: sum(&expansion.displacement),
+        steps: (1..expansion.displacement.len()).map(step).collect(),
     }
 }

@@ -17,7 +17,7 @@ use num_traits::{One, Zero};
 
 use super::expansion::expand_exactly;
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
-use super::{Options, Refusal};
+use super::{Options, Refusal, first_term};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational, Ring};
@@ -34,14 +34,33 @@ const TITLE: &str = "homotopy perturbation";
 /// Damping, forcing, velocities, or a force that cannot be expanded, each by name.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
-    for (part, refusal) in [
-        (&parts.forcing, super::forcing as fn(&'static str, &Expr) -> Refusal),
-        (&parts.damping, super::damping),
-        (&parts.inertia, super::velocity),
-    ] {
-        if !part.is_zero() {
-            return Err(refusal(TITLE, part));
+    if !parts.forcing.is_zero() {
+        return Err(Refusal::Forcing {
+            method: TITLE,
+            term: first_term(&parts.forcing),
+        });
+    }
+    match parts.damping.terms() {
+        [zero] if zero.is_zero() => {}
+        [only] => {
+            return Err(Refusal::Damping {
+                method: TITLE,
+                term: only.to_string(),
+            });
         }
+        // Terms that feed energy for some motions and drain it for others.
+        _ => {
+            return Err(Refusal::Velocity {
+                method: TITLE,
+                term: first_term(&parts.damping),
+            });
+        }
+    }
+    if !parts.inertia.is_zero() {
+        return Err(Refusal::Velocity {
+            method: TITLE,
+            term: first_term(&parts.inertia),
+        });
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Refusal::Convention { method: TITLE });
@@ -117,6 +136,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         limit_cycle: None,
         numerical: false,
         validity,
+        steps: series.steps,
     })
 }
 

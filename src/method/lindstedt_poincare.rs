@@ -9,7 +9,7 @@
 //! y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
 //! ```
 //!
-//! What remains is [`secular::expand`], over whole numbers where every symbol can be scaled away (Duffing depends on
+//! What remains is [`secular::expand`](super::secular::expand), over whole numbers where every symbol can be scaled away (Duffing depends on
 //! `eps*A^2` alone) and over polynomials otherwise.
 //!
 //! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the first order,
@@ -137,6 +137,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         limit_cycle,
         numerical: false,
         validity,
+        steps: series.steps,
     })
 }
 

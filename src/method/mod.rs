@@ -179,27 +179,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-fn forcing(method: &'static str, part: &Expr) -> Refusal {
-    Refusal::Forcing {
-        method,
-        term: first_term(part),
-    }
-}
-
-fn damping(method: &'static str, part: &Expr) -> Refusal {
-    Refusal::Damping {
-        method,
-        term: first_term(part),
-    }
-}
-
-fn velocity(method: &'static str, part: &Expr) -> Refusal {
-    Refusal::Velocity {
-        method,
-        term: first_term(part),
-    }
-}
-
 /// The term of a sum that a refusal names.
 fn first_term(sum: &Expr) -> String {
     sum.terms().first().unwrap_or(sum).to_string()

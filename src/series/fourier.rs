@@ -13,8 +13,7 @@ use num_traits::{One, Zero};
 use crate::exact::ring::{Ring, common_content};
 use crate::exact::{Integer, Polynomial, Rational};
 
-/// A finite Fourier series. Equal functions are equal values after [`FourierSeries::reduce`], which every operation here
-/// ends with.
+/// A finite Fourier series. Equal functions are equal values in lowest terms, which every operation here ends with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierSeries<C> {
     /// Common denominator of all coefficients, positive; one over a field.

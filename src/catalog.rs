@@ -1,0 +1,245 @@
+//! Classical oscillators by name, each with its source and, where one is printed, the published law.
+//!
+//! A published law is only what a derived one is compared with: nothing here is ever used as an answer.
+
+use crate::method::{Options, Refusal, solve};
+use crate::oscillator::Oscillator;
+use crate::solution::Method;
+
+/// A classical oscillator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// The name in running text.
+    pub title: &'static str,
+    /// The equation of motion.
+    pub equation: &'static str,
+    /// Where it is studied.
+    pub source: &'static str,
+    /// The published law, for comparison.
+    pub published: Option<Published>,
+}
+
+/// A law as its source prints it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Published {
+    /// `omega` or `omega^2` as a polynomial in the amplitude `A` = x(0) and the parameters.
+    pub law: &'static str,
+    /// Whether it is omega^2.
+    pub squared: bool,
+    /// The order in the small parameter to which it is printed.
+    pub order: u32,
+}
+
+const fn omega(law: &'static str, order: u32) -> Option<Published> {
+    Some(Published {
+        law,
+        squared: false,
+        order,
+    })
+}
+
+const fn omega_squared(law: &'static str, order: u32) -> Option<Published> {
+    Some(Published {
+        law,
+        squared: true,
+        order,
+    })
+}
+
+const NAYFEH_MOOK: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 2";
+const MICKENS: &str = "R. E. Mickens, Truly Nonlinear Oscillations, World Scientific 2010";
+
+/// Every oscillator, in the order of the listing.
+pub const CATALOG: &[Entry] = &[
+    Entry {
+        name: "pendulum",
+        title: "mathematical pendulum",
+        equation: "x'' + sin(x) = 0",
+        source: "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed., section 11, problem 1",
+        published: omega("1 - A^2/16 + A^4/3072", 4),
+    },
+    Entry {
+        name: "cubic-pendulum",
+        title: "pendulum with the sine cut after x^3",
+        equation: "x'' + x - x^3/6 = 0",
+        source: "the source paper, equations (11) and (12)",
+        published: omega_squared("1 - A^2/8", 2),
+    },
+    Entry {
+        name: "quintic-pendulum",
+        title: "pendulum with the sine cut after x^5",
+        equation: "x'' + x - x^3/6 + x^5/120 = 0",
+        source: NAYFEH_MOOK,
+        published: omega("1 - A^2/16 + A^4/3072", 4),
+    },
+    Entry {
+        name: "duffing",
+        title: "hardening spring of Duffing",
+        equation: "x'' + x + eps*x^3 = 0",
+        source: NAYFEH_MOOK,
+        published: omega("1 + 3*eps*A^2/8 - 21*eps^2*A^4/256", 2),
+    },
+    Entry {
+        name: "duffing-softening",
+        title: "softening spring of Duffing",
+        equation: "x'' + x - eps*x^3 = 0",
+        source: NAYFEH_MOOK,
+        published: omega("1 - 3*eps*A^2/8 - 21*eps^2*A^4/256", 2),
+    },
+    Entry {
+        name: "double-well",
+        title: "two wells, unstable between them",
+        equation: "x'' - x + x^3 = 0",
+        source: "J. Guckenheimer, P. Holmes, Nonlinear Oscillations, Dynamical Systems and Bifurcations, Springer 1983, section 2.2",
+        published: None,
+    },
+    Entry {
+        name: "pure-cubic",
+        title: "spring without a linear part",
+        equation: "x'' + x^3 = 0",
+        source: MICKENS,
+        published: None,
+    },
+    Entry {
+        name: "quintic",
+        title: "quintic spring",
+        equation: "x'' + x + eps*x^5 = 0",
+        source: MICKENS,
+        published: omega("1 + 5*eps*A^4/16", 1),
+    },
+    Entry {
+        name: "helmholtz",
+        title: "quadratic spring of Helmholtz",
+        equation: "x'' + x + eps*x^2 = 0",
+        source: NAYFEH_MOOK,
+        published: omega("1 - 5*eps^2*A^2/12", 2),
+    },
+    Entry {
+        name: "mixed-parity",
+        title: "quadratic and cubic spring",
+        equation: "x'' + x + eps*(alpha*x^2 + beta*x^3) = 0",
+        source: NAYFEH_MOOK,
+        published: omega("1 + 3*beta*eps*A^2/8", 1),
+    },
+    Entry {
+        name: "van-der-pol",
+        title: "oscillator of van der Pol",
+        equation: "x'' - mu*(1 - x^2)*x' + x = 0",
+        source: "C. M. Andersen, J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693",
+        published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
+    },
+    Entry {
+        name: "rayleigh",
+        title: "oscillator of Rayleigh",
+        equation: "x'' - mu*(1 - x'^2/3)*x' + x = 0",
+        source: "Lord Rayleigh, Philosophical Magazine 15 (1883) 229-235",
+        published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
+    },
+    Entry {
+        name: "duffing-harmonic",
+        title: "Duffing-harmonic oscillator",
+        equation: "x'' + x^3/(1 + x^2) = 0",
+        source: "R. E. Mickens, J. Sound Vib. 244 (2001) 563-567",
+        published: None,
+    },
+    Entry {
+        name: "relativistic",
+        title: "relativistic harmonic oscillator",
+        equation: "x'' + (1 - x'^2)^(3/2)*x = 0",
+        source: "R. E. Mickens, J. Sound Vib. 212 (1998) 905-908",
+        published: omega_squared("1 - 3*A^2/8", 2),
+    },
+    Entry {
+        name: "mathews-lakshmanan",
+        title: "mass that depends on position",
+        equation: "(1 + x^2)*x'' - x*x'^2 + x = 0",
+        source: "P. M. Mathews, M. Lakshmanan, Quart. Appl. Math. 32 (1974) 215-218: omega^2 = 1/(1 + A^2)",
+        published: omega_squared("1 - A^2 + A^4", 4),
+    },
+    Entry {
+        name: "morse",
+        title: "molecular bond of Morse",
+        equation: "x'' + exp(-x) - exp(-2*x) = 0",
+        source: "P. M. Morse, Phys. Rev. 34 (1929) 57-64",
+        published: None,
+    },
+    Entry {
+        name: "toda",
+        title: "one link of Toda's lattice",
+        equation: "x'' + exp(x) - 1 = 0",
+        source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
+        published: omega("1 - A^2/24", 2),
+    },
+    Entry {
+        name: "quadratic-odd",
+        title: "odd quadratic spring",
+        equation: "x'' + x*abs(x) = 0",
+        source: MICKENS,
+        published: None,
+    },
+    Entry {
+        name: "signum",
+        title: "constant force towards the middle",
+        equation: "x'' + sgn(x) = 0",
+        source: MICKENS,
+        published: None,
+    },
+    Entry {
+        name: "cube-root",
+        title: "cube-root spring",
+        equation: "x'' + x^(1/3) = 0",
+        source: "R. E. Mickens, J. Sound Vib. 246 (2001) 375-378",
+        published: None,
+    },
+    Entry {
+        name: "rotating-pendulum",
+        title: "pendulum on a rotating support",
+        equation: "x'' + sin(x) - lambda*sin(x)*cos(x) = 0",
+        source: NAYFEH_MOOK,
+        published: None,
+    },
+    Entry {
+        name: "magnetic-wire",
+        title: "current-carrying wire beside a fixed one",
+        equation: "x'' + x - lambda/(1 - x) = 0",
+        source: NAYFEH_MOOK,
+        published: None,
+    },
+    Entry {
+        name: "tapered-spring",
+        title: "saturating spring",
+        equation: "x'' + tanh(x) = 0",
+        source: MICKENS,
+        published: None,
+    },
+    Entry {
+        name: "damped-pendulum",
+        title: "pendulum with viscous damping",
+        equation: "x'' + 2*zeta*x' + sin(x) = 0",
+        source: "the source paper, equation (7) without friction, excitation and barrier",
+        published: None,
+    },
+];
+
+/// The entry of this name.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    CATALOG.iter().find(|entry| entry.name == name)
+}
+
+/// Every method at its default order on an entry: `Ok` where it applies, the refusal where it does not.
+pub fn methods(entry: &Entry) -> Vec<(Method, Result<(), Refusal>)> {
+    let attempt = |method| {
+        let options = Options {
+            method: Some(method),
+            ..Options::default()
+        };
+        let oscillator = Oscillator::parse(entry.equation)?;
+        solve(&oscillator, &options).map(|_| ())
+    };
+    Method::ALL
+        .into_iter()
+        .map(|method| (method, attempt(method)))
+        .collect()
+}

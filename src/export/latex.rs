@@ -1,0 +1,475 @@
+//! LaTeX for everything that prints as text: expressions, laws, motions, whole solutions.
+//!
+//! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek letters and the named
+//! functions.
+
+use std::fmt::Write as _;
+
+use num_traits::{One, Signed, Zero};
+
+use crate::contact::phases::{Column, Form, Phase};
+use crate::decimal::decimal;
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
+use crate::exact::{Polynomial, Rational};
+use crate::expr::{Expr, Function, Node, parse_expression};
+use crate::impact::Impact;
+use crate::series::FourierSeries;
+use crate::solution::{Method, Solution};
+use crate::symbol::Symbol;
+use crate::verify::{Verdict, Verification};
+
+/// An expression.
+pub fn expression(expression: &Expr) -> String {
+    match expression.node() {
+        Node::Sum(terms) => {
+            let mut text = String::new();
+            for term in terms {
+                let term = single_term(term);
+                match (text.is_empty(), term.strip_prefix('-')) {
+                    (true, _) => text.push_str(&term),
+                    (false, Some(rest)) => text.extend([" - ", rest]),
+                    (false, None) => text.extend([" + ", &term]),
+                }
+            }
+            text
+        }
+        _ => single_term(expression),
+    }
+}
+
+/// Sign, numerator and denominator of one term, as a fraction where there is a denominator.
+fn single_term(term: &Expr) -> String {
+    let (coefficient, factors) = term.factors();
+    let sign = if coefficient.is_negative() { "-" } else { "" };
+    let (mut above, mut below) = (vec![], vec![]);
+    for factor in factors {
+        let (base, exponent) = factor.base_and_exponent();
+        match exponent.as_number() {
+            Some(number) if number.is_negative() => below.push(power(&base, &Expr::number(-number))),
+            _ => above.push(power(&base, &exponent)),
+        }
+    }
+    let (numerator, denominator) = (coefficient.numer().abs(), coefficient.denom().clone());
+    if !numerator.is_one() || above.is_empty() {
+        above.insert(0, numerator.to_string());
+    }
+    if !denominator.is_one() {
+        below.insert(0, denominator.to_string());
+    }
+    let above = above.join(" ");
+    if let [lone] = below.as_mut_slice()
+        && let Some(inside) = lone
+            .strip_prefix("\\left(")
+            .and_then(|rest| rest.strip_suffix("\\right)"))
+        && !inside.contains("\\right)")
+    {
+        *lone = inside.to_owned();
+    }
+    match below.is_empty() {
+        true => format!("{sign}{above}"),
+        false => format!("{sign}\\frac{{{above}}}{{{}}}", below.join(" ")),
+    }
+}
+
+fn power(base: &Expr, exponent: &Expr) -> String {
+    let half = Rational::new(1.into(), 2.into());
+    match exponent.as_number() {
+        Some(number) if number.is_one() => atom(base),
+        Some(number) if *number == half => format!("\\sqrt{{{}}}", expression(base)),
+        _ => {
+            // A function carries its exponent, `\sin^{2} x`, and a derivative needs braces around its primes.
+            let inside = match base.node() {
+                Node::Symbol(symbol) if symbol.primes() > 0 => format!("{{{}}}", self::symbol(*symbol)),
+                Node::Function(..) => format!("\\left({}\\right)", expression(base)),
+                _ => atom(base),
+            };
+            format!("{inside}^{{{}}}", exponent_text(exponent))
+        }
+    }
+}
+
+fn exponent_text(exponent: &Expr) -> String {
+    match exponent.as_number() {
+        Some(number) if !number.is_integer() => format!("{}/{}", number.numer(), number.denom()),
+        _ => expression(exponent),
+    }
+}
+
+/// A factor that needs no sign between itself and its neighbours.
+fn atom(factor: &Expr) -> String {
+    match factor.node() {
+        Node::Number(number) if number.is_integer() && !number.is_negative() => number.to_string(),
+        Node::Pi => "\\pi".to_owned(),
+        Node::Symbol(symbol) => self::symbol(*symbol),
+        Node::Function(function, arguments) => call(*function, arguments),
+        Node::Power(base, exponent) => power(base, exponent),
+        Node::Number(_) | Node::Sum(_) | Node::Product(..) => format!("\\left({}\\right)", expression(factor)),
+    }
+}
+
+fn call(function: Function, arguments: &[Expr]) -> String {
+    let list: Vec<String> = arguments.iter().map(expression).collect();
+    let list = list.join(", ");
+    let name = match function {
+        Function::Absolute => return format!("\\left|{list}\\right|"),
+        Function::Asin => "\\arcsin",
+        Function::Acos => "\\arccos",
+        Function::Atan => "\\arctan",
+        Function::Log => "\\ln",
+        Function::Sign => "\\operatorname{sgn}",
+        Function::Step => "H",
+        Function::Sin => "\\sin",
+        Function::Cos => "\\cos",
+        Function::Tan => "\\tan",
+        Function::Sinh => "\\sinh",
+        Function::Cosh => "\\cosh",
+        Function::Tanh => "\\tanh",
+        Function::Exp => "\\exp",
+        Function::Maximum => "\\max",
+        Function::Minimum => "\\min",
+    };
+    format!("{name}\\left({list}\\right)")
+}
+
+const GREEK: [&str; 22] = [
+    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
+    "tau", "phi", "chi", "psi", "omega", "Omega", "Gamma", "Lambda",
+];
+
+/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter.
+pub fn symbol(symbol: Symbol) -> String {
+    let bare = symbol.coordinate().name();
+    let (stem, index) = match bare.split_once('_') {
+        Some((stem, index)) => (stem, index.to_owned()),
+        None => {
+            let stem = bare.trim_end_matches(|letter: char| letter.is_ascii_digit());
+            (stem, bare[stem.len()..].to_owned())
+        }
+    };
+    // The barrier's position is written x_c.
+    let (stem, index) = if stem == "xc" {
+        ("x", "c".to_owned())
+    } else {
+        (stem, index)
+    };
+    let letter = match stem {
+        "eps" | "epsilon" => "\\varepsilon".to_owned(),
+        _ if GREEK.contains(&stem) => format!("\\{stem}"),
+        _ if stem.chars().count() == 1 => stem.to_owned(),
+        _ => format!("\\mathrm{{{}}}", stem.replace('_', "\\_")),
+    };
+    let letter = match symbol.primes() {
+        0 => letter,
+        1 => format!("\\dot{{{letter}}}"),
+        _ => format!("\\ddot{{{letter}}}"),
+    };
+    match index.is_empty() {
+        true => letter,
+        false => format!("{letter}_{{{}}}", index.replace('_', "\\_")),
+    }
+}
+
+/// A polynomial with the lowest power of the small parameter first.
+fn law(polynomial: &Polynomial, solution: &Solution) -> String {
+    let mut terms: Vec<_> = polynomial.terms().collect();
+    terms.sort_by_key(|(monomial, _)| monomial.exponent(solution.small_parameter));
+    let mut text = String::new();
+    for (monomial, coefficient) in terms {
+        let term = coefficient_term(monomial, coefficient, solution.numerical);
+        match (text.is_empty(), term.strip_prefix('-')) {
+            (true, _) => text.push_str(&term),
+            (false, Some(rest)) => text.extend([" - ", rest]),
+            (false, None) => text.extend([" + ", &term]),
+        }
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+fn coefficient_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> String {
+    let term = |number: Rational| single_term(&Expr::from(&Polynomial::term(monomial.clone(), number)));
+    match numerical && !coefficient.is_integer() {
+        false => term(coefficient.clone()),
+        true if monomial.factors().is_empty() => scientific(to_f64(coefficient)),
+        true => format!("{}\\,{}", scientific(to_f64(coefficient)), term(Rational::one())),
+    }
+}
+
+fn scientific(value: f64) -> String {
+    let text = decimal(value);
+    match text.split_once('e') {
+        None => text,
+        Some((mantissa, exponent)) => format!("{mantissa} \\cdot 10^{{{exponent}}}"),
+    }
+}
+
+/// An equation of motion, `left = right`, as it stands in a solution.
+fn equation(text: &str) -> String {
+    let side = |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
+    match text.split_once('=') {
+        Some((left, right)) => format!("{} = {}", side(left), side(right)),
+        None => side(text),
+    }
+}
+
+/// The derived formula, and the verdict where it was judged, to be pasted into an article.
+pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
+    let mut lines = vec![equation(&solution.equation).replacen(" = ", " &= ", 1)];
+    if let Some(squared) = &solution.frequency_squared {
+        lines.push(format!("\\omega^{{2}} &= {}", law(squared, solution)));
+    }
+    if let Some(frequency) = &solution.frequency {
+        lines.push(format!("\\omega &= {}", law(frequency, solution)));
+    }
+    if let (None, Some(relation)) = (&solution.frequency_squared, &solution.relation) {
+        lines.push(format!("0 &= {}", expression(&Expr::from(relation))));
+    }
+    if let Some((name, value)) = solution.closed_form.as_deref().and_then(|form| form.split_once(" = ")) {
+        let side = |text| parse_expression(text).map_or_else(|_| String::new(), |side| expression(&side));
+        lines.push(format!("{} &= {}", side(name), side(value)));
+    }
+    if let Some(amplitude) = &solution.limit_cycle {
+        lines.push(format!(
+            "{} &= {}",
+            symbol(solution.amplitude.symbol()),
+            law(amplitude, solution)
+        ));
+    }
+    lines.extend(motion(solution));
+    for definition in &solution.definitions {
+        lines.push(format!(
+            "{} &= {}",
+            symbol(definition.symbol),
+            expression(&definition.meaning)
+        ));
+    }
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "% {} to order {} in {}; {}",
+        solution.method.title(),
+        solution.order,
+        solution.order_counts(),
+        solution.amplitude
+    );
+    for line in &solution.validity {
+        let _ = writeln!(text, "% {line}");
+    }
+    if let Some(verification) = verification {
+        let verdict = if verification.verdict == Verdict::Pass {
+            "pass"
+        } else {
+            "fail"
+        };
+        let error = verification
+            .relative_error
+            .map_or("none".to_owned(), |error| decimal(100.0 * error) + " %");
+        let truth = decimal(verification.true_frequency);
+        let _ = writeln!(text, "% true omega {truth}, relative error {error}, verdict {verdict}");
+    }
+    let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
+    text
+}
+
+/// The story of an impact: equation, law, three phases by either column, and the numbers beside Runge-Kutta.
+pub fn impact(impact: &Impact, tolerance: f64) -> String {
+    let setup = &impact.setup;
+    let mut lines = vec![equation(&impact.equation).replacen(" = ", " &= ", 1)];
+    if let Some(squared) = &impact.law.frequency_squared {
+        lines.push(format!("\\omega^{{2}} &= {}", law(squared, &impact.law)));
+    }
+    for (label, value) in [
+        ("A", setup.amplitude),
+        ("x_{c}", setup.barrier),
+        ("\\gamma", setup.stiffness),
+    ] {
+        lines.push(format!("{label} &= {}", scientific(value)));
+    }
+    let mut text = String::from("% gamma: ");
+    let _ = writeln!(text, "{}", setup.stiffness_source);
+    for (title, phases) in [
+        ("contact speed from the one-term motion", &impact.paper),
+        ("contact speed from the energy", &impact.energy),
+    ] {
+        lines.push(format!("&\\text{{{title}:}}"));
+        lines.extend(phases.phases.iter().map(phase));
+    }
+    let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
+    text.push_str("\\begin{tabular}{lrrrrr}\n & Runge--Kutta & paper & error & energy & error \\\\\n\\hline\n");
+    for quantity in impact.quantities() {
+        let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
+        let _ = writeln!(
+            text,
+            "{} & ${}$ & ${}$ & {} & ${}$ & {} \\\\",
+            quantity.name,
+            scientific(quantity.runge_kutta),
+            scientific(quantity.paper),
+            percent(quantity.paper_error()),
+            scientific(quantity.energy),
+            percent(quantity.energy_error())
+        );
+    }
+    text.push_str("\\end{tabular}\n");
+    let name = |column| {
+        if impact.verdict(column, tolerance) == Verdict::Pass {
+            "pass"
+        } else {
+            "fail"
+        }
+    };
+    let _ = writeln!(
+        text,
+        "% verdict: paper {}, energy {}",
+        name(Column::Paper),
+        name(Column::Energy)
+    );
+    text
+}
+
+fn phase(phase: &Phase) -> String {
+    let clock = match phase.name {
+        "contact" => "(t - t_{1})",
+        "return" => "(t - t_{2})",
+        _ => "t",
+    };
+    let signed = |value: f64| format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()));
+    let form = match phase.form {
+        Form::Cosine {
+            amplitude,
+            frequency,
+            phase,
+        } => {
+            let shift = if phase == 0.0 {
+                String::new()
+            } else {
+                format!(" {}", signed(phase))
+            };
+            format!(
+                "{} \\cos\\left({}\\,{clock}{shift}\\right)",
+                scientific(amplitude),
+                scientific(frequency)
+            )
+        }
+        Form::Oscillation {
+            centre,
+            amplitude,
+            frequency,
+        } => {
+            let angle = format!("\\left({}\\,{clock}\\right)", scientific(frequency));
+            let centre = crate::decimal::significant(centre, 9);
+            format!(
+                "{centre} {} \\cos{angle} {} \\sin{angle}",
+                signed(amplitude.re),
+                signed(-amplitude.im)
+            )
+        }
+    };
+    format!("x(t) &= {form}")
+}
+
+/// The terms of a Fourier series in theta, each with its sign.
+fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<(char, String)> {
+    let mut waves = Vec::new();
+    for (k, cosine, sine) in series.harmonics() {
+        for (function, coefficient) in [("\\cos", cosine), ("\\sin", sine)] {
+            if coefficient.is_zero() {
+                continue;
+            }
+            let wave = match k {
+                0 => String::new(),
+                1 => format!(" {function} \\theta"),
+                _ => format!(" {function} {k}\\theta"),
+            };
+            let text = law(&coefficient, solution);
+            let (sign, text) = match (coefficient.single_term().is_some(), text.strip_prefix('-')) {
+                (true, Some(rest)) => ('-', rest.to_owned()),
+                (true, None) => ('+', text),
+                (false, _) if k == 0 => ('+', text),
+                (false, _) => ('+', format!("\\left({text}\\right)")),
+            };
+            let text = if text == "1" && k > 0 { String::new() } else { text };
+            waves.push((sign, format!("{text}{wave}")));
+        }
+    }
+    waves
+}
+
+/// The motion, one harmonic a line.
+fn motion(solution: &Solution) -> Vec<String> {
+    let coordinate = solution.equation.split('\'').next().unwrap_or("x");
+    let mut lines = Vec::new();
+    for (sign, wave) in waves(&solution.displacement, solution) {
+        lines.push(match (lines.is_empty(), sign) {
+            (true, '+') => format!("{coordinate}(t) &= {wave}"),
+            (true, _) => format!("{coordinate}(t) &= -{wave}"),
+            (false, _) => format!("&\\quad {sign} {wave}"),
+        });
+    }
+    lines.push("\\theta &= \\omega t".to_owned());
+    lines
+}
+
+/// The derivation, order by order.
+pub fn steps(solution: &Solution) -> String {
+    let one_line = |series: &FourierSeries<Polynomial>| {
+        let mut text = String::new();
+        for (sign, wave) in waves(series, solution) {
+            match (text.is_empty(), sign) {
+                (true, '+') => text.push_str(&wave),
+                (true, _) => text.extend(["-", &wave]),
+                (false, _) => text.push_str(&format!(" {sign} {wave}")),
+            }
+        }
+        if text.is_empty() { "0".to_owned() } else { text }
+    };
+    let squared = match solution.method {
+        Method::HomotopyPerturbation => "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - W_{1} - W_{2} - \\dots\\right)",
+        Method::LindstedtPoincare => "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",
+    };
+    let mut lines = vec![
+        squared.to_owned(),
+        "y_{0}'' + y_{0} &= 0, \\qquad y_{0} = \\cos \\theta".to_owned(),
+    ];
+    for step in &solution.steps {
+        let (n, resonance) = (step.order, law(&step.resonance, solution));
+        let right_side = one_line(&step.right_side);
+        lines.push(format!(
+            "y_{{{n}}}'' + y_{{{n}}} &= {right_side} + \\left({resonance} + W_{{{n}}}\\right) \\cos \\theta"
+        ));
+        lines.push(format!("W_{{{n}}} &= {}", law(&step.correction, solution)));
+        lines.push(format!("y_{{{n}}} &= {}", one_line(&step.displacement)));
+    }
+    format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expressions_as_in_an_article() {
+        for (text, expected) in [
+            ("1 - A^2/8 + 7*A^4/1536", r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}"),
+            (
+                "x'' + 2*zeta*x' + sin(x)",
+                r"\ddot{x} + 2 \zeta \dot{x} + \sin\left(x\right)",
+            ),
+            (
+                "omega0 + 3*eps*A^2/(8*omega0)",
+                r"\omega_{0} + \frac{3 \varepsilon A^{2}}{8 \omega_{0}}",
+            ),
+            (
+                "gamma*(x - xc)^(3/2)*H(x - xc)",
+                r"\gamma \left(x - x_{c}\right)^{3/2} H\left(x - x_{c}\right)",
+            ),
+            ("sqrt(k + 1)", r"\sqrt{1 + k}"),
+            ("-x/2", r"-\frac{x}{2}"),
+            ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
+            ("mass_1*x", r"\mathrm{mass}_{1} x"),
+            ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
+        ] {
+            let parsed = parse_expression(text).expect(text);
+            assert_eq!(expression(&parsed), expected, "{text}");
+        }
+    }
+}

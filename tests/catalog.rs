@@ -1,0 +1,104 @@
+//! Every classical oscillator: its equation, its methods, its published law, its motion.
+
+use std::collections::BTreeSet;
+
+use lindstedt::Oscillator;
+use lindstedt::catalog::{CATALOG, find, methods};
+use lindstedt::exact::Polynomial;
+use lindstedt::expr::parse_expression;
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::{AmplitudeConvention, Method};
+use lindstedt::verify::{Values, Verdict, judge, needed_values};
+
+#[test]
+fn names_are_unique_and_lead_back() {
+    let names: BTreeSet<&str> = CATALOG.iter().map(|entry| entry.name).collect();
+    assert_eq!(names.len(), CATALOG.len());
+    assert!(CATALOG.len() >= 16);
+    for entry in CATALOG {
+        assert_eq!(find(entry.name), Some(entry));
+        Oscillator::parse(entry.equation).expect(entry.name);
+    }
+}
+
+#[test]
+fn every_method_answers_or_says_why_not() {
+    let mut answers = 0;
+    for entry in CATALOG {
+        for (method, result) in methods(entry) {
+            match result {
+                Ok(()) => answers += 1,
+                Err(refusal) => assert!(refusal.to_string().len() > 20, "{} {}", entry.name, method.name()),
+            }
+        }
+    }
+    assert!(answers >= 24, "{answers} answers");
+}
+
+#[test]
+fn derived_laws_are_the_published_ones() {
+    let mut compared = 0;
+    for entry in CATALOG {
+        let Some(published) = entry.published else { continue };
+        let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
+        let amplitude = Some(AmplitudeConvention::Initial);
+        let options = Options {
+            order: Some(published.order),
+            amplitude,
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).expect(entry.name);
+        let law = if published.squared {
+            &solution.frequency_squared
+        } else {
+            &solution.frequency
+        };
+        let expected = parse_expression(published.law)
+            .expect(entry.name)
+            .to_polynomial(&mut |_| None);
+        let expected: Option<Polynomial> = expected.expect("short");
+        assert_eq!(*law, expected, "{}", entry.name);
+        compared += 1;
+    }
+    assert!(compared >= 12, "{compared} published laws");
+}
+
+#[test]
+fn derived_motions_are_the_true_ones_at_small_amplitudes() {
+    for entry in CATALOG {
+        let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
+        for method in Method::ALL {
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            let Ok(solution) = solve(&oscillator, &options) else {
+                continue;
+            };
+            let mut at = Values::default();
+            for name in needed_values(&solution) {
+                // Small amplitudes and parameters; those of the shape may be of order one.
+                let value = match name.name() {
+                    "A" | "a" => "1/20",
+                    "eps" | "mu" => "1/10",
+                    _ => "1/2",
+                };
+                at.insert(name, value.parse().expect("a number")).expect("a value");
+            }
+            let verdict =
+                judge(&oscillator, &solution, &at, 1e-3).unwrap_or_else(|error| panic!("{}: {error}", entry.name));
+            assert_eq!(
+                verdict.verdict,
+                Verdict::Pass,
+                "{} by {}: {verdict:?}",
+                entry.name,
+                method.name()
+            );
+            assert!(
+                verdict.max_deviation.is_some_and(|deviation| deviation < 5e-3),
+                "{} {verdict:?}",
+                entry.name
+            );
+        }
+    }
+}

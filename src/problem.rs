@@ -59,7 +59,7 @@ pub struct Pendulum {
 
 /// One barrier on the right, or one on either side.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number, or two: [left, right]")]
 pub enum Barrier {
     /// The position of the right one.
     Right(f64),

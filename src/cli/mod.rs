@@ -196,7 +196,12 @@ fn write_file(path: &Path, text: &str) -> Result<(), String> {
 
 /// The text of a file, or of standard input for `-`; never more than a problem may have.
 fn read(path: &Path) -> Result<String, Failure> {
-    let failure = |error: std::io::Error| Failure::Refused(format!("cannot read {}: {error}", path.display()));
+    let name = if path.as_os_str() == "-" {
+        "standard input".to_owned()
+    } else {
+        path.display().to_string()
+    };
+    let failure = |error: std::io::Error| Failure::Refused(format!("cannot read {name}: {error}"));
     let limit = LARGEST_FILE as u64 + 1;
     let mut bytes = Vec::new();
     if path.as_os_str() == "-" {
@@ -215,8 +220,7 @@ fn read(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         Failure::Refused(format!(
-            "{} is not UTF-8 text: byte {place} belongs to no character",
-            path.display()
+            "{name} is not UTF-8 text: byte {place} belongs to no character"
         ))
     })
 }

@@ -119,7 +119,7 @@ pub enum LinearisationError {
     #[error("the elastic force does no positive work up to the depth {0}: it must push back")]
     NotElastic(f64),
     /// The force stays below the energy of the impact at any depth.
-    #[error("the elastic force stops no impact of energy {0} (per unit of gamma): it must grow with the depth")]
+    #[error("the elastic force stops no impact of energy {0:e} (per unit of gamma): it must grow with the depth")]
     NeverStops(f64),
     /// An integral over the force failed.
     #[error("the elastic force is not smooth enough to be replaced by a line: {0}")]

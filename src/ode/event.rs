@@ -234,3 +234,66 @@ fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f
         samples.sort_by(|one, other| one.0.total_cmp(&other.0));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::trajectory::FRACTIONS;
+    use super::*;
+
+    /// A step of length 1 with x from `from` to `to` in a straight line.
+    fn line(from: f64, to: f64) -> Step {
+        let start = State {
+            t: 0.0,
+            x: from,
+            v: 0.0,
+        };
+        Step::new(
+            0,
+            start,
+            1.0,
+            &FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]),
+        )
+    }
+
+    /// The crossings of x = 0 in such steps, one after the other from the start of a phase.
+    fn crossings(steps: &[(f64, f64)]) -> Vec<Vec<f64>> {
+        let event = Event::record(|_, x, _| x);
+        let mut watch = Watch::default();
+        let follow = |(index, &(from, to))| watch.crossings(&line(from, to), &event, index == 0).unwrap();
+        steps.iter().enumerate().map(follow).collect()
+    }
+
+    #[test]
+    fn a_sign_that_changes_between_two_steps_is_a_crossing() {
+        assert_eq!(crossings(&[(1.0, 1e-9), (-1e-9, -1.0)]), [vec![], vec![0.0]]);
+    }
+
+    #[test]
+    fn a_start_is_no_crossing_reaching_zero_is_one_and_leaving_it_is_none() {
+        assert_eq!(
+            crossings(&[(0.0, 1.0), (1.0, 0.0), (0.0, -1.0)]),
+            [vec![], vec![1.0], vec![]]
+        );
+        let middle = crossings(&[(-1.0, 1.0)])[0][0];
+        assert!((middle - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_phase_is_left_at_once_only_through_its_own_switch() {
+        let next = |state: State| (0, state);
+        for (event, found) in [
+            (Event::switch(|_, x, _| x, next).falling(), 1),
+            (Event::switch(|_, x, _| x, next).rising(), 0),
+            (Event::switch(|_, x, _| x, next), 0),
+            (Event::stop(|_, x, _| x).falling(), 0),
+        ] {
+            assert_eq!(
+                Watch::default()
+                    .crossings(&line(0.0, -1.0), &event, true)
+                    .unwrap()
+                    .len(),
+                found
+            );
+        }
+    }
+}

@@ -315,14 +315,20 @@ impl TrueMotion {
     ) -> Result<Self, VerificationError> {
         let physics = Physics::new(oscillator, solution, numbers)?;
         let start = physics.start(solution, numbers)?;
+        // The energy knows first whether there is an orbit at all, and says why not.
+        let by_energy = match physics.conservative {
+            true => Some(period::conservative_period(
+                &physics.force(),
+                physics.equilibrium,
+                start,
+            )?),
+            false => None,
+        };
         let path = match solution.limit_cycle {
             Some(_) => period::limit_cycle(&physics.acceleration(), physics.equilibrium, start, physics.longest)?,
             None => period::swing(&physics.acceleration(), physics.equilibrium, start, physics.longest)?,
         };
-        let frequency = match physics.conservative {
-            true => TAU / period::conservative_period(&physics.force(), physics.equilibrium, start)?,
-            false => TAU / path.end().t,
-        };
+        let frequency = TAU / by_energy.unwrap_or(path.end().t);
         let shift = match solution.amplitude {
             AmplitudeConvention::Initial => 0.0,
             AmplitudeConvention::FirstHarmonic => {

@@ -1,13 +1,17 @@
-//! A module uses only those that stand above it in `src/lib.rs`: the file tree is the way of the data.
+//! A module uses only those that stand below it: the file tree is the way of the data.
+//!
+//! Every path in `src/` that starts at the root of the crate is read: `crate::name`, `crate::{a, b::c}`, a chain of
+//! `super` long enough to reach the root, and the names that `lib.rs` hands on (`crate::Oscillator` is the module
+//! `oscillator`). Unit tests may look anywhere: they hold one layer against the others.
 
 use std::path::{Path, PathBuf};
 
-/// The layers, lowest first; one line may hold several that do not use each other.
-const LAYERS: [&[&str]; 15] = [
-    &["symbol", "spelling"],
+/// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only and uses nothing at all.
+const LAYERS: [&[&str]; 16] = [
+    &["symbol", "spelling", "ode"],
     &["exact"],
     &["decimal"],
-    &["expr", "ode"],
+    &["expr"],
     &["series"],
     &["solution"],
     &["oscillator"],
@@ -19,85 +23,238 @@ const LAYERS: [&[&str]; 15] = [
     &["problem"],
     &["catalog"],
     &["export"],
+    &["cli"],
 ];
 
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|modules| modules.contains(&module))
 }
 
-/// The modules that a line of the module `own` uses and may not.
-fn offences<'a>(own: &str, line: &'a str) -> Vec<&'a str> {
-    let code = line.split("//").next().unwrap_or(line);
-    let used = code.split("crate::").skip(1).filter_map(|rest| {
-        let end = rest
-            .find(|letter: char| !(letter.is_alphanumeric() || letter == '_'))
-            .unwrap_or(rest.len());
-        Some(&rest[..end]).filter(|name| name.starts_with(|letter: char| letter.is_lowercase()))
-    });
+/// One source file: which module it belongs to and how many `super` lead from it to the root.
+struct Source<'a> {
+    module: &'a str,
+    depth: usize,
+    text: &'a str,
+}
+
+/// A use of another module: line, counted from one, and the name after the root.
+type Use = (usize, String);
+
+/// Every module of the crate that a text names by a path from the root.
+fn uses(source: &Source, handed_on: &[(String, String)]) -> Vec<Use> {
+    let code = without_comments(without_unit_tests(source.text));
+    let roots = [
+        "crate::".to_owned(),
+        "lindstedt::".to_owned(),
+        "super::".repeat(source.depth),
+    ];
+    let mut found = Vec::new();
+    for root in &roots {
+        for (place, _) in code.match_indices(root.as_str()) {
+            let before = code[..place].chars().next_back();
+            if before.is_some_and(|letter| letter.is_alphanumeric() || letter == '_' || letter == ':') {
+                continue;
+            }
+            let line = code[..place].matches('\n').count() + 1;
+            found.extend(
+                first_names(&code[place + root.len()..])
+                    .into_iter()
+                    .map(|name| (line, name)),
+            );
+        }
+    }
+    found.sort();
+    found.dedup();
+    let module = |name: String| {
+        let handed = handed_on.iter().find(|entry| entry.0 == name);
+        handed.map_or(name, |entry| entry.1.clone())
+    };
+    found.into_iter().map(|(line, name)| (line, module(name))).collect()
+}
+
+/// `a` of `a::b`, or `a` and `c` of `{a::b, c::{d, e}}`.
+fn first_names(path: &str) -> Vec<String> {
+    let Some(group) = path.strip_prefix('{') else {
+        return vec![leading_name(path)];
+    };
+    let (mut depth, mut names, mut expecting) = (0, Vec::new(), true);
+    for (place, letter) in group.char_indices() {
+        match letter {
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            '{' => depth += 1,
+            ',' if depth == 0 => expecting = true,
+            _ if expecting && depth == 0 && !letter.is_whitespace() => {
+                names.push(leading_name(&group[place..]));
+                expecting = false;
+            }
+            _ => {}
+        }
+    }
+    names
+}
+
+fn leading_name(path: &str) -> String {
+    path.chars()
+        .take_while(|&letter| letter.is_alphanumeric() || letter == '_')
+        .collect()
+}
+
+fn without_unit_tests(text: &str) -> &str {
+    text.split("#[cfg(test)]\nmod tests").next().unwrap_or(text)
+}
+
+/// Comments blanked line by line, so that the lines keep their numbers.
+fn without_comments(text: &str) -> String {
+    let line = |line: &str| line.split("//").next().unwrap_or(line).to_owned();
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The uses that are not allowed, as messages that name the line.
+fn offences(source: &Source, handed_on: &[(String, String)]) -> Vec<String> {
+    let own = source.module;
     let allowed = |used: &str| used == own || layer(used).zip(layer(own)).is_some_and(|(used, own)| used < own);
-    used.filter(|used| !allowed(used)).collect()
+    uses(source, handed_on)
+        .into_iter()
+        .filter(|(_, used)| !allowed(used))
+        .map(|(line, used)| match layer(&used) {
+            Some(_) => format!("{line}: `{own}` uses `{used}`, which is not below it"),
+            None => format!("{line}: `{own}` uses `{used}`, which belongs to no layer"),
+        })
+        .collect()
+}
+
+/// The names that `lib.rs` hands on from a module: `pub use oscillator::Oscillator;`.
+fn handed_on(library: &str) -> Vec<(String, String)> {
+    let line = |line: &str| {
+        let path = line.strip_prefix("pub use ")?.strip_suffix(';')?;
+        let (module, name) = path.split_once("::")?;
+        Some((name.to_owned(), module.to_owned()))
+    };
+    library.lines().filter_map(line).collect()
 }
 
 fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder)
-        .expect("a folder of sources")
-        .filter_map(Result::ok)
-    {
-        let path = entry.path();
+    for entry in std::fs::read_dir(folder).expect("a folder of sources") {
+        let path = entry.expect("an entry that can be read").path();
         if path.is_dir() {
-            files.extend(source_files(&path))
-        } else {
-            files.push(path)
+            files.extend(source_files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
         }
     }
     files.sort();
     files
 }
 
+/// The names on the way from the root of the crate to a file: `series, taylor`; `mod.rs` is its folder.
+fn module_path(inside: &Path) -> Vec<String> {
+    let names = inside.with_extension("");
+    let names = names
+        .components()
+        .map(|part| part.as_os_str().to_string_lossy().into_owned());
+    names.filter(|name| name != "mod").collect()
+}
+
 #[test]
 fn lower_layers_never_use_upper_ones() {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut seen = 0;
-    for file in source_files(&source) {
-        let inside = file.strip_prefix(&source).expect("a file in src");
-        let first = inside
-            .components()
-            .next()
-            .expect("a name")
-            .as_os_str()
-            .to_string_lossy()
-            .into_owned();
-        let own = first.trim_end_matches(".rs");
-        if ["lib", "main", "cli"].contains(&own) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let library = std::fs::read_to_string(folder.join("lib.rs")).expect("src/lib.rs");
+    let handed_on = handed_on(&library);
+    assert!(handed_on.iter().any(|entry| entry.0 == "Oscillator"), "{handed_on:?}");
+    let (mut wrong, mut seen, mut uses_seen) = (Vec::new(), Vec::new(), 0);
+    for file in source_files(&folder) {
+        let inside = file.strip_prefix(&folder).expect("a file in src");
+        let names = module_path(inside);
+        let module = names.first().expect("a name").as_str();
+        if ["lib", "main"].contains(&module) {
             continue;
         }
-        assert!(
-            layer(own).is_some(),
-            "{} belongs to no layer: give it a place in this test",
-            inside.display()
-        );
         let text = std::fs::read_to_string(&file).expect("a source file");
-        // Tests may look anywhere: they hold a layer against the others.
-        let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or(&text);
-        for (number, line) in code.lines().enumerate() {
-            let wrong = offences(own, line);
-            assert!(
-                wrong.is_empty(),
-                "{}:{}: `{own}` uses {wrong:?}",
-                inside.display(),
-                number + 1
-            );
+        let source = Source {
+            module,
+            depth: names.len(),
+            text: &text,
+        };
+        uses_seen += uses(&source, &handed_on).len();
+        if layer(module).is_none() {
+            wrong.push(format!(
+                "src/{}: belongs to no layer, give it a place in this test",
+                inside.display()
+            ));
         }
-        seen += 1;
+        let offences = offences(&source, &handed_on);
+        wrong.extend(
+            offences
+                .iter()
+                .map(|offence| format!("src/{}:{offence}", inside.display())),
+        );
+        seen.push(module.to_owned());
     }
-    assert!(seen > 30, "only {seen} files");
+    assert!(wrong.is_empty(), "the layers are broken:\n{}", wrong.join("\n"));
+    assert!(
+        seen.len() > 30 && uses_seen > 100,
+        "only {} files with {uses_seen} uses",
+        seen.len()
+    );
+    // A layer without a file would protect nothing.
+    let empty: Vec<_> = LAYERS
+        .iter()
+        .copied()
+        .flatten()
+        .filter(|name| !seen.iter().any(|s| s == *name))
+        .collect();
+    assert!(empty.is_empty(), "no file in src/ belongs to {empty:?}");
 }
 
 #[test]
 fn an_upward_use_is_seen() {
-    assert_eq!(offences("series", "use crate::method::solve;"), ["method"]);
-    assert_eq!(offences("ode", "let x = crate::expr::Expr::zero();"), ["expr"]);
-    assert!(offences("method", "use crate::series::taylor::taylor; // crate::verify").is_empty());
-    assert!(offences("expr", "use crate::expr::Node;").is_empty());
+    let handed_on = handed_on("pub use oscillator::Oscillator;\npub mod ode;\npub use symbol::Symbol;\n");
+    let found = |module: &str, depth: usize, text: &str| offences(&Source { module, depth, text }, &handed_on);
+    for (module, depth, text, line, used) in [
+        ("series", 2, "use crate::method::solve;", 1, "method"),
+        ("ode", 2, "\nlet x = crate::expr::Expr::zero();", 2, "expr"),
+        ("ode", 1, "use crate::exact::Rational;", 1, "exact"),
+        (
+            "exact",
+            1,
+            "fn f() {}\n\nuse crate::{\n    symbol::Symbol,\n    verify::{judge, Values},\n};",
+            3,
+            "verify",
+        ),
+        ("expr", 1, "use crate::Oscillator;", 1, "oscillator"),
+        ("expr", 3, "use super::super::super::series::taylor;", 1, "series"),
+        ("symbol", 1, "use super::exact::Ring;", 1, "exact"),
+        ("export", 2, "crate::cli::run()", 1, "cli"),
+        (
+            "expr",
+            1,
+            "use crate::ode; // crate::symbol\nuse crate::unheard_of::Thing;",
+            2,
+            "unheard_of",
+        ),
+    ] {
+        let offences = found(module, depth, text);
+        assert_eq!(offences.len(), 1, "{text}: {offences:?}");
+        let expected = format!("{line}: `{module}` uses `{used}`, which ");
+        assert!(offences[0].starts_with(&expected), "{text}: {offences:?}");
+    }
+    for (module, depth, text) in [
+        ("method", 2, "use crate::series::taylor::taylor; // crate::verify"),
+        (
+            "method",
+            2,
+            "use super::secular::expand;\nuse crate::{Symbol, expr::Expr};",
+        ),
+        ("expr", 2, "use crate::expr::Node;\nuse super::number;"),
+        ("cli", 2, "use lindstedt::export::{json, text};\nuse super::Common;"),
+        (
+            "exact",
+            2,
+            "let x = 1;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n",
+        ),
+    ] {
+        assert_eq!(found(module, depth, text), Vec::<String>::new(), "{text}");
+    }
 }

@@ -4,12 +4,23 @@
 //!   frequency pi sqrt(1 + s) / (2 K(s/(2 + 2 s))).
 //! - Pendulum: the expansion of pi / (2 K(sin^2(A/2))).
 //! - Van der Pol: C. M. Andersen, J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693.
+//! - Complete elliptic integrals as power series: *NIST Digital Library of Mathematical Functions*, 19.5.1 and 19.5.2.
+//!
+//! Where a period is an elliptic integral, its series is an independent truth to any order; the judge then measures the
+//! error that remains and the exponent with which it vanishes.
 
-use lindstedt::exact::{Polynomial, Rational};
+use std::f64::consts::PI;
+
+use lindstedt::exact::rational::{factorial, ratio};
+use lindstedt::exact::{Polynomial, Rational, Ring};
 use lindstedt::expr::parse_expression;
-use lindstedt::method::{Options, solve};
+use lindstedt::method::{Options, Refusal, solve};
+use lindstedt::oscillator::OscillatorError;
+use lindstedt::series::FourierSeries;
 use lindstedt::solution::{AmplitudeConvention, Solution};
+use lindstedt::verify::{self, Values, Verification};
 use lindstedt::{Oscillator, Symbol};
+use num_traits::{One, Pow, Zero};
 
 fn derive(equation: &str, order: u32, amplitude: Option<AmplitudeConvention>) -> Solution {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
@@ -220,4 +231,444 @@ fn several_symbols_at_once_agree_with_numbers() {
             law.substitute((*name).into(), &value(number))
         });
     assert_eq!(substituted.as_ref(), Some(law(&numbers)));
+}
+
+#[test]
+fn van_der_pols_period() {
+    let solution = derive("x'' - mu*(1 - x^2)*x' + x = 0", 8, None);
+    let period = "1 + mu^2/16 - 5*mu^4/3072 - 431*mu^6/884736 + 557039*mu^8/5096079360";
+    let product = polynomial(&format!("({period})*({})", law(&solution)));
+    assert_eq!(product.truncated("mu".into(), 9), polynomial("1"));
+}
+
+#[test]
+fn pendulum_by_the_first_harmonic() {
+    let solution = derive("x'' + sin(x) = 0", 4, FIRST_HARMONIC);
+    assert_eq!(*law(&solution), polynomial("1 - a^2/16 + a^4/1024"));
+}
+
+/// The first harmonic of the motion by `A`, put into law and motion by `a`, gives law and motion by `A`: exactly, up to
+/// the order kept, even forces included.
+#[test]
+fn one_convention_converts_into_the_other() {
+    for (equation, small, order) in [
+        ("x'' + x + eps*x^3 = 0", "eps", 6),
+        ("x'' + x + eps*x^2 = 0", "eps", 5),
+        ("x'' + k*x + eps*(a2*x^2 + a3*x^3 + a4*x^4) = 0", "eps", 4),
+        ("x'' + x*exp(x) = 0", "A", 6),
+        ("x'' + sin(x) = 0", "A", 10),
+        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "A", 8),
+    ] {
+        let (initial, other) = (
+            derive(equation, order, INITIAL),
+            derive(equation, order, FIRST_HARMONIC),
+        );
+        // The motion is A times a series to the order kept: one power of A more than the law.
+        let (power, leading) = (order as i32, i32::from(small == "A"));
+        let first_harmonic = cosine(&initial, 1);
+        let converted = |series: &Polynomial, highest: i32| {
+            // Powers of the first harmonic, cut off where the answer is.
+            let mut power = polynomial("1");
+            let mut sum = Polynomial::zero();
+            let (_, degree) = series.exponent_range("a".into()).unwrap_or((0, 0));
+            for exponent in 0..=degree {
+                for (monomial, coefficient) in series.terms().filter(|(m, _)| m.exponent("a".into()) == exponent) {
+                    let rest = Polynomial::term(monomial.without("a".into()), coefficient.clone());
+                    sum = sum + rest.product(&power);
+                }
+                power = power.product(&first_harmonic).truncated(small.into(), highest);
+            }
+            sum.truncated(small.into(), highest)
+        };
+        assert_eq!(converted(law(&other), power), *law(&initial), "{equation}");
+        assert_eq!(
+            converted(law_squared(&other), power),
+            *law_squared(&initial),
+            "{equation}"
+        );
+        assert_eq!(cosine(&other, 1), polynomial("a"), "{equation}");
+        let highest = initial.displacement.highest_harmonic();
+        assert_eq!(other.displacement.highest_harmonic(), highest, "{equation}");
+        for k in 0..=highest {
+            let expected = cosine(&initial, k);
+            assert_eq!(
+                converted(&cosine(&other, k), power + leading),
+                expected,
+                "{equation}, cos {k} theta"
+            );
+        }
+        assert_eq!(initial.displacement.at_zero().mean().0, polynomial("A"), "{equation}");
+        assert!(
+            initial.displacement.is_even() && other.displacement.is_even(),
+            "{equation}"
+        );
+    }
+}
+
+#[test]
+fn rayleigh_swings_with_the_amplitudes_known() {
+    // First harmonic: 2 and sqrt(4/3) to first order, J. W. Strutt, Phil. Mag. 15 (1883) 229-235.
+    let normal = derive("x'' + x = mu*(1 - x'^2/3)*x'", 1, FIRST_HARMONIC);
+    assert_eq!(normal.limit_cycle, Some(polynomial("2")));
+    let bare = derive("x'' + x = mu*(1 - x'^2)*x'", 1, FIRST_HARMONIC);
+    let amplitude = bare.limit_cycle.as_ref().expect("a limit cycle");
+    let value = bare.evaluate(amplitude, &|_| None).expect("a number");
+    assert!((value - (4.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+    // The two differ by the unit of length alone, sqrt(3), at every order.
+    let (normal, bare) = (
+        derive("x'' + x = mu*(1 - x'^2/3)*x'", 6, None),
+        derive("x'' + x = mu*(1 - x'^2)*x'", 6, None),
+    );
+    for k in 0..=normal.displacement.highest_harmonic() {
+        for (left, right) in [
+            (cosine(&normal, k), cosine(&bare, k)),
+            (sine(&normal, k), sine(&bare, k)),
+        ] {
+            let unit = right
+                .substitute("a0".into(), &polynomial("2"))
+                .expect("a positive power");
+            assert_eq!(left, unit, "harmonic {k}");
+        }
+    }
+}
+
+/// The derivative of Rayleigh's motion is van der Pol's, a quarter period later, harmonic by harmonic.
+#[test]
+fn rayleighs_velocity_is_van_der_pols_motion() {
+    let order = 7;
+    let van_der_pol = derive("x'' + x = mu*(1 - x^2)*x'", order, None).displacement;
+    let rayleigh = derive("x'' + x = mu*(1 - x'^2/3)*x'", order, None);
+    let frequency = FourierSeries::constant(law(&rayleigh).clone(), 1.into());
+    let velocity = rayleigh.displacement.derivative().product(&frequency);
+    let truncated = |series: FourierSeries<Polynomial>| series.mean().0.truncated("mu".into(), order as i32);
+    for k in 0..=van_der_pol.highest_harmonic() {
+        // cos k(theta + pi/2) and sin k(theta + pi/2) in terms of those of k theta.
+        let (cosine_sign, sine_sign, swapped) = [(1, 1, false), (1, -1, true), (-1, -1, false), (-1, 1, true)][k % 4];
+        let (of_cosine, of_sine) = match swapped {
+            false => (van_der_pol.cosine(k), van_der_pol.sine(k)),
+            true => (van_der_pol.sine(k), van_der_pol.cosine(k)),
+        };
+        assert_eq!(
+            truncated(velocity.cosine(k)),
+            truncated(of_cosine.times(cosine_sign)),
+            "cos {k} theta"
+        );
+        assert_eq!(
+            truncated(velocity.sine(k)),
+            truncated(of_sine.times(sine_sign)),
+            "sin {k} theta"
+        );
+    }
+}
+
+/// `c_n^2` of `K(m) = (pi/2) sum c_n^2 m^n`, `c_n = (2 n)! / (2^n n!)^2`.
+fn elliptic_coefficient(n: usize) -> Rational {
+    let root = factorial(2 * n as u32);
+    let half = num_bigint::BigInt::from(2).pow(n as u32) * factorial(n as u32);
+    let coefficient = Rational::new(root, half.pow(2_u32));
+    &coefficient * &coefficient
+}
+
+/// The first coefficients of the product of two power series of equal length.
+fn product(left: &[Rational], right: &[Rational]) -> Vec<Rational> {
+    let entry = |n: usize| (0..=n).map(|k| &left[k] * &right[n - k]).sum();
+    (0..left.len()).map(entry).collect()
+}
+
+/// `sum_n weight(n) inner^n`, where `inner` begins with its linear term.
+fn composed(weight: impl Fn(usize) -> Rational, inner: &[Rational]) -> Vec<Rational> {
+    let mut power = vec![Rational::zero(); inner.len()];
+    power[0] = Rational::one();
+    let mut sum = vec![Rational::zero(); inner.len()];
+    for n in 0..inner.len() {
+        for (entry, term) in sum.iter_mut().zip(&power) {
+            *entry += weight(n) * term;
+        }
+        power = product(&power, inner);
+    }
+    sum
+}
+
+/// The frequency law of `equation` times the series of T/(2 pi) in `unit` is one, to as many terms as `period` has.
+fn assert_inverse_of_period(equation: &str, order: u32, unit: &str, period: &[Rational]) {
+    let solution = derive(equation, order, INITIAL);
+    let unit = polynomial(unit);
+    let (monomial, _) = unit.single_term().expect("one term");
+    let coefficient = |n: usize| law(&solution).coefficient(&monomial.power(n as i32));
+    let frequency: Vec<Rational> = (0..period.len()).map(coefficient).collect();
+    // Nothing else occurs in the law.
+    let terms = frequency.iter().filter(|coefficient| !coefficient.is_zero()).count();
+    assert_eq!(law(&solution).terms().len(), terms, "{equation}");
+    let found = product(&frequency, period);
+    for (n, coefficient) in found.iter().enumerate() {
+        let expected = if n == 0 { ratio(1, 1) } else { ratio(0, 1) };
+        assert_eq!(*coefficient, expected, "{equation}: term {n} of frequency times period");
+    }
+}
+
+#[test]
+fn periods_by_elliptic_integrals_to_any_order() {
+    const TERMS: usize = 16;
+    let highest = TERMS as u32 - 1;
+    // Pendulum: T/(2 pi) = (2/pi) K(sin^2(A/2)), in powers of A^2; sin^2(A/2) = (1 - cos A)/2.
+    let half_angle = |k: usize| match k {
+        0 => Rational::zero(),
+        _ => Rational::new((if k % 2 == 1 { 1 } else { -1 }).into(), factorial(2 * k as u32) * 2),
+    };
+    let modulus: Vec<Rational> = (0..TERMS).map(half_angle).collect();
+    let period = composed(elliptic_coefficient, &modulus);
+    assert_eq!(period[..3], [ratio(1, 1), ratio(1, 16), ratio(11, 3072)]);
+    assert_inverse_of_period("x'' + sin(x) = 0", 2 * highest, "A^2", &period);
+
+    // Duffing: T/(2 pi) = (2/pi) K(m) / sqrt(1 + s), m = (s/2)/(1 + s), s = eps A^2.
+    let sign = |k: usize| 1 - 2 * (k % 2) as i64;
+    let modulus: Vec<Rational> = (0..TERMS)
+        .map(|k| if k == 0 { Rational::zero() } else { ratio(-sign(k), 2) })
+        .collect();
+    // Binomial series of (1 + s)^(-1/2): its coefficients are +-c_k.
+    let binomial = |k: usize| {
+        let (top, bottom) = (
+            factorial(2 * k as u32),
+            num_bigint::BigInt::from(2).pow(k as u32) * factorial(k as u32),
+        );
+        Rational::new(top * sign(k), bottom.pow(2_u32))
+    };
+    let root: Vec<Rational> = (0..TERMS).map(binomial).collect();
+    let period = product(&composed(elliptic_coefficient, &modulus), &root);
+    assert_eq!(period[..2], [ratio(1, 1), ratio(-3, 8)]);
+    assert_inverse_of_period("x'' + x + eps*x^3 = 0", highest, "eps*A^2", &period);
+    assert_inverse_of_period("x'' + x + x^3 = 0", 2 * highest, "A^2", &period);
+
+    // A bead of this inertia keeps (1 + x^2) x'^2 + x^2 = A^2: T/(2 pi) = (2/pi) E(-A^2), E = (pi/2) sum c_n^2 m^n/(1 - 2 n).
+    let bead = |n: usize| elliptic_coefficient(n) * ratio(sign(n), 1 - 2 * n as i64);
+    let period: Vec<Rational> = (0..TERMS).map(bead).collect();
+    assert_eq!(period[..3], [ratio(1, 1), ratio(1, 4), ratio(-3, 64)]);
+    assert_inverse_of_period("(1 + x^2)*x'' + x*x'^2 + x = 0", 2 * highest, "A^2", &period);
+}
+
+fn judged(equation: &str, solution: &Solution, at: &[(&str, &str)]) -> Verification {
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    let mut values = Values::default();
+    for (name, value) in at {
+        values
+            .insert((*name).into(), parse_expression(value).expect("an expression"))
+            .expect("a number");
+    }
+    verify::judge(&oscillator, solution, &values, verify::DEFAULT_TOLERANCE).expect("a verdict")
+}
+
+fn elliptic_k(m: f64) -> f64 {
+    ellip::ellipk(m).expect("an elliptic integral")
+}
+
+/// Equation, value of eps, exact frequency at an amplitude, and pairs of an order and the exponent of its error.
+type Row = (&'static str, &'static str, fn(f64) -> f64, &'static [(u32, f64)]);
+
+/// The frequency of the true motion comes out of the judge as the elliptic integral has it, and the error of the series
+/// vanishes with the exponent of its first missing term.
+#[test]
+fn the_judge_measures_the_first_missing_term() {
+    let duffing: fn(f64) -> f64 = |a| PI * (1.0 + a * a).sqrt() / (2.0 * elliptic_k(a * a / (2.0 * (1.0 + a * a))));
+    let softening: fn(f64) -> f64 = |a| PI * (1.0 - a * a).sqrt() / (2.0 * elliptic_k(-a * a / (2.0 * (1.0 - a * a))));
+    let pendulum: fn(f64) -> f64 = |a| PI / (2.0 * elliptic_k((0.5 * a).sin().powi(2)));
+    let bead: fn(f64) -> f64 = |a| PI / (2.0 * ellip::ellipe(-a * a).expect("an elliptic integral"));
+    let rows: [Row; 5] = [
+        // An order of eps and the exponent in eps; odd orders in A add nothing.
+        (
+            "x'' + x + eps*x^3 = 0",
+            "1",
+            duffing,
+            &[(1, 2.0), (2, 3.0), (3, 4.0), (4, 5.0)],
+        ),
+        ("x'' + x + x^3 = 0", "", duffing, &[(2, 4.0), (3, 4.0), (4, 6.0)]),
+        ("x'' + x + eps*x^3 = 0", "-1", softening, &[(1, 2.0), (3, 4.0)]),
+        ("x'' + sin(x) = 0", "", pendulum, &[(2, 4.0), (4, 6.0), (5, 6.0)]),
+        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "", bead, &[(2, 4.0), (4, 6.0)]),
+    ];
+    for (equation, eps, exact, orders) in rows {
+        for &(order, exponent) in orders {
+            let solution = derive(equation, order, INITIAL);
+            let at = |amplitude: &'static str| {
+                let mut at = vec![("A", amplitude)];
+                at.extend((!eps.is_empty()).then_some(("eps", eps)));
+                judged(equation, &solution, &at)
+            };
+            let (whole, half) = (at("2/5"), at("1/5"));
+            for (amplitude, verdict) in [(0.4, &whole), (0.2, &half)] {
+                let error = verdict.true_frequency / exact(amplitude) - 1.0;
+                assert!(
+                    error.abs() < 1e-10,
+                    "{equation} at {amplitude}: true frequency off by {error:e}"
+                );
+                assert_eq!(
+                    verdict.verdict,
+                    verify::Verdict::Pass,
+                    "{equation}, order {order}, at {amplitude}"
+                );
+            }
+            // Halving A is halving sqrt(eps): the same error falls with twice the exponent there.
+            let per_halving = if eps.is_empty() { exponent } else { 2.0 * exponent };
+            let error = |verdict: &Verification| verdict.relative_error.expect("a real frequency").abs();
+            let measured = (error(&whole) / error(&half)).log2();
+            assert!(
+                (measured - per_halving).abs() < 0.35,
+                "{equation}, order {order}: exponent {measured}"
+            );
+            let slope = whole.slope.expect("an error above rounding");
+            assert!(
+                (slope - exponent).abs() < 0.1,
+                "{equation}, order {order}: slope {slope}"
+            );
+        }
+    }
+}
+
+/// omega^2 = 1 - A^2/8 against the pendulum at finite amplitude, and a series beyond its radius of convergence.
+#[test]
+fn verdicts_at_finite_amplitude() {
+    // Amplitude, true frequency, error in per cent as printed, half a unit of its last digit.
+    for (amplitude, frequency, percent, digit) in [
+        ("1", 0.937_792_258_051_428, -0.25, 0.005),
+        ("3/2", 0.860_608_346_679_613, -1.49, 0.005),
+        ("2", 0.752_499_548_450_521, -6.0, 0.05),
+        ("5/2", 0.608_649_247_214_08, -23.0, 0.5),
+    ] {
+        let equation = "x'' + sin(x) = 0";
+        let verdict = judged(equation, &derive(equation, 2, INITIAL), &[("A", amplitude)]);
+        assert!(
+            (verdict.true_frequency / frequency - 1.0).abs() < 1e-12,
+            "A = {amplitude}"
+        );
+        let found = 100.0 * verdict.relative_error.expect("a real frequency");
+        assert!((found - percent).abs() <= digit, "A = {amplitude}: {found} %");
+        assert_eq!(
+            verdict.verdict == verify::Verdict::Pass,
+            percent > -1.0,
+            "A = {amplitude}"
+        );
+    }
+    // Duffing at s = 2: the series for omega alternates about the truth and comes no closer.
+    let equation = "x'' + x + eps*x^3 = 0";
+    for (order, percent) in [(1, 11.5), (2, -9.4), (3, 10.8)] {
+        let solution = derive(equation, order, INITIAL);
+        let verdict = judged(equation, &solution, &[("A", "1"), ("eps", "2")]);
+        assert!((verdict.true_frequency / 1.569_105_802_869_32 - 1.0).abs() < 1e-12);
+        let value = |symbol: Symbol| Some(if symbol.name() == "eps" { 2.0 } else { 1.0 });
+        let series = solution.evaluate(law(&solution), &value).expect("a number");
+        let found = 100.0 * (series / verdict.true_frequency - 1.0);
+        assert!((found - percent).abs() <= 0.05, "order {order}: {found} %");
+        // The verdict is on the root of omega^2.
+        let squared = solution.evaluate(law_squared(&solution), &value).expect("a number");
+        let frequency = verdict.frequency.expect("a real frequency");
+        assert!((frequency / squared.sqrt() - 1.0).abs() < 1e-15);
+    }
+    // Beyond sqrt 8 the formula has no frequency left, and that is a failure.
+    let cubic = derive("x'' + sin(x) = 0", 2, INITIAL);
+    let verdict = judged("x'' + sin(x) = 0", &cubic, &[("A", "2.9")]);
+    assert_eq!((verdict.frequency, verdict.verdict), (None, verify::Verdict::Fail));
+}
+
+/// Limit cycles against Runge-Kutta: the error vanishes with the next even power of mu.
+#[test]
+fn limit_cycles_against_runge_kutta() {
+    for equation in [
+        "x'' - mu*(1 - x^2)*x' + x = 0",
+        "x'' + x = mu*(1 - x'^2/3)*x'",
+        "x'' + x = mu*(1 - x'^2)*x'",
+    ] {
+        for (order, exponent) in [(2, 4.0), (4, 6.0)] {
+            let solution = derive(equation, order, None);
+            let verdict = judged(equation, &solution, &[("mu", "1/2")]);
+            assert_eq!(verdict.verdict, verify::Verdict::Pass, "{equation}");
+            let slope = verdict.slope.expect("an error above rounding");
+            assert!(
+                (slope - exponent).abs() < 0.2,
+                "{equation}, order {order}: slope {slope}"
+            );
+            let deviation = verdict.max_deviation.expect("a motion");
+            assert!(
+                deviation < 2.0 * 0.5_f64.powi(order as i32 + 1),
+                "{equation}, order {order}: {deviation}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_does_not_apply_is_refused_by_name() {
+    let refused = |equation: &str, options: &Options| {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        solve(&oscillator, options).expect_err(equation)
+    };
+    let options = |order: Option<u32>, small: Option<&str>| Options {
+        order,
+        small: small.map(str::to_owned),
+        ..Options::default()
+    };
+    let default = Options::default();
+
+    for (equation, name) in [
+        ("x'' + 2*zeta*x' + sin(x) = 0", "`2*zeta*x'`"),
+        ("x'' + x + c*x'^3 = 0", "`c*x'^3`"),
+        ("x'' + x + eps*(x^3 + 3*x'^3) = 0", "`3*eps*x'^3`"),
+        ("x'' + k*x + c*x^2*x' + eps*x^3 = 0", "`c*x^2*x'`"),
+    ] {
+        let refusal = refused(equation, &default);
+        assert!(matches!(refusal, Refusal::Damping { .. }), "{equation}: {refusal:?}");
+        assert!(refusal.to_string().contains(name), "{equation}: {refusal}");
+        assert!(refusal.help().is_some(), "{equation}");
+    }
+    for (equation, name) in [
+        ("x'' + x + eps*x^3 = F*cos(2*t)", "F*cos(2*t)`"),
+        ("x'' + (1 + q*cos(2*t))*x = 0", "`q*x*cos(2*t)`"),
+        ("x'' + x + t = 0", "`t`"),
+    ] {
+        let refusal = refused(equation, &default);
+        assert!(matches!(refusal, Refusal::Forcing { .. }), "{equation}: {refusal:?}");
+        assert!(refusal.to_string().contains(name), "{equation}: {refusal}");
+        assert!(refusal.help().is_some(), "{equation}");
+    }
+    for (equation, name) in [
+        ("x'' + x + x*abs(x) = 0", "`abs(x)`"),
+        ("x'' + x + eps*x*abs(x) = 0", "`eps*x*abs(x)`"),
+        ("x'' + sgn(x) = 0", "`sgn(x)`"),
+        ("x'' + x^(1/3) = 0", "`x^(1/3)`"),
+        ("x'' + x + sqrt(x^2) = 0", "`sqrt(x^2)`"),
+        ("x'' + x + max(x, 0) = 0", "`max(0, x)`"),
+    ] {
+        let refusal = refused(equation, &default);
+        assert!(refusal.to_string().contains(name), "{equation}: {refusal}");
+    }
+    for (equation, names) in [
+        ("x'' + x + alpha*beta*x^3 = 0", ["alpha", "beta"]),
+        ("x'' + x = p*q*(1 - x^2)*x'", ["p", "q"]),
+    ] {
+        let refusal = refused(equation, &default);
+        let expected = OscillatorError::AmbiguousSmallParameter(names.map(Symbol::new).to_vec());
+        assert_eq!(refusal, Refusal::Oscillator(expected), "{equation}");
+        assert!(names.iter().all(|name| refusal.to_string().contains(name)), "{refusal}");
+        assert!(refusal.help().is_some_and(|help| help.contains(names[0])), "{equation}");
+        // Naming one resolves it.
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let solution = solve(&oscillator, &options(Some(1), Some(names[1]))).expect(equation);
+        assert_eq!(solution.small_parameter, Symbol::new(names[1]));
+    }
+    for asked in [401, u32::MAX] {
+        for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0"] {
+            let refusal = refused(equation, &options(Some(asked), None));
+            assert_eq!(refusal, Refusal::Order { asked }, "{equation}");
+            assert!(refusal.to_string().contains(&asked.to_string()), "{refusal}");
+        }
+    }
+    let refusal = refused("x'' + x + eps*x^3 = 0", &options(None, Some("delta")));
+    assert!(refusal.to_string().contains("`delta`"), "{refusal}");
+    let refusal = refused("x'' + x + x^3 + eps*x^5 = 0", &default);
+    assert!(refusal.to_string().contains("`x^3`"), "{refusal}");
+    let refusal = refused("x'' + x = (1 - x^2)*x'", &default);
+    assert!(matches!(refusal, Refusal::AmplitudeNotFree { .. }), "{refusal:?}");
+    let refusal = refused("x'' + x^3 = 0", &default);
+    assert!(
+        matches!(refusal, Refusal::Oscillator(OscillatorError::NoRestoringForce(_))),
+        "{refusal:?}"
+    );
 }

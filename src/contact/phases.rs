@@ -14,7 +14,7 @@
 //! ```
 //!
 //! The line p x - q is fitted over the depth that an impact of speed v reaches by its energy
-//! ([`linearisation`](super::linearisation)). Two readings of the speed of contact stand side by side, [`Column`]:
+//! ([`linearisation`]). Two readings of the speed of contact stand side by side, [`Column`]:
 //!
 //! ```text
 //! paper    v = A omega sin(acos(x_c/A)): the cosine's own speed, so every join is exactly continuous

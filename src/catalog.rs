@@ -57,14 +57,14 @@ pub const CATALOG: &[Entry] = &[
         name: "pendulum",
         title: "mathematical pendulum",
         equation: "x'' + sin(x) = 0",
-        source: "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed., section 11, problem 1",
+        source: "NIST Digital Library of Mathematical Functions, 22.19(i): the expansion of omega = pi/(2 K(sin^2(A/2)))",
         published: omega("1 - A^2/16 + A^4/3072", 4),
     },
     Entry {
         name: "cubic-pendulum",
         title: "pendulum with the sine cut after x^3",
         equation: "x'' + x - x^3/6 = 0",
-        source: "the source paper, equations (11) and (12)",
+        source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equations (11) and (12)",
         published: omega_squared("1 - A^2/8", 2),
     },
     Entry {
@@ -134,7 +134,7 @@ pub const CATALOG: &[Entry] = &[
         name: "rayleigh",
         title: "oscillator of Rayleigh",
         equation: "x'' - mu*(1 - x'^2/3)*x' + x = 0",
-        source: "Lord Rayleigh, Philosophical Magazine 15 (1883) 229-235",
+        source: "Lord Rayleigh, Philosophical Magazine 15 (1883) 229-235; its x' solves van der Pol's equation, so the law is that of Andersen and Geer",
         published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
     },
     Entry {
@@ -170,7 +170,7 @@ pub const CATALOG: &[Entry] = &[
         title: "one link of Toda's lattice",
         equation: "x'' + exp(x) - 1 = 0",
         source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
-        published: omega("1 - A^2/24", 2),
+        published: None,
     },
     Entry {
         name: "quadratic-odd",
@@ -208,17 +208,10 @@ pub const CATALOG: &[Entry] = &[
         published: None,
     },
     Entry {
-        name: "tapered-spring",
-        title: "saturating spring",
-        equation: "x'' + tanh(x) = 0",
-        source: MICKENS,
-        published: None,
-    },
-    Entry {
         name: "damped-pendulum",
         title: "pendulum with viscous damping",
         equation: "x'' + 2*zeta*x' + sin(x) = 0",
-        source: "the source paper, equation (7) without friction, excitation and barrier",
+        source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equation (7) without friction, excitation and barrier",
         published: None,
     },
 ];

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use lindstedt::Oscillator;
 use lindstedt::catalog::{CATALOG, find, methods};
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::{Values, Verdict, judge, needed_values};
+use lindstedt::{Oscillator, Solution};
 
 #[test]
 fn names_are_unique_and_lead_back() {
@@ -101,4 +101,46 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
             );
         }
     }
+}
+
+/// The values at which an entry is judged: `size` for what makes the motion nonlinear, one half for the rest.
+fn values(solution: &Solution, size: &str) -> Values {
+    let mut at = Values::default();
+    for name in needed_values(solution) {
+        let value = match name.name() {
+            "A" | "a" | "mu" => size,
+            _ => "1/2",
+        };
+        at.insert(name, value.parse().expect("a number")).expect("a value");
+    }
+    at
+}
+
+/// A tolerance alone cannot tell a law from the linear frequency where the two are close: what counts is how much of
+/// the true shift of the frequency, from almost linear to the amplitude in question, the law misses.
+/// A coefficient of the leading correction that is twice too large misses all of it.
+#[test]
+fn derived_laws_follow_the_shift_of_the_frequency() {
+    let mut shifts = 0;
+    for entry in CATALOG {
+        let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
+        for method in Method::ALL {
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            let Ok(solution) = solve(&oscillator, &options) else {
+                continue;
+            };
+            let judged = |size| judge(&oscillator, &solution, &values(&solution, size), 1e-3).expect(entry.name);
+            let (linear, nonlinear) = (judged("1/1000"), judged("1/20"));
+            let shift = (nonlinear.true_frequency / linear.true_frequency - 1.0).abs();
+            let missed = nonlinear.relative_error.expect("a real frequency").abs();
+            assert!(shift > 1e-7, "{} does not shift: {shift:e}", entry.name);
+            let context = format!("{} by {}", entry.name, method.name());
+            assert!(missed < shift / 8.0, "{context} misses {missed:e} of {shift:e}");
+            shifts += 1;
+        }
+    }
+    assert!(shifts >= 24, "{shifts} laws");
 }

@@ -439,7 +439,8 @@ fn periods_by_elliptic_integrals_to_any_order() {
     assert_inverse_of_period("x'' + x + eps*x^3 = 0", highest, "eps*A^2", &period);
     assert_inverse_of_period("x'' + x + x^3 = 0", 2 * highest, "A^2", &period);
 
-    // A bead of this inertia keeps (1 + x^2) x'^2 + x^2 = A^2: T/(2 pi) = (2/pi) E(-A^2), E = (pi/2) sum c_n^2 m^n/(1 - 2 n).
+    // A bead of this inertia keeps (1 + x^2) x'^2 + x^2 = A^2: T/(2 pi) = (2/pi) E(-A^2) with
+    // E(m) = (pi/2) sum c_n^2 m^n/(1 - 2 n).
     let bead = |n: usize| elliptic_coefficient(n) * ratio(sign(n), 1 - 2 * n as i64);
     let period: Vec<Rational> = (0..TERMS).map(bead).collect();
     assert_eq!(period[..3], [ratio(1, 1), ratio(1, 4), ratio(-3, 64)]);

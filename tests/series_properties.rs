@@ -1,9 +1,14 @@
 //! Laws that hold for every series: the ring, the product rule, the equation that is solved, and Taylor's theorem.
 
-use lindstedt::exact::rational::ratio;
-use lindstedt::exact::{Integer, Polynomial, Rational};
-use lindstedt::expr::{Expr, parse_expression};
+use std::collections::{BTreeMap, BTreeSet};
+
+use lindstedt::Symbol;
+use lindstedt::exact::polynomial::Monomial;
+use lindstedt::exact::rational::{ratio, to_f64};
+use lindstedt::exact::{Integer, Polynomial, Rational, Ring};
+use lindstedt::expr::{Expr, Function, Node, parse_expression};
 use lindstedt::series::FourierSeries;
+use lindstedt::series::convolution::Convolutions;
 use lindstedt::series::fourier::fraction;
 use lindstedt::series::taylor::taylor;
 use num_traits::{One, Zero};
@@ -31,17 +36,34 @@ fn series() -> impl Strategy<Value = FourierSeries<Integer>> {
 fn polynomial() -> impl Strategy<Value = Polynomial> {
     prop::collection::vec((-9_i64..=9, 1_i64..=4, -2_i32..=3, -2_i32..=3), 0..5).prop_map(|terms| {
         terms.into_iter().fold(Polynomial::zero(), |sum, (p, q, a, k)| {
-            use lindstedt::exact::polynomial::Monomial;
             let monomial = Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
             sum + Polynomial::term(monomial, ratio(p, q))
         })
     })
 }
 
+/// Series with whole polynomials in `A` and `k` over one denominator.
+fn symbolic_series() -> impl Strategy<Value = FourierSeries<Polynomial<Integer>>> {
+    let numerator = || {
+        prop::collection::vec((-9_i64..=9, 0_i32..=2, -1_i32..=2), 0..3).prop_map(|terms| {
+            let term = |(c, a, k): (i64, i32, i32)| {
+                let monomial = Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
+                Polynomial::term(monomial, Integer::from(c))
+            };
+            terms
+                .into_iter()
+                .map(term)
+                .fold(Polynomial::zero(), |sum, term| sum + term)
+        })
+    };
+    let numerators = move || prop::collection::vec(numerator(), 0..4);
+    let parts = (numerators(), numerators(), 1_i64..=12);
+    parts.prop_map(|(cosine, sine, denominator)| FourierSeries::from_parts(cosine, sine, denominator.into()))
+}
+
 proptest! {
     #[test]
     fn polynomials_form_a_ring(a in polynomial(), b in polynomial(), c in polynomial()) {
-        use lindstedt::exact::Ring;
         prop_assert_eq!(a.product(&b), b.product(&a));
         prop_assert_eq!(a.product(&b).product(&c), a.product(&b.product(&c)));
         prop_assert_eq!(a.product(&(b.clone() + c.clone())), a.product(&b) + a.product(&c));
@@ -49,6 +71,115 @@ proptest! {
         // Text and back.
         let read = parse_expression(&a.to_string()).expect("printed text").to_polynomial(&mut |_| None);
         prop_assert_eq!(read.expect("short"), Some(a));
+    }
+
+    #[test]
+    fn polynomials_have_opposites_powers_and_inverses(a in polynomial(), b in polynomial(), n in 0_i32..4) {
+        let mut opposite = a.clone();
+        opposite.negate();
+        prop_assert!((a.clone() + opposite).is_zero());
+        prop_assert_eq!(a.clone() + b.clone(), b.clone() + a.clone());
+        prop_assert_eq!(a.product(&Polynomial::zero()), Polynomial::zero());
+        let power = (0..n).fold(Polynomial::constant(Rational::one()), |power, _| power.product(&a));
+        prop_assert_eq!(a.power(n), Some(power));
+        // A single term is a unit, a sum is none.
+        let inverse = a.power(-1);
+        prop_assert_eq!(inverse.is_some(), a.terms().len() == 1);
+        if let Some(inverse) = inverse {
+            prop_assert_eq!(inverse.product(&a), Polynomial::constant(Rational::one()));
+        }
+    }
+
+    #[test]
+    fn polynomials_keep_their_values(
+        a in polynomial(), b in polynomial(), p in 1_i64..=9, q in 1_i64..=9, unit in (1_i64..=5, -2_i32..=2)
+    ) {
+        let (point, other) = (ratio(p, 4), ratio(q, 5));
+        let value = |polynomial: &Polynomial| {
+            let value_of = |symbol: Symbol| Some(to_f64(if symbol.name() == "A" { &point } else { &other }));
+            polynomial.evaluate(value_of).expect("both symbols have values")
+        };
+        let size = |polynomial: &Polynomial| value(&polynomial.map(num_traits::Signed::abs));
+        let close = |left: f64, right: f64, scale: f64| (left - right).abs() <= 1e-12 * (1.0 + scale);
+        prop_assert!(close(value(&(a.clone() + b.clone())), value(&a) + value(&b), size(&a) + size(&b)));
+        prop_assert!(close(value(&a.product(&b)), value(&a) * value(&b), size(&a) * size(&b)));
+        // Numbers put in exactly, one after the other, give the same value, and substitution respects products.
+        let number = |value: &Rational| Polynomial::constant(value.clone());
+        let exact = |polynomial: &Polynomial| {
+            let once = polynomial.substitute("A".into(), &number(&point)).expect("not zero");
+            once.substitute("k".into(), &number(&other)).expect("not zero").as_number().expect("no symbol is left")
+        };
+        prop_assert!(close(to_f64(&exact(&a)), value(&a), size(&a)));
+        prop_assert_eq!(exact(&a.product(&b)), exact(&a) * exact(&b));
+        let unit = Polynomial::term(Monomial::power_of("k".into(), unit.1), ratio(unit.0, 3));
+        let put_in = |polynomial: &Polynomial| polynomial.substitute("A".into(), &unit).expect("a unit");
+        prop_assert_eq!(put_in(&a.product(&b)), put_in(&a).product(&put_in(&b)));
+        prop_assert_eq!(put_in(&(a.clone() + b.clone())), put_in(&a) + put_in(&b));
+    }
+
+    #[test]
+    fn series_over_fractions_form_a_ring(a in series(), b in series(), c in series(), n in 0_u32..4) {
+        let (a, b, c) = (fractions(&a), fractions(&b), fractions(&c));
+        prop_assert_eq!(a.product(&b), b.product(&a));
+        prop_assert_eq!(a.product(&b).product(&c), a.product(&b.product(&c)));
+        prop_assert_eq!(a.product(&b.sum(&c)), a.product(&b).sum(&a.product(&c)));
+        prop_assert_eq!(a.sum(&b).difference(&b), a.clone());
+        prop_assert_eq!(a.sum(&b.sum(&c)), a.sum(&b).sum(&c));
+        prop_assert_eq!(a.product(&FourierSeries::zero()), FourierSeries::zero());
+        prop_assert_eq!(a.times(-6).divided_by(-3), a.times(2));
+        let power = (0..n).fold(FourierSeries::integer(1), |power, _| power.product(&a));
+        prop_assert_eq!(a.power(n), power);
+    }
+
+    #[test]
+    fn symbols_over_one_denominator_or_over_fractions(a in symbolic_series(), b in symbolic_series()) {
+        // Polynomials with whole coefficients and one denominator, or with fractions.
+        let fractions = |series: &FourierSeries<Polynomial<Integer>>| -> FourierSeries<Polynomial> {
+            series.map(|numerator, denominator| numerator.map(|coefficient| fraction(coefficient, denominator)))
+        };
+        prop_assert_eq!(fractions(&a.product(&b)), fractions(&a).product(&fractions(&b)));
+        prop_assert_eq!(fractions(&a.sum(&b)), fractions(&a).sum(&fractions(&b)));
+        prop_assert_eq!(fractions(&a.derivative()), fractions(&a).derivative());
+        let (whole, field) = (a.solve_oscillator(), fractions(&a).solve_oscillator());
+        prop_assert_eq!(fractions(&whole.0), field.0);
+        prop_assert_eq!(fractions(&whole.1.cosine), field.1.cosine);
+        prop_assert_eq!(fractions(&whole.1.sine), field.1.sine);
+        let rule = a.derivative().product(&b).sum(&a.product(&b.derivative()));
+        prop_assert_eq!(a.product(&b).derivative(), rule);
+    }
+
+    #[test]
+    fn division_undoes_multiplication(a in series(), p in -9_i64..=9, q in 1_i64..=9) {
+        let divisor = FourierSeries::constant(Integer::from(p), q.into());
+        match a.divided_by_constant(&divisor) {
+            Some(quotient) => prop_assert_eq!(quotient.product(&divisor), a),
+            None => prop_assert_eq!(p, 0),
+        }
+    }
+
+    #[test]
+    fn running_products_are_products(
+        u in prop::collection::vec(series(), 4), v in prop::collection::vec(series(), 4), exponent in 1_u32..=5
+    ) {
+        // Order by order, against the product of the whole polynomials in the small parameter.
+        let mut convolutions = Convolutions::new();
+        let (left, right) = (convolutions.leaf(), convolutions.leaf());
+        let power = convolutions.power(left, exponent);
+        let node = convolutions.product(power, right);
+        convolutions.require(node, 3);
+        for order in 0..4 {
+            convolutions.push(left, u[order].clone());
+            convolutions.push(right, v[order].clone());
+            convolutions.advance(order);
+        }
+        let cauchy = |a: &[FourierSeries<Integer>], b: &[FourierSeries<Integer>]| -> Vec<FourierSeries<Integer>> {
+            let entry = |n: usize| (0..=n).fold(FourierSeries::zero(), |sum, i| sum.sum(&a[i].product(&b[n - i])));
+            (0..4).map(entry).collect()
+        };
+        let expected = cauchy(&(1..exponent).fold(u.clone(), |product, _| cauchy(&product, &u)), &v);
+        for (order, expected) in expected.iter().enumerate() {
+            prop_assert_eq!(convolutions.order(node, order), Some(expected), "order {}", order);
+        }
     }
 
     #[test]
@@ -77,14 +208,35 @@ proptest! {
     fn the_oscillator_is_solved_but_for_its_resonance(right_side in series()) {
         let (solution, resonance) = right_side.solve_oscillator();
         let left = solution.derivative().derivative().sum(&solution);
-        let resonant = resonance.cosine.product(&FourierSeries::cos(1)).sum(&resonance.sine.product(&FourierSeries::sin(1)));
+        let [cosine, sine] = [FourierSeries::cos(1), FourierSeries::sin(1)];
+        let resonant = resonance.cosine.product(&cosine).sum(&resonance.sine.product(&sine));
         prop_assert_eq!(left.sum(&resonant), right_side);
         prop_assert!(solution.cosine(1).is_zero() && solution.sine(1).is_zero());
     }
 
     #[test]
+    fn values_add_and_differentiate(a in parts(), b in parts(), theta in -4.0_f64..4.0) {
+        let float = |series: &FourierSeries<Integer>| series.map(|n, d| to_f64(&fraction(n, d)));
+        let by_hand = |(cosine, sine, denominator): &(Vec<i64>, Vec<i64>, i64)| {
+            let cosines = cosine.iter().enumerate().map(|(k, c)| *c as f64 * (k as f64 * theta).cos());
+            let sines = sine.iter().enumerate().map(|(k, s)| *s as f64 * (k as f64 * theta).sin());
+            cosines.chain(sines).sum::<f64>() / *denominator as f64
+        };
+        let slope_by_hand = |(cosine, sine, denominator): &(Vec<i64>, Vec<i64>, i64)| {
+            let cosines = cosine.iter().enumerate().map(|(k, c)| -(k as f64) * *c as f64 * (k as f64 * theta).sin());
+            let sines = sine.iter().enumerate().map(|(k, s)| k as f64 * *s as f64 * (k as f64 * theta).cos());
+            cosines.chain(sines).sum::<f64>() / *denominator as f64
+        };
+        let close = |left: f64, right: f64| (left - right).abs() <= 1e-10 * (1.0 + right.abs());
+        prop_assert!(close(float(&whole(&a)).evaluate(theta), by_hand(&a)));
+        prop_assert!(close(float(&whole(&a).sum(&whole(&b))).evaluate(theta), by_hand(&a) + by_hand(&b)));
+        prop_assert!(close(float(&whole(&a).derivative()).evaluate(theta), slope_by_hand(&a)));
+        prop_assert!(close(float(&whole(&a).at_zero()).evaluate(theta), float(&whole(&a)).evaluate(0.0)));
+    }
+
+    #[test]
     fn values_multiply(a in parts(), b in parts(), theta in -4.0_f64..4.0) {
-        let float = |series: &FourierSeries<Integer>| series.map(|n, d| lindstedt::exact::rational::to_f64(&fraction(n, d)));
+        let float = |series: &FourierSeries<Integer>| series.map(|n, d| to_f64(&fraction(n, d)));
         let (a, b) = (whole(&a), whole(&b));
         let product = float(&a.product(&b)).evaluate(theta);
         let factors = float(&a).evaluate(theta) * float(&b).evaluate(theta);
@@ -96,21 +248,90 @@ proptest! {
         // The k-th coefficient is the k-th derivative over k!, for every function of the grammar at every point.
         let point = ratio(p, q);
         let function = parse_expression(FUNCTIONS[which]).expect("an expression");
+        // Only at a corner is there no series, and there always.
+        let corner = p == 0 && CORNER_AT_ZERO.contains(&FUNCTIONS[which]);
         let Ok(parts) = taylor(&function, &[("x".into(), point.clone())], 4) else {
-            // Only at a corner is there no series.
-            prop_assert!(p == 0, "{} at {point}", FUNCTIONS[which]);
+            prop_assert!(corner, "{} at {point}", FUNCTIONS[which]);
             return Ok(());
         };
+        prop_assert!(!corner, "{} at {point} has no series", FUNCTIONS[which]);
         let at = [("x".into(), lindstedt::exact::rational::to_f64(&point))].into();
         let (mut derivative, mut factorial) = (function, 1.0);
         for (k, part) in parts.iter().enumerate() {
             let coefficient = part.evaluate(&[("x".into(), 1.0)].into()).expect("a number");
             let expected = derivative.evaluate(&at).expect("a number") / factorial;
-            prop_assert!((coefficient - expected).abs() <= 1e-9 * (1.0 + expected.abs()), "{} at {point}: {k}", FUNCTIONS[which]);
+            let error = (coefficient - expected).abs() / (1.0 + expected.abs());
+            prop_assert!(error <= 1e-9, "{} at {point}: {k}", FUNCTIONS[which]);
             derivative = derivative.differentiate("x".into()).expect("a derivative");
             factorial *= (k + 1) as f64;
         }
     }
+
+    #[test]
+    fn taylors_theorem_in_two_variables(
+        which in 0..FUNCTIONS.len(), p in -7_i64..=7, q in -7_i64..=7, direction in (-5_i64..=5, -5_i64..=5)
+    ) {
+        // Part k at a deviation (d, e) is the sum of d^i e^j / (i! j!) times the partial derivative, i + j = k.
+        const DEGREE: usize = 3;
+        let (x, y) = (Symbol::new("x"), Symbol::new("y"));
+        let argument = parse_expression("x/2 + y/3 + x*y/4").expect("an expression");
+        let function = parse_expression(FUNCTIONS[which]).expect("an expression");
+        let function = function.substitute(x, &argument).expect("a value");
+        let (at_x, at_y) = (ratio(p, 8), ratio(q, 8));
+        let corner = (&at_x / ratio(2, 1) + &at_y / ratio(3, 1) + &at_x * &at_y / ratio(4, 1)).is_zero()
+            && CORNER_AT_ZERO.contains(&FUNCTIONS[which]);
+        let Ok(parts) = taylor(&function, &[(x, at_x.clone()), (y, at_y.clone())], DEGREE as u32) else {
+            prop_assert!(corner, "{} at {at_x}, {at_y}", FUNCTIONS[which]);
+            return Ok(());
+        };
+        prop_assert!(!corner, "{} at {at_x}, {at_y} has no series", FUNCTIONS[which]);
+        let at = BTreeMap::from([(x, to_f64(&at_x)), (y, to_f64(&at_y))]);
+        let deviation = BTreeMap::from([(x, direction.0 as f64 / 4.0), (y, direction.1 as f64 / 4.0)]);
+        let mut expected = [0.0; DEGREE + 1];
+        let mut size = [1.0; DEGREE + 1];
+        let mut by_x = function;
+        for i in 0..=DEGREE {
+            let mut by_y = by_x.clone();
+            for j in 0..=DEGREE - i {
+                let powers = deviation[&x].powi(i as i32) * deviation[&y].powi(j as i32);
+                let weight = powers / (FACTORIALS[i] * FACTORIALS[j]);
+                let term = weight * by_y.evaluate(&at).expect("a number");
+                expected[i + j] += term;
+                size[i + j] += term.abs();
+                by_y = by_y.differentiate(y).expect("a derivative");
+            }
+            by_x = by_x.differentiate(x).expect("a derivative");
+        }
+        for (k, part) in parts.iter().enumerate() {
+            let value = part.evaluate(&deviation).expect("a number");
+            prop_assert!((value - expected[k]).abs() <= 1e-9 * size[k], "{} at {at_x}, {at_y}: {k}", FUNCTIONS[which]);
+        }
+    }
+}
+
+const FACTORIALS: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+
+/// Those of [`FUNCTIONS`] that have a corner or a jump at zero, and nowhere else.
+const CORNER_AT_ZERO: [&str; 4] = ["abs(x)", "sgn(x)", "max(x, -x)", "H(x)"];
+
+#[test]
+fn every_function_of_the_grammar_is_expanded() {
+    let mut seen = BTreeSet::new();
+    for text in FUNCTIONS {
+        let mut open = vec![parse_expression(text).expect("an expression")];
+        while let Some(expression) = open.pop() {
+            if let Node::Function(function, _) = expression.node() {
+                seen.insert(*function);
+            }
+            open.extend(expression.children().cloned());
+        }
+    }
+    let missing: Vec<&str> = Function::all()
+        .filter(|function| !seen.contains(function))
+        .map(Function::name)
+        .collect();
+    assert_eq!(missing, Vec::<&str>::new());
+    assert!(CORNER_AT_ZERO.iter().all(|corner| FUNCTIONS.contains(corner)));
 }
 
 /// Every function of the grammar, inside its domain for |x| < 1.

@@ -5,8 +5,9 @@
 
 use std::fmt::Write as _;
 
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Signed};
 
+use super::terms::{self, Notation};
 use crate::contact::phases::{Column, Form, Phase};
 use crate::decimal::decimal;
 use crate::exact::polynomial::Monomial;
@@ -22,18 +23,7 @@ use crate::verify::{Verdict, Verification};
 /// An expression.
 pub fn expression(expression: &Expr) -> String {
     match expression.node() {
-        Node::Sum(terms) => {
-            let mut text = String::new();
-            for term in terms {
-                let term = single_term(term);
-                match (text.is_empty(), term.strip_prefix('-')) {
-                    (true, _) => text.push_str(&term),
-                    (false, Some(rest)) => text.extend([" - ", rest]),
-                    (false, None) => text.extend([" + ", &term]),
-                }
-            }
-            text
-        }
+        Node::Sum(terms) => terms::sum(terms.iter().map(single_term)),
         _ => single_term(expression),
     }
 }
@@ -172,18 +162,11 @@ pub fn symbol(symbol: Symbol) -> String {
 
 /// A polynomial with the lowest power of the small parameter first.
 fn law(polynomial: &Polynomial, solution: &Solution) -> String {
-    let mut terms: Vec<_> = polynomial.terms().collect();
-    terms.sort_by_key(|(monomial, _)| monomial.exponent(solution.small_parameter));
-    let mut text = String::new();
-    for (monomial, coefficient) in terms {
-        let term = coefficient_term(monomial, coefficient, solution.numerical);
-        match (text.is_empty(), term.strip_prefix('-')) {
-            (true, _) => text.push_str(&term),
-            (false, Some(rest)) => text.extend([" - ", rest]),
-            (false, None) => text.extend([" + ", &term]),
-        }
-    }
-    if text.is_empty() { "0".to_owned() } else { text }
+    terms::polynomial(
+        polynomial,
+        |monomial| monomial.exponent(solution.small_parameter),
+        |monomial, coefficient| coefficient_term(monomial, coefficient, solution.numerical),
+    )
 }
 
 fn coefficient_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> String {
@@ -367,61 +350,31 @@ fn phase(phase: &Phase) -> String {
     format!("x(t) &= {form}")
 }
 
-/// The terms of a Fourier series in theta, each with its sign.
-fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<(char, String)> {
-    let mut waves = Vec::new();
-    for (k, cosine, sine) in series.harmonics() {
-        for (function, coefficient) in [("\\cos", cosine), ("\\sin", sine)] {
-            if coefficient.is_zero() {
-                continue;
-            }
-            let wave = match k {
-                0 => String::new(),
-                1 => format!(" {function} \\theta"),
-                _ => format!(" {function} {k}\\theta"),
-            };
-            let text = law(&coefficient, solution);
-            let (sign, text) = match (coefficient.single_term().is_some(), text.strip_prefix('-')) {
-                (true, Some(rest)) => ('-', rest.to_owned()),
-                (true, None) => ('+', text),
-                (false, _) if k == 0 => ('+', text),
-                (false, _) => ('+', format!("\\left({text}\\right)")),
-            };
-            let text = if text == "1" && k > 0 { String::new() } else { text };
-            waves.push((sign, format!("{text}{wave}")));
-        }
-    }
-    waves
+const NOTATION: Notation = Notation {
+    wave: |function, k| match k {
+        1 => format!("\\{function} \\theta"),
+        _ => format!("\\{function} {k}\\theta"),
+    },
+    times: " ",
+    brackets: ["\\left(", "\\right)"],
+};
+
+fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
+    terms::waves(series, |coefficient| law(coefficient, solution), &NOTATION)
 }
 
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> Vec<String> {
     let coordinate = solution.equation.split('\'').next().unwrap_or("x");
-    let mut lines = Vec::new();
-    for (sign, wave) in waves(&solution.displacement, solution) {
-        lines.push(match (lines.is_empty(), sign) {
-            (true, '+') => format!("{coordinate}(t) &= {wave}"),
-            (true, _) => format!("{coordinate}(t) &= -{wave}"),
-            (false, _) => format!("&\\quad {sign} {wave}"),
-        });
-    }
+    let waves = waves(&solution.displacement, solution);
+    let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
     lines.push("\\theta &= \\omega t".to_owned());
     lines
 }
 
 /// The derivation, order by order.
 pub fn steps(solution: &Solution) -> String {
-    let one_line = |series: &FourierSeries<Polynomial>| {
-        let mut text = String::new();
-        for (sign, wave) in waves(series, solution) {
-            match (text.is_empty(), sign) {
-                (true, '+') => text.push_str(&wave),
-                (true, _) => text.extend(["-", &wave]),
-                (false, _) => text.push_str(&format!(" {sign} {wave}")),
-            }
-        }
-        if text.is_empty() { "0".to_owned() } else { text }
-    };
+    let one_line = |series: &FourierSeries<Polynomial>| terms::sum(waves(series, solution));
     let squared = match solution.method {
         Method::HomotopyPerturbation => "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - W_{1} - W_{2} - \\dots\\right)",
         Method::LindstedtPoincare => "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",

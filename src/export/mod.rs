@@ -5,3 +5,5 @@ pub mod figure;
 pub mod json;
 pub mod latex;
 pub mod text;
+
+mod terms;

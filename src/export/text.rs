@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use num_traits::{One, Zero};
+use num_traits::One;
 
+use super::terms::{self, Notation};
 use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant};
 use crate::exact::polynomial::Monomial;
@@ -85,18 +86,9 @@ pub fn by_order(polynomial: &Polynomial, solution: &Solution) -> String {
 }
 
 fn ordered(polynomial: &Polynomial, numerical: bool, key: impl Fn(&Monomial) -> i32) -> String {
-    let mut terms: Vec<_> = polynomial.terms().collect();
-    terms.sort_by_key(|(monomial, _)| key(monomial));
-    let mut text = String::new();
-    for (monomial, coefficient) in terms {
-        let term = single_term(monomial, coefficient, numerical);
-        match (text.is_empty(), term.strip_prefix('-')) {
-            (true, _) => text.push_str(&term),
-            (false, Some(rest)) => text.extend([" - ", rest]),
-            (false, None) => text.extend([" + ", &term]),
-        }
-    }
-    if text.is_empty() { "0".to_owned() } else { text }
+    terms::polynomial(polynomial, key, |monomial, coefficient| {
+        single_term(monomial, coefficient, numerical)
+    })
 }
 
 /// One term; rounded coefficients print as decimals.
@@ -112,64 +104,27 @@ fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> 
     }
 }
 
-/// The terms of a Fourier series in theta, each with its sign.
-fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<(char, String)> {
-    let mut waves = Vec::new();
-    for (k, cosine, sine) in series.harmonics() {
-        for (function, coefficient) in [("cos", cosine), ("sin", sine)] {
-            if coefficient.is_zero() {
-                continue;
-            }
-            let wave = match k {
-                0 => String::new(),
-                1 => format!("*{function}(theta)"),
-                _ => format!("*{function}({k}*theta)"),
-            };
-            let text = by_order(&coefficient, solution);
-            let (sign, text) = match (coefficient.single_term().is_some(), text.strip_prefix('-')) {
-                (true, Some(rest)) => ('-', rest.to_owned()),
-                (true, None) => ('+', text),
-                (false, _) if k == 0 => ('+', text),
-                (false, _) => ('+', format!("({text})")),
-            };
-            let bare = text == "1" && k > 0;
-            waves.push((
-                sign,
-                if bare {
-                    wave.trim_start_matches('*').to_owned()
-                } else {
-                    format!("{text}{wave}")
-                },
-            ));
-        }
-    }
-    waves
-}
+const NOTATION: Notation = Notation {
+    wave: |function, k| match k {
+        1 => format!("{function}(theta)"),
+        _ => format!("{function}({k}*theta)"),
+    },
+    times: "*",
+    brackets: ["(", ")"],
+};
 
-/// A Fourier series in one line.
-fn in_one_line(series: &FourierSeries<Polynomial>, solution: &Solution) -> String {
-    let mut text = String::new();
-    for (sign, wave) in waves(series, solution) {
-        match (text.is_empty(), sign) {
-            (true, '+') => text.push_str(&wave),
-            (true, _) => text.extend(["-", &wave]),
-            (false, _) => text.push_str(&format!(" {sign} {wave}")),
-        }
-    }
-    if text.is_empty() { "0".to_owned() } else { text }
+fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
+    terms::waves(series, |coefficient| by_order(coefficient, solution), &NOTATION)
 }
 
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
     let name = solution_coordinate(solution);
-    let mut lines = Vec::new();
-    for (sign, wave) in waves(&solution.displacement, solution) {
-        lines.push(match (lines.is_empty(), sign) {
-            (true, '+') => format!("  {name}(t) = {wave}"),
-            (true, _) => format!("  {name}(t) = -{wave}"),
-            (false, _) => format!("         {sign} {wave}"),
-        });
-    }
+    let mut lines = terms::lines(
+        &waves(&solution.displacement, solution),
+        &format!("  {name}(t) = "),
+        "         ",
+    );
     lines.push("         theta = omega*t".to_owned());
     lines.join("\n")
 }
@@ -200,7 +155,7 @@ pub fn steps(solution: &Solution) -> String {
     text.push_str("\n  order 0\n    y0'' + y0 = 0\n    y0 = cos(theta)\n");
     for step in &solution.steps {
         let n = step.order;
-        let right_side = in_one_line(&step.right_side, solution);
+        let right_side = terms::sum(waves(&step.right_side, solution));
         let resonance = by_order(&step.resonance, solution);
         let _ = writeln!(text, "\n  order {n}");
         let _ = writeln!(
@@ -220,7 +175,7 @@ pub fn steps(solution: &Solution) -> String {
                 n + 1
             );
         }
-        let _ = writeln!(text, "    y{n} = {}", in_one_line(&step.displacement, solution));
+        let _ = writeln!(text, "    y{n} = {}", terms::sum(waves(&step.displacement, solution)));
     }
     text
 }

@@ -1,0 +1,83 @@
+//! Sums and Fourier series put together from their terms, in whatever notation: shared by text and LaTeX.
+
+use num_traits::Zero;
+
+use crate::exact::polynomial::Monomial;
+use crate::exact::{Polynomial, Rational};
+use crate::series::FourierSeries;
+
+/// How a format writes a harmonic.
+pub(super) struct Notation {
+    /// `cos(3*theta)` from `"cos"` and 3; never asked for the zeroth harmonic.
+    pub wave: fn(&str, usize) -> String,
+    /// What stands between coefficient and harmonic.
+    pub times: &'static str,
+    /// What stands around a coefficient that is a sum.
+    pub brackets: [&'static str; 2],
+}
+
+/// Terms joined by their signs; `0` where there are none.
+pub(super) fn sum(terms: impl IntoIterator<Item = String>) -> String {
+    let mut text = String::new();
+    for term in terms {
+        match (text.is_empty(), term.strip_prefix('-')) {
+            (true, _) => text.push_str(&term),
+            (false, Some(rest)) => text.extend([" - ", rest]),
+            (false, None) => text.extend([" + ", &term]),
+        }
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+/// A polynomial, its terms in the order of `key`.
+pub(super) fn polynomial(
+    polynomial: &Polynomial,
+    key: impl Fn(&Monomial) -> i32,
+    term: impl Fn(&Monomial, &Rational) -> String,
+) -> String {
+    let mut terms: Vec<_> = polynomial.terms().collect();
+    terms.sort_by_key(|(monomial, _)| key(monomial));
+    sum(terms
+        .into_iter()
+        .map(|(monomial, coefficient)| term(monomial, coefficient)))
+}
+
+/// The terms of a Fourier series, a minus in front of those that have one; `law` writes a coefficient.
+pub(super) fn waves(
+    series: &FourierSeries<Polynomial>,
+    law: impl Fn(&Polynomial) -> String,
+    notation: &Notation,
+) -> Vec<String> {
+    let mut waves = Vec::new();
+    for (k, cosine, sine) in series.harmonics() {
+        for (function, coefficient) in [("cos", cosine), ("sin", sine)] {
+            if coefficient.is_zero() {
+                continue;
+            }
+            let text = law(&coefficient);
+            if k == 0 {
+                waves.push(text);
+                continue;
+            }
+            let wave = (notation.wave)(function, k);
+            let [open, close] = notation.brackets;
+            waves.push(match (coefficient.single_term().is_some(), text.as_str()) {
+                (true, "1") => wave,
+                (true, "-1") => format!("-{wave}"),
+                (true, _) => format!("{text}{}{wave}", notation.times),
+                (false, _) => format!("{open}{text}{close}{}{wave}", notation.times),
+            });
+        }
+    }
+    waves
+}
+
+/// The lines of a motion: `first` before the first term, `next` before the others, each with its sign.
+pub(super) fn lines(waves: &[String], first: &str, next: &str) -> Vec<String> {
+    let line = |(index, wave): (usize, &String)| match (index, wave.strip_prefix('-')) {
+        (0, _) => format!("{first}{wave}"),
+        (_, Some(rest)) => format!("{next}- {rest}"),
+        (_, None) => format!("{next}+ {wave}"),
+    };
+    waves.iter().enumerate().map(line).collect()
+}

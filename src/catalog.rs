@@ -62,14 +62,14 @@ pub const CATALOG: &[Entry] = &[
     },
     Entry {
         name: "cubic-pendulum",
-        title: "pendulum with the sine cut after x^3",
+        title: "pendulum with the sine cut after its cubic term",
         equation: "x'' + x - x^3/6 = 0",
         source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equations (11) and (12)",
         published: omega_squared("1 - A^2/8", 2),
     },
     Entry {
         name: "quintic-pendulum",
-        title: "pendulum with the sine cut after x^5",
+        title: "pendulum with the sine cut after its quintic term",
         equation: "x'' + x - x^3/6 + x^5/120 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - A^2/16 + A^4/3072", 4),

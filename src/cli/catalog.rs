@@ -2,6 +2,7 @@
 
 use clap::Args;
 use lindstedt::catalog::{CATALOG, Entry, methods};
+use lindstedt::export::latex;
 use serde_json::{Value, json};
 
 use super::{Common, Failure, Format, Outcome, json_text};
@@ -18,7 +19,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let text = match arguments.common.format {
         Format::Text => CATALOG.iter().map(text).collect::<Vec<_>>().join("\n"),
-        Format::Latex => return Err(Failure::Usage("--format: the catalogue is text or json".to_owned())),
+        Format::Latex => {
+            let items: Vec<String> = CATALOG.iter().map(item).collect();
+            format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
+        }
         Format::Json => {
             let entries: Vec<Value> = CATALOG.iter().map(document).collect();
             json_text(&json!({ "schema": "lindstedt/catalog/1", "entries": entries }))
@@ -55,6 +59,14 @@ fn text(entry: &Entry) -> String {
         });
     }
     lines.join("\n") + "\n"
+}
+
+/// Equation and published law; titles and sources hold nothing that LaTeX reads as a command.
+fn item(entry: &Entry) -> String {
+    let law =
+        published(entry).map(|law| format!(", published $ {} $", latex::equation(law.trim_end_matches(" + ..."))));
+    let (equation, law) = (latex::equation(entry.equation), law.unwrap_or_default());
+    format!("\\item[{}] {}: $ {equation} ${law}", entry.name, entry.title)
 }
 
 fn document(entry: &Entry) -> Value {

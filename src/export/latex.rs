@@ -186,8 +186,8 @@ fn scientific(value: f64) -> String {
     }
 }
 
-/// An equation of motion, `left = right`, as it stands in a solution.
-fn equation(text: &str) -> String {
+/// An equation of motion, `left = right`, as it was typed or stands in a solution.
+pub fn equation(text: &str) -> String {
     let side = |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
     match text.split_once('=') {
         Some((left, right)) => format!("{} = {}", side(left), side(right)),

@@ -8,7 +8,7 @@ use num_traits::Zero;
 use crate::decimal::rounded;
 use crate::exact::Rational;
 use crate::exact::rational::ratio;
-use crate::expr::{CompiledFunction, Expr};
+use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
@@ -22,6 +22,8 @@ pub struct Centred {
     pub position: Rational,
     /// Whether position and coefficients are rounded.
     pub numerical: bool,
+    /// What was assumed of parameters: `xc > 0` where a barrier `H(x - xc)` must not act at rest.
+    pub assumption: Option<String>,
 }
 
 /// The oscillator about the stable equilibrium nearest to zero; `degree` is that of the numerical force polynomial, should
@@ -35,6 +37,7 @@ pub fn centred(oscillator: &Oscillator, degree: u32) -> Result<Centred, Oscillat
         oscillator: oscillator.clone(),
         position: Rational::zero(),
         numerical: false,
+        assumption: None,
     };
     // Time-dependent terms are refused by the methods; where the force has no value at rest, so is that.
     let Ok(still) = oscillator.force.substitute(velocity, &Expr::zero()) else {
@@ -55,6 +58,12 @@ pub fn centred(oscillator: &Oscillator, degree: u32) -> Result<Centred, Oscillat
             false => Ok(at_origin),
             true => Err(OscillatorError::Unstable(stable_texts(&equilibria, &still, oscillator))),
         };
+    }
+    if !only_position && let Some(assumption) = untouched(&at_zero)? {
+        return Ok(Centred {
+            assumption: Some(assumption),
+            ..at_origin
+        });
     }
     if !only_position {
         return match at_zero.contains("t".into()) {
@@ -81,7 +90,31 @@ pub fn centred(oscillator: &Oscillator, degree: u32) -> Result<Centred, Oscillat
         oscillator,
         position: shift,
         numerical,
+        assumption: None,
     })
+}
+
+/// Whether a force at rest is that of barriers alone that do not act there: every `H(-xc)` is zero for `xc > 0`.
+fn untouched(at_zero: &Expr) -> Result<Option<String>, OscillatorError> {
+    let mut names = Vec::new();
+    let without = at_zero.fold(|expr, children: &[Expr]| match (expr.node(), children) {
+        (Node::Function(Function::Step, _), [edge]) if edge.terms().len() == 1 && edge.has_leading_minus() => {
+            let edge = (-edge).to_string();
+            if !names.contains(&edge) {
+                names.push(edge);
+            }
+            Ok(Expr::zero())
+        }
+        _ => expr.with_children(children),
+    })?;
+    let assumption = || {
+        names
+            .iter()
+            .map(|name| format!("{name} > 0"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    Ok((without.expand()?.is_zero() && !names.is_empty()).then(assumption))
 }
 
 /// The force as a polynomial with rounded coefficients; only for forces of the position alone.

@@ -26,7 +26,8 @@
 //! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
 //! | series | [`series`] | Taylor, Fourier, running convolutions |
 //! | answer and question | [`solution`], [`oscillator`] | what a method returns, and what it is given |
-//! | numbers alone | [`ode`] | Runge-Kutta, quadrature, roots |
+//! | numbers alone | [`ode`], [`period`] | Runge-Kutta, quadrature, roots; the true period |
+//! | forces of position alone | [`conservative`] | potential and projections in closed form |
 //! | equilibrium | [`equilibrium`] | where the motion swings about |
 //! | method | [`method`] | one file each |
 //! | verify | [`verify`] | the true motion and the verdict |
@@ -49,7 +50,10 @@ pub mod solution;
 
 pub mod oscillator;
 
+pub mod conservative;
+
 pub mod ode;
+pub mod period;
 
 pub mod equilibrium;
 

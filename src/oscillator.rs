@@ -329,6 +329,28 @@ impl Oscillator {
     /// # Errors
     /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic or no polynomial.
     pub fn expand(&self, small: SmallParameter, order: u32) -> Result<PerturbedForce, OscillatorError> {
+        let force = self.expand_with_any_stiffness(small, order)?;
+        let negative = force
+            .linear
+            .single_term()
+            .is_some_and(|(_, number)| number.is_negative());
+        if force.linear.is_zero() || negative {
+            return Err(OscillatorError::NoRestoringForce(
+                (&Expr::from(&force.linear) * &Expr::from(self.coordinate)).to_string(),
+            ));
+        }
+        Ok(force)
+    }
+
+    /// As [`Oscillator::expand`], for methods that need no linear restoring force.
+    ///
+    /// # Errors
+    /// A force at rest, or a term that is not small, not analytic or no polynomial.
+    pub fn expand_with_any_stiffness(
+        &self,
+        small: SmallParameter,
+        order: u32,
+    ) -> Result<PerturbedForce, OscillatorError> {
         let (position, velocity) = (self.coordinate, self.velocity());
         let at_rest = at_rest(&self.force, position).and_then(|force| force.expand());
         if let Ok(force) = at_rest
@@ -384,12 +406,6 @@ impl Oscillator {
                     }),
                 }
             }
-        }
-        let negative = linear.single_term().is_some_and(|(_, number)| number.is_negative());
-        if linear.is_zero() || negative {
-            return Err(OscillatorError::NoRestoringForce(
-                (&Expr::from(&linear) * &Expr::from(position)).to_string(),
-            ));
         }
         Ok(PerturbedForce {
             linear,

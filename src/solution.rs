@@ -19,17 +19,68 @@ pub enum Method {
     LindstedtPoincare,
     /// The whole nonlinearity at the first power of a bookkeeping parameter.
     HomotopyPerturbation,
+    /// A homotopy with a convergence-control parameter hbar, frequency expanded as well.
+    HomotopyAnalysis,
+    /// The nonlinear factor frozen at the previous iterate.
+    IterationPerturbation,
+    /// Coefficients of the equation expanded in a bookkeeping parameter.
+    ParameterExpansion,
+    /// As many harmonics as wanted, each balanced.
+    HarmonicBalance,
+    /// The energy of a one-term motion collocated at an eighth of the period.
+    EnergyBalance,
+    /// omega^2 between the least and the largest of f(x)/x.
+    MaxMin,
+    /// Two trial motions and the residuals they leave at one instant.
+    AmplitudeFrequency,
+    /// The mean Hamiltonian of a one-term motion made stationary.
+    Hamiltonian,
+    /// One correction functional, its secular term removed.
+    VariationalIteration,
+    /// The slope of the force at half the amplitude.
+    FrequencyFormula,
+    /// A quotient of polynomials that agrees with the exact series.
+    Pade,
+    /// The period by elliptic integrals or Gamma functions, else by quadrature.
+    Exact,
 }
 
 impl Method {
     /// Every method, in the order in which they are listed to users.
-    pub const ALL: [Self; 2] = [Self::LindstedtPoincare, Self::HomotopyPerturbation];
+    pub const ALL: [Self; 14] = [
+        Self::LindstedtPoincare,
+        Self::HomotopyPerturbation,
+        Self::HomotopyAnalysis,
+        Self::IterationPerturbation,
+        Self::ParameterExpansion,
+        Self::HarmonicBalance,
+        Self::EnergyBalance,
+        Self::MaxMin,
+        Self::AmplitudeFrequency,
+        Self::Hamiltonian,
+        Self::VariationalIteration,
+        Self::FrequencyFormula,
+        Self::Pade,
+        Self::Exact,
+    ];
 
     /// The name on the command line and in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::LindstedtPoincare => "lindstedt-poincare",
             Self::HomotopyPerturbation => "homotopy-perturbation",
+            Self::HomotopyAnalysis => "homotopy-analysis",
+            Self::IterationPerturbation => "iteration-perturbation",
+            Self::ParameterExpansion => "parameter-expansion",
+            Self::HarmonicBalance => "harmonic-balance",
+            Self::EnergyBalance => "energy-balance",
+            Self::MaxMin => "max-min",
+            Self::AmplitudeFrequency => "amplitude-frequency",
+            Self::Hamiltonian => "hamiltonian",
+            Self::VariationalIteration => "variational-iteration",
+            Self::FrequencyFormula => "frequency-formula",
+            Self::Pade => "pade",
+            Self::Exact => "exact",
         }
     }
 
@@ -38,6 +89,18 @@ impl Method {
         match self {
             Self::LindstedtPoincare => "Lindstedt-Poincare",
             Self::HomotopyPerturbation => "Homotopy perturbation",
+            Self::HomotopyAnalysis => "Homotopy analysis",
+            Self::IterationPerturbation => "Iteration perturbation",
+            Self::ParameterExpansion => "Parameter expansion",
+            Self::HarmonicBalance => "Harmonic balance",
+            Self::EnergyBalance => "Energy balance",
+            Self::MaxMin => "Max-min approach",
+            Self::AmplitudeFrequency => "Amplitude-frequency formulation",
+            Self::Hamiltonian => "Hamiltonian approach",
+            Self::VariationalIteration => "Variational iteration",
+            Self::FrequencyFormula => "Frequency formula",
+            Self::Pade => "Pade approximant",
+            Self::Exact => "Exact frequency",
         }
     }
 
@@ -99,6 +162,37 @@ pub struct Definition {
     pub meaning: Expr,
 }
 
+/// A law that is no polynomial: `omega^2 = 2*J1(A)/A`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedForm {
+    /// Whether the value is omega^2; otherwise omega.
+    pub squared: bool,
+    /// The right side, in the parameters, the amplitude symbol and the symbols of the definitions.
+    pub value: Expr,
+}
+
+impl ClosedForm {
+    /// The left side: `omega^2` or `omega`.
+    pub fn name(&self) -> &'static str {
+        if self.squared { "omega^2" } else { "omega" }
+    }
+}
+
+impl fmt::Display for ClosedForm {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} = {}", self.name(), self.value)
+    }
+}
+
+/// Algebraic equations that determine frequency and coefficients together, solved by numbers alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct System {
+    /// What is solved for: `omega` and the coefficients of the motion.
+    pub unknowns: Vec<Symbol>,
+    /// Each is equal to zero.
+    pub equations: Vec<Expr>,
+}
+
 /// A closed-form approximation of a periodic motion.
 ///
 /// The motion is `x(t) = displacement(theta)`, `theta = omega t`; all polynomials are in the parameters of the equation, the
@@ -128,7 +222,11 @@ pub struct Solution {
     /// For implicit methods: a polynomial in even powers of `omega`, equal to zero.
     pub relation: Option<Polynomial>,
     /// A closed form that is no polynomial.
-    pub closed_form: Option<String>,
+    pub closed_form: Option<ClosedForm>,
+    /// A law that only numbers solve, as text: `omega^2 = (2/(pi*A)) int_0^pi ...`.
+    pub by_quadrature: Option<String>,
+    /// The equations of a balance of several harmonics.
+    pub system: Option<System>,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomial>,
     /// Self-excited oscillators: the amplitude (in the convention above) that the equation itself determines.
@@ -137,8 +235,10 @@ pub struct Solution {
     pub numerical: bool,
     /// What is known of where the formula holds.
     pub validity: Vec<String>,
-    /// The derivation, order by order, where it was asked for.
+    /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
+    /// The derivation of any other method, line by line.
+    pub derivation: Vec<String>,
 }
 
 /// One order of a derivation, `y_n'' + y_n = right_side + (resonance + W_n) cos(theta)`, in units of the amplitude and of the
@@ -163,19 +263,27 @@ impl Solution {
     /// # Errors
     /// The first symbol without a value.
     pub fn evaluate(&self, polynomial: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
-        let values: Vec<(Symbol, f64)> = self
+        let used = polynomial.symbols();
+        let mut values: Vec<(Symbol, f64)> = Vec::new();
+        // A definition may use those before it.
+        for definition in self
             .definitions
             .iter()
-            .filter(|definition| polynomial.symbols().contains(&definition.symbol))
-            .map(|definition| {
-                let parameters = definition.meaning.symbols().into_iter();
-                let known: Result<_, Symbol> = parameters
-                    .map(|symbol| value_of(symbol).map(|value| (symbol, value)).ok_or(symbol))
-                    .collect();
-                let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
-                Ok((definition.symbol, value))
-            })
-            .collect::<Result<_, Symbol>>()?;
+            .filter(|_| used.iter().any(|symbol| self.defines(*symbol)))
+        {
+            let known: Result<_, Symbol> = definition
+                .meaning
+                .symbols()
+                .into_iter()
+                .map(|symbol| {
+                    let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
+                    let value = defined.or_else(|| value_of(symbol)).ok_or(symbol)?;
+                    Ok((symbol, value))
+                })
+                .collect();
+            let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
+            values.push((definition.symbol, value));
+        }
         let pi = Symbol::new("pi");
         polynomial.evaluate(|symbol| {
             let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
@@ -183,6 +291,10 @@ impl Solution {
                 .or_else(|| value_of(symbol))
                 .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
         })
+    }
+
+    fn defines(&self, symbol: Symbol) -> bool {
+        self.definitions.iter().any(|definition| definition.symbol == symbol)
     }
 
     /// Rounds every coefficient to fifteen digits and says so.
@@ -210,12 +322,69 @@ impl Solution {
             .push("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction".to_owned());
     }
 
-    /// What the order counts: the small parameter, or the homotopy's `p`.
-    pub fn order_counts(&self) -> &'static str {
+    /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one order.
+    pub fn order_in_words(&self) -> String {
+        let order = self.order;
         match self.method {
-            Method::HomotopyPerturbation => "p",
-            Method::LindstedtPoincare => self.small_parameter.name(),
+            Method::LindstedtPoincare | Method::Pade => format!("to order {order} in {}", self.small_parameter),
+            Method::HomotopyPerturbation | Method::ParameterExpansion => format!("to order {order} in p"),
+            Method::HomotopyAnalysis => format!("to order {order} in q"),
+            Method::IterationPerturbation if order == 1 => "after one pass".to_owned(),
+            Method::IterationPerturbation => format!("after {order} passes"),
+            Method::HarmonicBalance if order == 1 => "with one harmonic".to_owned(),
+            Method::HarmonicBalance => format!("of order {order}"),
+            _ => String::new(),
         }
+    }
+
+    /// The name of the method and its order.
+    pub fn title(&self) -> String {
+        format!("{} {}", self.method.title(), self.order_in_words())
+            .trim_end()
+            .to_owned()
+    }
+
+    /// The law in one line, with the definitions it needs.
+    pub fn formula(&self) -> String {
+        let law = if let Some(law) = &self.frequency_squared {
+            format!("omega^2 = {}", self.lowest_first(law))
+        } else if let Some(form) = &self.closed_form {
+            form.to_string()
+        } else if let Some(law) = &self.frequency {
+            format!("omega = {}", self.lowest_first(law))
+        } else if let Some(relation) = &self.relation {
+            format!("0 = {relation}")
+        } else if self.method == Method::HarmonicBalance {
+            let harmonics = self.displacement.harmonics();
+            let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
+            return format!("harmonics {} balanced, solved by numbers", kept.join(", "));
+        } else {
+            return self.by_quadrature.clone().unwrap_or_default();
+        };
+        let definitions = self.definitions.iter().filter(|definition| {
+            let name = definition.symbol;
+            let laws = [&self.frequency_squared, &self.frequency, &self.relation];
+            laws.into_iter().flatten().any(|law| law.symbols().contains(&name))
+                || self.closed_form.as_ref().is_some_and(|form| form.value.contains(name))
+        });
+        let definitions = definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning));
+        std::iter::once(law).chain(definitions).collect()
+    }
+
+    /// A polynomial with the lowest power of the small parameter first.
+    fn lowest_first(&self, law: &Polynomial) -> String {
+        let mut terms: Vec<_> = law.terms().collect();
+        terms.sort_by_key(|(monomial, _)| monomial.exponent(self.small_parameter));
+        let mut text = String::new();
+        for (monomial, number) in terms {
+            let term = Polynomial::term(monomial.clone(), number.clone()).to_string();
+            match (text.is_empty(), term.strip_prefix('-')) {
+                (true, _) => text.push_str(&term),
+                (false, Some(rest)) => text.extend([" - ", rest]),
+                (false, None) => text.extend([" + ", &term]),
+            }
+        }
+        if text.is_empty() { "0".to_owned() } else { text }
     }
 
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that continues omega0^2
@@ -224,7 +393,25 @@ impl Solution {
         if let Some(law) = &self.frequency_squared {
             return self.evaluate(law, value_of).ok();
         }
-        self.continued_root(self.relation.as_ref()?, value_of)
+        if let Some(relation) = &self.relation {
+            return self.continued_root(relation, value_of);
+        }
+        if let Some(form) = &self.closed_form {
+            let value = self.evaluate_expression(&form.value, value_of)?;
+            return Some(if form.squared { value } else { value * value.abs() });
+        }
+        let frequency = self.evaluate(self.frequency.as_ref()?, value_of).ok()?;
+        Some(frequency * frequency.abs())
+    }
+
+    /// The value of an expression in the parameters, the amplitude and the definitions; `None` where it has none.
+    fn evaluate_expression(&self, expression: &Expr, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
+        let value = |symbol: Symbol| {
+            let value = self.evaluate(&Polynomial::symbol(symbol), value_of).ok()?;
+            Some((symbol, value))
+        };
+        let values = expression.symbols().into_iter().map(value).collect::<Option<_>>()?;
+        expression.evaluate(&values).ok()
     }
 
     fn continued_root(&self, relation: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
@@ -254,6 +441,11 @@ impl Solution {
         // At rest the relation is z^(n-1) (z - omega0^2).
         let at_rest = coefficients(0.0)?;
         let mut z = -at_rest[highest.checked_sub(1)?] / at_rest[highest];
+        if z == 0.0 {
+            // Without a linear part nothing can be continued from rest: of a relation that is homogeneous in the amplitude
+            // the largest root is the one that the first order, its only root, goes over into.
+            return largest_root(&coefficients(1.0)?);
+        }
         let (mut part, mut step) = (0.0, LONGEST_STEP);
         while part < 1.0 {
             let next = f64::min(part + step, 1.0);
@@ -294,15 +486,30 @@ impl Solution {
             .iter()
             .chain(&self.frequency_squared)
             .chain(&self.relation);
-        laws.into_iter()
-            .any(|law| law.symbols().contains(&self.amplitude.symbol()))
+        let amplitude = self.amplitude.symbol();
+        let equations = self.system.iter().flat_map(|system| &system.equations);
+        let forms = self.closed_form.iter().map(|form| &form.value).chain(equations);
+        self.by_quadrature.is_some()
+            || laws.into_iter().any(|law| law.symbols().contains(&amplitude))
+            || forms.into_iter().any(|form| form.contains(amplitude))
+            || self
+                .definitions
+                .iter()
+                .any(|definition| definition.meaning.contains(amplitude))
     }
+}
+
+/// The largest real root: Newton's iteration from above all roots.
+fn largest_root(coefficients: &[f64]) -> Option<f64> {
+    let (leading, rest) = coefficients.split_last()?;
+    let bound = 1.0 + rest.iter().map(|value| (value / leading).abs()).fold(0.0, f64::max);
+    newton(coefficients, bound)
 }
 
 /// The root of a polynomial, lowest coefficient first, that Newton's iteration reaches from `start`; `None` where it does
 /// not settle, as it does not where two roots meet.
 fn newton(coefficients: &[f64], start: f64) -> Option<f64> {
-    const ITERATIONS: usize = 40;
+    const ITERATIONS: usize = 400;
     let mut root = start;
     for _ in 0..ITERATIONS {
         let horner = |(value, slope): (f64, f64), coefficient: &f64| (value * root + coefficient, slope * root + value);

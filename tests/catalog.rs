@@ -63,11 +63,14 @@ fn derived_laws_are_the_published_ones() {
     assert!(compared >= 12, "{compared} published laws");
 }
 
+/// The methods that expand in a small parameter; the others are held to their own claims in `tests/conformance.rs`.
+const EXPANSIONS: [Method; 2] = [Method::LindstedtPoincare, Method::HomotopyPerturbation];
+
 #[test]
 fn derived_motions_are_the_true_ones_at_small_amplitudes() {
     for entry in CATALOG {
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
-        for method in Method::ALL {
+        for method in EXPANSIONS {
             let options = Options {
                 method: Some(method),
                 ..Options::default()
@@ -124,7 +127,7 @@ fn derived_laws_follow_the_shift_of_the_frequency() {
     let mut shifts = 0;
     for entry in CATALOG {
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
-        for method in Method::ALL {
+        for method in EXPANSIONS {
             let options = Options {
                 method: Some(method),
                 ..Options::default()

@@ -7,14 +7,15 @@
 use std::path::{Path, PathBuf};
 
 /// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only and uses nothing at all.
-const LAYERS: [&[&str]; 16] = [
+const LAYERS: [&[&str]; 17] = [
     &["symbol", "spelling", "ode"],
-    &["exact"],
+    &["exact", "period"],
     &["decimal"],
     &["expr"],
     &["series"],
     &["solution"],
     &["oscillator"],
+    &["conservative"],
     &["equilibrium"],
     &["method"],
     &["verify"],

@@ -19,12 +19,14 @@ use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     problem: String,
-    /// How to derive: lindstedt-poincare or homotopy-perturbation
+    /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
+    /// parameter-expansion, harmonic-balance, energy-balance, max-min, amplitude-frequency, hamiltonian,
+    /// variational-iteration, frequency-formula, pade or exact
     #[arg(long)]
     method: Option<String>,
-    /// Highest power of the small parameter kept, inclusive
+    /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade
     #[arg(long)]
-    order: Option<u32>,
+    order: Option<Order>,
     /// What the amplitude measures
     #[arg(long, value_enum)]
     amplitude: Option<Convention>,
@@ -34,6 +36,9 @@ pub struct Arguments {
     /// Degree of the Taylor polynomial that homotopy perturbation puts for the force
     #[arg(long, value_name = "DEGREE")]
     taylor: Option<u32>,
+    /// The convergence-control parameter of homotopy-analysis, exact; without it the best one is chosen at the values
+    #[arg(long, allow_hyphen_values = true, value_name = "VALUE")]
+    hbar: Option<String>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -50,6 +55,26 @@ enum Convention {
     FirstHarmonic,
 }
 
+/// What stands after `--order`.
+#[derive(Clone, Copy)]
+enum Order {
+    Power(u32),
+    /// `2,1`: numerator and denominator.
+    Degrees(u32, u32),
+}
+
+impl std::str::FromStr for Order {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse().map_err(|_| format!("`{text}` is no whole number"));
+        match text.split_once(',') {
+            None => number(text).map(Self::Power),
+            Some((numerator, denominator)) => Ok(Self::Degrees(number(numerator)?, number(denominator)?)),
+        }
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let Some(equation) = &problem.equation else {
@@ -59,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
     let options = options(arguments, &problem)?;
-    let values = values(arguments, &problem)?;
+    let values = exact_values(&arguments.at, &problem)?;
     let solution =
         method::solve(&oscillator, &options).map_err(|refusal| Failure::refused(&refusal, refusal.help()))?;
     let tolerance = tolerance(&arguments.common);
@@ -113,7 +138,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 /// An equation, or what a file says. A name that ends in `.toml`, or a file that exists, is a file.
-fn problem(text: &str) -> Result<Problem, Failure> {
+pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
     let parsed = |text: String| -> Result<Problem, Failure> {
         text.parse()
             .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))
@@ -186,7 +211,28 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             }
         },
     };
-    let order = arguments.order.or(problem.order);
+    let (order, pade) = match arguments.order.or(problem.order.map(Order::Power)) {
+        Some(Order::Degrees(..)) if method != Some(Method::Pade) => {
+            return usage("degrees L,M are those of --method pade".to_owned());
+        }
+        Some(Order::Degrees(numerator, denominator)) => (None, Some((numerator, denominator))),
+        Some(Order::Power(_)) if method == Some(Method::Pade) => {
+            return usage("--method pade takes two degrees: --order 2,1".to_owned());
+        }
+        Some(Order::Power(order)) => (Some(order), None),
+        None => (None, None),
+    };
+    let hbar = match &arguments.hbar {
+        None => None,
+        Some(_) if method != Some(Method::HomotopyAnalysis) => {
+            return usage("--hbar belongs to --method homotopy-analysis".to_owned());
+        }
+        Some(text) => match parse_expression(text) {
+            Ok(value) if value.as_number().is_some() => Some(value),
+            Ok(_) => return usage(format!("--hbar {text}: expected a fraction, such as -1 or -4/5")),
+            Err(error) => return usage(format!("--hbar {text}: {error}")),
+        },
+    };
     let small = arguments.small.clone().or_else(|| problem.small.clone());
     Ok(Options {
         method,
@@ -194,13 +240,15 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
         amplitude,
         small,
         taylor: arguments.taylor,
+        pade,
+        hbar,
     })
 }
 
 /// The values of the command line, which win over those of the file; `None` where there are none at all.
-fn values(arguments: &Arguments, problem: &Problem) -> Result<Option<Values>, Failure> {
+pub(super) fn exact_values(at: &[String], problem: &Problem) -> Result<Option<Values>, Failure> {
     let mut values = Values::default();
-    for text in &arguments.at {
+    for text in at {
         let Some((name, value)) = text.split_once('=') else {
             return Err(Failure::Usage(format!(
                 "--at {text}: expected NAME=VALUE, such as A=1.5"
@@ -243,8 +291,8 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
         ));
     };
     let at: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-    let caption = format!("{}   {}", solution.equation, at.join(", "));
-    let label = format!("{} to order {}", solution.method.title(), solution.order);
+    let caption = format!("{}; {}", solution.equation, at.join(", "));
+    let label = solution.title();
     let figure = MotionFigure {
         coordinate: oscillator.coordinate.name(),
         displacement_unit: "",

@@ -4,6 +4,7 @@
 //! failed, 2 wrong usage, 3 verdict failed, 70 internal error.
 
 mod catalog;
+mod compare;
 mod derive;
 mod impact;
 
@@ -35,6 +36,8 @@ Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdic
 enum Command {
     /// Derive the frequency law and the motion of an oscillator, to an order
     Derive(derive::Arguments),
+    /// Every method of the field on one equation, in one table, judged against the true motion
+    Compare(compare::Arguments),
     /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
     Impact(impact::Arguments),
     /// List the classical oscillators that `derive` knows by name
@@ -50,7 +53,7 @@ struct Common {
     /// Write the result to this file instead of standard output
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw the motion, formula against Runge-Kutta, to this SVG file
+    /// Draw to this SVG file: the motion against Runge-Kutta; of compare, omega against the amplitude
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
@@ -124,6 +127,7 @@ pub fn run() -> ExitCode {
         .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
     let common = match &command {
         Command::Derive(arguments) => arguments.common.clone(),
+        Command::Compare(arguments) => arguments.common.clone(),
         Command::Impact(arguments) => arguments.common.clone(),
         Command::Catalog(arguments) => arguments.common.clone(),
     };
@@ -132,6 +136,7 @@ pub fn run() -> ExitCode {
     let worker = std::thread::spawn(move || {
         let outcome = match command {
             Command::Derive(arguments) => derive::run(&arguments),
+            Command::Compare(arguments) => compare::run(&arguments),
             Command::Impact(arguments) => impact::run(&arguments),
             Command::Catalog(arguments) => catalog::run(&arguments),
         };

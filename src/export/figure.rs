@@ -20,6 +20,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use crate::verify::comparison::Backbone;
 use kuva::prelude::{Figure, LabelConfig, Layout, LegendEntry, LegendPlot, LinePlot, LineStyle, Plot};
 use kuva::prelude::{SvgBackend, TickFormat, collect_legend_entries};
 use kuva::render::render::{Primitive, Scene, TextAnchor};
@@ -42,6 +43,21 @@ impl CurveStyle {
     pub const SECOND_DIFFERENCE: Self = Self("#cc79a7", "7 2", 1.6);
     /// The next of a series.
     pub const THIRD_DIFFERENCE: Self = Self("#009e73", "2 2", 1.8);
+    /// Curves of one panel that must be told apart, in print and in colour-blind vision: colour and dashes both differ.
+    pub const SERIES: [Self; 12] = [
+        Self("#d55e00", "none", 1.6),
+        Self("#0072b2", "7 3", 1.6),
+        Self("#009e73", "2 2", 1.8),
+        Self("#cc79a7", "10 3 2 3", 1.6),
+        Self("#000000", "4 2", 1.3),
+        Self("#e69f00", "none", 1.6),
+        Self("#000000", "1 3", 1.6),
+        Self("#d55e00", "5 2 1 2", 1.6),
+        Self("#0072b2", "2 4", 1.8),
+        Self("#009e73", "9 2", 1.6),
+        Self("#cc79a7", "3 2", 1.6),
+        Self("#e69f00", "8 2 2 2 2 2", 1.6),
+    ];
     const GUIDE: Self = Self("#777777", "none", 1.0);
 }
 
@@ -221,6 +237,53 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     figure(&panels, data.caption)
 }
 
+/// omega against the amplitude, every method over the true motion, and below it the error on a logarithmic axis.
+///
+/// # Errors
+/// As [`figure`].
+pub fn backbone_figure(truth: &Backbone, curves: &[Backbone], caption: &str) -> Result<String, FigureError> {
+    let drawn: Vec<&Backbone> = curves.iter().filter(|backbone| backbone.points.len() > 1).collect();
+    let labels: Vec<String> = drawn.iter().map(|backbone| backbone.methods.join(", ")).collect();
+    let errors: Vec<Vec<(f64, f64)>> = drawn
+        .iter()
+        .map(|backbone| {
+            let pairs = backbone.points.iter().zip(&truth.points);
+            pairs
+                .map(|(formula, truth)| (formula.0, 100.0 * (formula.1 / truth.1 - 1.0).abs()))
+                .collect()
+        })
+        .collect();
+    let style = |index: usize| CurveStyle::SERIES[index % CurveStyle::SERIES.len()];
+    let mut frequencies = vec![curve("true motion", &truth.points, CurveStyle::RUNGE_KUTTA)];
+    let mut deviations = Vec::new();
+    for (index, backbone) in drawn.iter().enumerate() {
+        frequencies.push(curve(&labels[index], &backbone.points, style(index)));
+        // Errors below rounding have no place on a logarithmic axis.
+        let visible = errors[index].iter().filter(|point| point.1 > 1e-9).count();
+        if visible > 1 {
+            deviations.push(curve(&labels[index], &errors[index], style(index)));
+        }
+    }
+    let amplitude = "amplitude A";
+    let mut panels = vec![panel(
+        "Frequency",
+        [amplitude, "frequency \u{3c9}"],
+        frequencies,
+        vec![],
+    )];
+    if !deviations.is_empty() {
+        let mut below = panel(
+            "Error",
+            [amplitude, "|error| of \u{3c9} (%)"],
+            deviations,
+            vec![Guide::Y(1.0, "1 %")],
+        );
+        below.y_scale = Scale::Logarithmic;
+        panels.push(below);
+    }
+    stacked(&panels, caption)
+}
+
 /// Width of the page in units of 1/96 inch (190 mm), and its margin.
 const PAGE: f64 = 720.0;
 const MARGIN: f64 = 10.0;
@@ -232,13 +295,29 @@ const MOST_POINTS: usize = 2000;
 /// # Errors
 /// [`FigureError`], which names the panel and the curve.
 pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
+    arranged(panels, caption, Arrangement::Abreast)
+}
+
+/// Sets panels one below the other, each across the page.
+fn stacked(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
+    arranged(panels, caption, Arrangement::Stacked)
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Arrangement {
+    Abreast,
+    Stacked,
+}
+
+fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result<String, FigureError> {
+    let abreast = arrangement == Arrangement::Abreast;
     if panels.is_empty() {
         return Err(FigureError::Empty("the figure".to_owned()));
     }
     let (mut plots, mut layouts, mut cells) = (Vec::new(), Vec::new(), Vec::new());
     let mut entries: Vec<LegendEntry> = Vec::new();
     for (index, panel) in panels.iter().enumerate() {
-        let alone = index + 1 == panels.len() && index % 2 == 0;
+        let alone = !abreast || (index + 1 == panels.len() && index % 2 == 0);
         let columns = 1 + usize::from(alone);
         let (lines, layout) = drawn(panel, columns)?;
         let key = |entry: &LegendEntry| (entry.label.clone(), entry.color.clone(), entry.dasharray.clone());
@@ -250,10 +329,16 @@ pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
         plots.push(lines);
         layouts.push(layout);
         // Cells 0 and 1 are the row of the legend.
-        cells.push((index + 2..index + 2 + columns).collect());
+        let first = if abreast { index + 2 } else { 2 * index + 2 };
+        cells.push((first..first + columns).collect());
     }
     entries.sort_by_key(|entry| entry.color == CurveStyle::GUIDE.0);
     let longest = entries.iter().map(|entry| entry.label.chars().count()).max();
+    let rows = if abreast {
+        panels.len().div_ceil(2)
+    } else {
+        panels.len()
+    };
     let abreast = (97 / (longest.unwrap_or(0) + 7)).clamp(1, 4);
     let legend_height = 1.0 + 22.0 * entries.len().div_ceil(abreast) as f64;
     let legend = LegendPlot::from_entries(entries)
@@ -266,7 +351,7 @@ pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
     cells.push(vec![0, 1]);
 
     let letters: Vec<String> = ('A'..='Z').take(panels.len()).map(String::from).collect();
-    let scene = Figure::new(1 + panels.len().div_ceil(2), 2)
+    let scene = Figure::new(1 + rows, 2)
         .with_structure(cells)
         .with_plots(plots)
         .with_layouts(layouts)

@@ -17,8 +17,10 @@ use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::{Impact, Setup};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Method, Solution, System};
 use crate::symbol::Symbol;
+use crate::verify::comparison::{Comparison, Refused, Row};
+use crate::verify::validity::Reach;
 use crate::verify::{Values, Verdict, Verification};
 
 /// Why a document is no solution.
@@ -99,7 +101,9 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Val
         "frequency": optional(&solution.frequency),
         "frequency_squared": optional(&solution.frequency_squared),
         "relation": optional(&solution.relation),
-        "closed_form": solution.closed_form,
+        "closed_form": solution.closed_form.as_ref().map(ToString::to_string),
+        "by_quadrature": solution.by_quadrature,
+        "system": solution.system.as_ref().map(system),
         "displacement": {
             "variable": "theta",
             "harmonics": solution.displacement.harmonics().into_iter().map(harmonic).collect::<Vec<_>>(),
@@ -123,8 +127,61 @@ pub fn verification(verification: &Verification) -> Value {
         "max_deviation": verification.max_deviation,
         "residual": verification.residual,
         "slope": verification.slope,
+        "ranges": verification.ranges.iter().map(|range| json!({ "text": range.text, "outside": range.outside })).collect::<Vec<_>>(),
+        "chosen": verification.chosen.iter().map(|(name, value)| (name.to_string(), json!(value))).collect::<Map<_, _>>(),
         "verdict": verdict(verification.verdict),
     })
+}
+
+/// The document of kind `comparison`.
+pub fn comparison(comparison: &Comparison) -> Value {
+    let applies = |row: &Row| {
+        json!({
+            "method": row.solution.method.name(),
+            "order": row.solution.order,
+            "applies": true,
+            "reason": null,
+            "formula": row.solution.formula(),
+            "frequency": row.frequency,
+            "relative_error": row.relative_error,
+            "max_deviation": row.max_deviation,
+            "reach": row.reach.map(reach),
+            "verdict": verdict(row.verdict),
+        })
+    };
+    let refused = |refused: &Refused| {
+        json!({
+            "method": refused.method.name(),
+            "order": null,
+            "applies": false,
+            "reason": refused.reason.to_string(),
+            "formula": null,
+            "frequency": null,
+            "relative_error": null,
+            "max_deviation": null,
+            "reach": null,
+            "verdict": null,
+        })
+    };
+    let rows = comparison.rows.iter().map(applies);
+    json!({
+        "schema": "lindstedt/comparison/1",
+        "equation": comparison.equation,
+        "at": values(&comparison.at),
+        "true_frequency": comparison.true_frequency,
+        "tolerance": comparison.tolerance,
+        "methods": rows.chain(comparison.refused.iter().map(refused)).collect::<Vec<_>>(),
+        "validity": comparison.validity,
+    })
+}
+
+/// How far a formula is good: `up_to` is null where its error stayed small as far as was searched.
+fn reach(reach: Reach) -> Value {
+    let searched = match reach {
+        Reach::Everywhere(searched) => Some(searched),
+        Reach::UpTo(_) | Reach::Nowhere => None,
+    };
+    json!({ "up_to": reach.end(), "searched": searched })
 }
 
 /// `"pass"` or `"fail"`.
@@ -324,13 +381,55 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         frequency: optional("frequency")?,
         frequency_squared: optional("frequency_squared")?,
         relation: optional("relation")?,
-        closed_form: document["closed_form"].as_str().map(str::to_owned),
+        closed_form: read_closed_form(&document["closed_form"])?,
+        by_quadrature: document["by_quadrature"].as_str().map(str::to_owned),
+        system: read_system(&document["system"])?,
         displacement: read_displacement(&document["displacement"]["harmonics"])?,
         limit_cycle,
         numerical: document["numerical"].as_bool().unwrap_or(false),
         validity: strings("validity")?,
         steps: vec![],
+        derivation: vec![],
     })
+}
+
+fn read_closed_form(value: &Value) -> Result<Option<ClosedForm>, JsonError> {
+    let Some(text) = value.as_str() else {
+        return Ok(None);
+    };
+    let (squared, value) = match text.split_once(" = ") {
+        Some(("omega^2", value)) => (true, value),
+        Some(("omega", value)) => (false, value),
+        _ => return unexpected("closed_form", "`omega = ...` or `omega^2 = ...`"),
+    };
+    let value = expression(value, "closed_form")?;
+    Ok(Some(ClosedForm { squared, value }))
+}
+
+fn read_system(value: &Value) -> Result<Option<System>, JsonError> {
+    if value.is_null() {
+        return Ok(None);
+    }
+    let list = |key: &'static str| -> Result<Vec<&str>, JsonError> {
+        let list = value[key]
+            .as_array()
+            .map(|list| list.iter().map(Value::as_str).collect());
+        list.flatten().map_or_else(|| unexpected(key, "a list of strings"), Ok)
+    };
+    let equations = list("equations")?.into_iter();
+    Ok(Some(System {
+        unknowns: list("unknowns")?.into_iter().map(Symbol::new).collect(),
+        equations: equations
+            .map(|text| expression(text, "equations"))
+            .collect::<Result<_, _>>()?,
+    }))
+}
+
+/// The equations of a balance, each equal to zero.
+fn system(system: &System) -> Value {
+    let unknowns: Vec<&str> = system.unknowns.iter().map(|name| name.name()).collect();
+    let equations: Vec<String> = system.equations.iter().map(ToString::to_string).collect();
+    json!({ "unknowns": unknowns, "equations": equations })
 }
 
 fn text<'a>(document: &'a Value, key: &str) -> Result<&'a str, JsonError> {

@@ -9,7 +9,7 @@ use num_traits::{One, Signed};
 
 use super::terms::{self, Notation};
 use crate::contact::phases::{Column, Form, Phase};
-use crate::decimal::decimal;
+use crate::decimal::{decimal, significant};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
@@ -18,6 +18,7 @@ use crate::impact::Impact;
 use crate::series::FourierSeries;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
+use crate::verify::comparison::Comparison;
 use crate::verify::{Verdict, Verification};
 
 /// An expression.
@@ -118,6 +119,12 @@ fn call(function: Function, arguments: &[Expr]) -> String {
         Function::Exp => "\\exp",
         Function::Maximum => "\\max",
         Function::Minimum => "\\min",
+        Function::BesselJ0 => "J_{0}",
+        Function::BesselJ1 => "J_{1}",
+        Function::BesselI0 => "I_{0}",
+        Function::BesselI1 => "I_{1}",
+        Function::Gamma => "\\Gamma",
+        Function::EllipticK => "K",
     };
     format!("{name}\\left({list}\\right)")
 }
@@ -179,9 +186,12 @@ fn coefficient_term(monomial: &Monomial, coefficient: &Rational, numerical: bool
 }
 
 fn scientific(value: f64) -> String {
-    let text = decimal(value);
+    scientific_text(&decimal(value))
+}
+
+fn scientific_text(text: &str) -> String {
     match text.split_once('e') {
-        None => text,
+        None => text.to_owned(),
         Some((mantissa, exponent)) => format!("{mantissa} \\cdot 10^{{{exponent}}}"),
     }
 }
@@ -207,9 +217,12 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
     if let (None, Some(relation)) = (&solution.frequency_squared, &solution.relation) {
         lines.push(format!("0 &= {}", expression(&Expr::from(relation))));
     }
-    if let Some((name, value)) = solution.closed_form.as_deref().and_then(|form| form.split_once(" = ")) {
-        let side = |text| parse_expression(text).map_or_else(|_| String::new(), |side| expression(&side));
-        lines.push(format!("{} &= {}", side(name), side(value)));
+    if let Some(form) = &solution.closed_form {
+        let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
+        lines.push(format!("{name} &= {}", expression(&form.value)));
+    }
+    for equation in solution.system.iter().flat_map(|system| &system.equations) {
+        lines.push(format!("0 &= {}", expression(equation)));
     }
     if let Some(amplitude) = &solution.limit_cycle {
         lines.push(format!(
@@ -218,7 +231,9 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
             law(amplitude, solution)
         ));
     }
-    lines.extend(motion(solution));
+    if !solution.displacement.is_zero() {
+        lines.extend(motion(solution));
+    }
     for definition in &solution.definitions {
         lines.push(format!(
             "{} &= {}",
@@ -227,15 +242,8 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
         ));
     }
     let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "% {} to order {} in {}; {}",
-        solution.method.title(),
-        solution.order,
-        solution.order_counts(),
-        solution.amplitude
-    );
-    for line in &solution.validity {
+    let _ = writeln!(text, "% {}; {}", solution.title(), solution.amplitude);
+    for line in solution.by_quadrature.iter().chain(&solution.validity) {
         let _ = writeln!(text, "% {line}");
     }
     if let Some(verification) = verification {
@@ -372,12 +380,89 @@ fn motion(solution: &Solution) -> Vec<String> {
     lines
 }
 
+/// Every method in one table; those that do not apply stand in comments below it.
+pub fn comparison(comparison: &Comparison) -> String {
+    let at = comparison.at.iter();
+    let at: Vec<String> = at
+        .map(|(name, value)| format!("{} = {}", symbol(name), expression(value)))
+        .collect();
+    let mut text = format!(
+        "% {}; true omega = {}\n\\begin{{tabular}}{{lrrrl}}\n\\hline\n",
+        comparison.equation, comparison.true_frequency
+    );
+    let place = if at.is_empty() {
+        String::new()
+    } else {
+        format!(" at ${}$", at.join(", "))
+    };
+    let _ = writeln!(
+        text,
+        "method & $\\omega${place} & error in \\% & deviation in \\% & formula \\\\\n\\hline"
+    );
+    for row in &comparison.rows {
+        let percent = |value: Option<f64>| {
+            value.map_or("--".to_owned(), |value| {
+                let sign = if value < 0.0 { "-" } else { "" };
+                let size = 100.0 * value.abs();
+                match size < 1e-7 {
+                    true => "$< 10^{-7}$".to_owned(),
+                    false => format!("${sign}{}$", scientific_text(&significant(size, 3))),
+                }
+            })
+        };
+        let frequency = row
+            .frequency
+            .map_or("not real".to_owned(), |value| format!("${}$", scientific(value)));
+        let _ = writeln!(
+            text,
+            "{} & {frequency} & {} & {} & {} \\\\",
+            row.solution.title(),
+            percent(row.relative_error),
+            percent(row.max_deviation),
+            formula(&row.solution),
+        );
+    }
+    text.push_str("\\hline\n\\end{tabular}\n");
+    for refused in &comparison.refused {
+        let _ = writeln!(text, "% not applicable: {}: {}", refused.method.title(), refused.reason);
+    }
+    for line in &comparison.validity {
+        let _ = writeln!(text, "% {line}");
+    }
+    text
+}
+
+/// The law in one line, with the definitions it needs.
+fn formula(solution: &Solution) -> String {
+    let text = solution.formula();
+    if solution.by_quadrature.is_some() || solution.system.is_some() {
+        return "by numbers".to_owned();
+    }
+    let parts: Vec<String> = text
+        .split(", ")
+        .map(|part| match part.split_once(" = ") {
+            Some((left, right)) => {
+                let side =
+                    |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
+                format!("{} = {}", side(left), side(right))
+            }
+            None => part.to_owned(),
+        })
+        .collect();
+    format!("${}$", parts.join(", \\; "))
+}
+
 /// The derivation, order by order.
 pub fn steps(solution: &Solution) -> String {
+    if solution.steps.is_empty() {
+        return solution.derivation.iter().map(|line| format!("% {line}\n")).collect();
+    }
     let one_line = |series: &FourierSeries<Polynomial>| terms::sum(waves(series, solution));
     let squared = match solution.method {
-        Method::HomotopyPerturbation => "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - W_{1} - W_{2} - \\dots\\right)",
-        Method::LindstedtPoincare => "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",
+        Method::HomotopyPerturbation | Method::ParameterExpansion => {
+            "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - W_{1} - W_{2} - \\dots\\right)"
+        }
+        _ => "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",
     };
     let mut lines = vec![
         squared.to_owned(),

@@ -14,6 +14,8 @@ use crate::impact::Impact;
 use crate::series::FourierSeries;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
+use crate::verify::comparison::{Comparison, Row};
+use crate::verify::validity::Reach;
 use crate::verify::{Verdict, Verification};
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
@@ -28,14 +30,7 @@ pub fn percent(error: f64) -> String {
 /// The derived formula, and the verdict where it was judged.
 pub fn solution(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> String {
     let mut text = format!("{}\n\n", solution.equation);
-    let _ = writeln!(
-        text,
-        "{} to order {} in {}, {}",
-        solution.method.title(),
-        solution.order,
-        solution.order_counts(),
-        solution.amplitude
-    );
+    let _ = writeln!(text, "{}, {}", solution.title(), solution.amplitude);
     text.push('\n');
     let mut law = |name: &str, law: &Option<Polynomial>| {
         if let Some(law) = law {
@@ -63,7 +58,22 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
             by_order(amplitude, solution)
         );
     }
-    let _ = writeln!(text, "\n{}", motion(solution));
+    if let Some(law) = &solution.by_quadrature {
+        let _ = writeln!(text, "  {law}");
+    }
+    if let Some(system) = &solution.system {
+        let names: Vec<&str> = system.unknowns.iter().map(|name| name.name()).collect();
+        let _ = writeln!(text, "  for {}:", names.join(", "));
+        for equation in &system.equations {
+            let _ = writeln!(text, "  0 = {equation}");
+        }
+    }
+    match solution.displacement.is_zero() {
+        true => text.push_str("\n  the motion follows by quadrature of the energy\n"),
+        false => {
+            let _ = writeln!(text, "\n{}", motion(solution));
+        }
+    }
     for definition in &solution.definitions {
         let _ = writeln!(text, "  {} = {}", definition.symbol, definition.meaning);
     }
@@ -131,7 +141,22 @@ fn motion(solution: &Solution) -> String {
 
 /// The derivation, order by order, for someone who wants to follow it with a pencil.
 pub fn steps(solution: &Solution) -> String {
-    let homotopy = solution.method == Method::HomotopyPerturbation;
+    if solution.steps.is_empty() {
+        let mut text = String::from("Derivation\n");
+        for line in &solution.derivation {
+            let _ = writeln!(text, "  {line}");
+        }
+        text.push('\n');
+        return if solution.derivation.is_empty() {
+            String::new()
+        } else {
+            text
+        };
+    }
+    let homotopy = matches!(
+        solution.method,
+        Method::HomotopyPerturbation | Method::ParameterExpansion
+    );
     let amplitude = match &solution.limit_cycle {
         None => solution.amplitude.symbol().to_string(),
         Some(amplitude) => by_order(&amplitude.truncated(solution.small_parameter, 0), solution),
@@ -229,6 +254,16 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
             .slope
             .map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}")),
     );
+    for (name, value) in &verification.chosen {
+        line(
+            name.name(),
+            format!("{} (least squared residual)", significant(*value, 6)),
+        );
+    }
+    for range in &verification.ranges {
+        let mark = if range.outside { "  <- outside" } else { "" };
+        line("range", format!("{}{mark}", range.text));
+    }
     let verdict = if verification.verdict == Verdict::Pass {
         "pass"
     } else {
@@ -242,6 +277,81 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
         ),
     );
     text
+}
+
+/// Every method in one table, and below it those that do not apply.
+pub fn comparison(comparison: &Comparison) -> String {
+    let at: Vec<String> = comparison
+        .at
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    let mut text = format!("{}\n\n", comparison.equation);
+    let place = if at.is_empty() {
+        String::new()
+    } else {
+        format!(" at {}", at.join(", "))
+    };
+    let _ = writeln!(text, "True omega{place}: {}\n", decimal(comparison.true_frequency));
+    let within = format!("{} % up to", significant(100.0 * comparison.tolerance, 3));
+    let header = ["method", "omega", "error", "deviation", "verdict", &within, "formula"].map(str::to_owned);
+    let row = |row: &Row| {
+        let percent_of =
+            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{} %", significant(100.0 * value, 3)));
+        [
+            row.solution.title(),
+            row.frequency.map_or("not real".to_owned(), decimal),
+            row.relative_error.map_or("-".to_owned(), percent),
+            percent_of(row.max_deviation),
+            if row.verdict == Verdict::Pass { "pass" } else { "fail" }.to_owned(),
+            reach(row.reach, row.solution.amplitude.symbol()),
+            row.solution.formula(),
+        ]
+    };
+    let rows: Vec<[String; 7]> = std::iter::once(header).chain(comparison.rows.iter().map(row)).collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..6).map(width).collect();
+    for row in &rows {
+        let mut line = format!("  {:<width$}", row[0], width = widths[0]);
+        for column in 1..6 {
+            let _ = write!(line, "  {:>width$}", row[column], width = widths[column]);
+        }
+        let _ = writeln!(text, "{line}  {}", row[6]);
+    }
+    if !comparison.refused.is_empty() {
+        text.push_str("\nNot applicable\n");
+        for refused in &comparison.refused {
+            let _ = writeln!(
+                text,
+                "  {:<width$}  {}",
+                refused.method.title(),
+                refused.reason,
+                width = widths[0]
+            );
+        }
+    }
+    if !comparison.validity.is_empty() {
+        text.push_str("\nTrue motion\n");
+        for line in &comparison.validity {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    let convention = comparison.rows.first().map(|row| row.solution.amplitude.to_string());
+    let _ = writeln!(
+        text,
+        "\n{}; deviation: largest over one period, of the amplitude",
+        convention.unwrap_or_default()
+    );
+    text
+}
+
+fn reach(reach: Option<Reach>, amplitude: Symbol) -> String {
+    match reach {
+        None => "-".to_owned(),
+        Some(Reach::Nowhere) => "nowhere".to_owned(),
+        Some(Reach::UpTo(end)) => format!("{amplitude} = {}", significant(end, 3)),
+        Some(Reach::Everywhere(_)) => "everywhere".to_owned(),
+    }
 }
 
 /// The whole story of an impact.

@@ -3,9 +3,14 @@
 //! To add a function, add a variant to [`Function`] and an entry to [`TABLE`]: its name, how many arguments it takes,
 //! its parity, its value as a floating-point number, its exact values, and its partial derivatives. Parsing, printing,
 //! simplification, calculus and evaluation read the table; Taylor coefficients are with the series.
+//!
+//! The last entries are special functions that occur in answers alone: an equation of motion may use their names for
+//! parameters (`K*x`, `J0*x''`), and writes none of them.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
+
+use spec_math::cephes64;
 
 use super::{Expr, ExprError, Node, normal, number, order, print};
 use crate::exact::rational::{Rational, ratio};
@@ -46,20 +51,45 @@ pub enum Function {
     /// `H`, the Heaviside step: 1 where the argument is positive, 0 elsewhere. H(0) = 0: a surface that is just touched
     /// exerts no force.
     Step,
+    /// `J0`, the Bessel function of the first kind
+    BesselJ0,
+    /// `J1`, likewise; those of higher order are written with these two
+    BesselJ1,
+    /// `I0`, the modified Bessel function of the first kind
+    BesselI0,
+    /// `I1`, likewise
+    BesselI1,
+    /// `Gamma`
+    Gamma,
+    /// `K`, the complete elliptic integral of the first kind as a function of the parameter m = k^2 < 1
+    EllipticK,
 }
 
 impl Function {
-    /// All functions, in the order of the table.
+    /// The functions that an equation may use, in the order of the table.
     pub fn all() -> impl Iterator<Item = Self> {
-        TABLE.iter().map(|entry| entry.function)
+        TABLE
+            .iter()
+            .map(|entry| entry.function)
+            .filter(|function| !function.is_special())
     }
 
-    /// The function of this name.
+    /// The function of this name that an equation may use.
     pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().find(|function| function.name() == name)
+    }
+
+    /// The function of this name, special ones included.
+    pub fn from_name_in_answers(name: &str) -> Option<Self> {
         TABLE
             .iter()
             .find(|entry| entry.name == name)
             .map(|entry| entry.function)
+    }
+
+    /// Whether it occurs in answers alone.
+    pub fn is_special(self) -> bool {
+        self as usize > Self::Step as usize
     }
 
     /// The name as it is read and printed.
@@ -175,10 +205,11 @@ enum Parity {
 struct NoValue;
 
 use Function::{Absolute, Acos, Asin, Atan, Cos, Cosh, Exp, Log, Maximum, Minimum, Sign, Sin, Sinh, Step, Tan, Tanh};
+use Function::{BesselI0, BesselI1, BesselJ0, BesselJ1, EllipticK, Gamma};
 use Value::{One as Unary, Two as Binary};
 
 /// The entries stand in the order of the variants of [`Function`].
-static TABLE: [Entry; 16] = [
+static TABLE: [Entry; 22] = [
     Entry {
         function: Sin,
         name: "sin",
@@ -327,7 +358,113 @@ static TABLE: [Entry; 16] = [
         exact: |u, _| Ok(u.as_number().map(|number| Expr::from(i64::from(number.is_positive())))),
         derivative: |_, _, _| Ok(Expr::zero()),
     },
+    // NIST Digital Library of Mathematical Functions 10.6 and 10.29: J0' = -J1, J1' = J0 - J1/u, I0' = I1, I1' = I0 - I1/u.
+    Entry {
+        function: BesselJ0,
+        name: "J0",
+        parity: Parity::Even,
+        value: Unary(cephes64::j0),
+        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        derivative: |u, _, _| Ok(-call(BesselJ1, u)?),
+    },
+    Entry {
+        function: BesselJ1,
+        name: "J1",
+        parity: Parity::Odd,
+        value: Unary(cephes64::j1),
+        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        derivative: |u, _, _| Ok(call(BesselJ0, u)? - Expr::divide(&call(BesselJ1, u)?, u)?),
+    },
+    Entry {
+        function: BesselI0,
+        name: "I0",
+        parity: Parity::Even,
+        value: Unary(cephes64::i0),
+        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        derivative: |u, _, _| call(BesselI1, u),
+    },
+    Entry {
+        function: BesselI1,
+        name: "I1",
+        parity: Parity::Odd,
+        value: Unary(cephes64::i1),
+        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        derivative: |u, _, _| Ok(call(BesselI0, u)? - Expr::divide(&call(BesselI1, u)?, u)?),
+    },
+    Entry {
+        function: Gamma,
+        name: "Gamma",
+        parity: Parity::None,
+        value: Unary(gamma),
+        exact: |u, _| match u.as_number() {
+            Some(number) if number.is_integer() && !number.is_positive() => Err(NoValue),
+            Some(number) => Ok(gamma_of_halves(number)),
+            None => Ok(None),
+        },
+        derivative: |u, _, _| {
+            Err(ExprError::Undefined(print::call_in_message(
+                Gamma,
+                std::slice::from_ref(u),
+            )))
+        },
+    },
+    Entry {
+        function: EllipticK,
+        name: "K",
+        parity: Parity::None,
+        value: Unary(elliptic_k),
+        exact: |u, _| match u.as_number() {
+            Some(number) if *number >= Rational::one() => Err(NoValue),
+            _ => Ok(at(u, 0, || turn(1, 2))),
+        },
+        derivative: |u, _, _| {
+            Err(ExprError::Undefined(print::call_in_message(
+                EllipticK,
+                std::slice::from_ref(u),
+            )))
+        },
+    },
 ];
+
+/// Gamma, NaN at its poles.
+fn gamma(u: f64) -> f64 {
+    if u <= 0.0 && u == u.floor() {
+        f64::NAN
+    } else {
+        cephes64::gamma(u)
+    }
+}
+
+/// Gamma(n) = (n-1)! and Gamma(n + 1/2) = (n-1/2)(n-3/2)...(1/2) sqrt(pi), for n below 30.
+fn gamma_of_halves(u: &Rational) -> Option<Expr> {
+    const LARGEST: i64 = 30;
+    if !(u * ratio(2, 1)).is_integer() || !u.is_positive() || *u > ratio(LARGEST, 1) {
+        return None;
+    }
+    let half = ratio(1, 2);
+    let (mut factor, mut left) = (Rational::one(), u.clone());
+    while left > Rational::one() {
+        left -= Rational::one();
+        factor *= &left;
+    }
+    let start = if left == half {
+        Expr::pi().sqrt().ok()?
+    } else {
+        Expr::one()
+    };
+    Some(&Expr::number(factor) * &start)
+}
+
+/// K(m) for every m < 1, below zero by K(m) = K(m/(m - 1))/sqrt(1 - m) (NIST Digital Library of Mathematical Functions 19.7.2).
+fn elliptic_k(m: f64) -> f64 {
+    if m >= 1.0 || m.is_nan() {
+        f64::NAN
+    } else if m < 0.0 {
+        cephes64::ellpk(1.0 / (1.0 - m)) / (1.0 - m).sqrt()
+    } else {
+        cephes64::ellpk(1.0 - m)
+    }
+}
 
 fn call(function: Function, argument: &Expr) -> Result<Expr, ExprError> {
     function.apply(vec![argument.clone()])
@@ -393,8 +530,48 @@ mod tests {
     fn the_table_stands_in_the_order_of_the_variants() {
         for (place, entry) in TABLE.iter().enumerate() {
             assert_eq!(entry.function as usize, place);
-            assert_eq!(Function::from_name(entry.name), Some(entry.function));
+            assert_eq!(Function::from_name_in_answers(entry.name), Some(entry.function));
+            assert_eq!(Function::from_name(entry.name).is_none(), entry.function.is_special());
         }
+    }
+
+    /// By their integrals (NIST Digital Library of Mathematical Functions 10.9.2, 10.32.3, 5.9.1, 19.2.8), which share
+    /// nothing with the library.
+    #[test]
+    fn special_functions_are_their_integrals() {
+        use crate::ode::quadrature::integrate_smooth;
+        use std::f64::consts::PI;
+        let integral = |f: &dyn Fn(f64) -> f64, to: f64| integrate_smooth(f, 0.0, to, 1e-14).unwrap().0;
+        for u in [0.1, 0.7, 1.5, 3.0, 7.0] {
+            for (function, value) in [
+                (BesselJ0, integral(&|t| (u * t.sin()).cos(), PI) / PI),
+                (BesselJ1, integral(&|t| (t - u * t.sin()).cos(), PI) / PI),
+                (BesselI0, integral(&|t| (u * t.cos()).exp(), PI) / PI),
+                (BesselI1, integral(&|t| (u * t.cos()).exp() * t.cos(), PI) / PI),
+                // t = s^8 leaves a smooth integrand for every u > 1/8.
+                (
+                    Gamma,
+                    integral(&|s| 8.0 * s.powf(8.0 * (u + 0.2) - 1.0) * (-s.powi(8)).exp(), 1.8),
+                ),
+            ] {
+                let u = if function == Gamma { u + 0.2 } else { u };
+                let found = function.value(u, 0.0);
+                assert!(
+                    (found - value).abs() < 3e-14 * (1.0 + value.abs()),
+                    "{function:?}({u}) {found} {value}"
+                );
+            }
+        }
+        for m in [-50.0, -1.0, -0.3, 0.0, 0.4, 0.9, 0.999] {
+            let value = integral(&|t| (1.0 - m * t.sin().powi(2)).sqrt().recip(), 0.5 * PI);
+            assert!((EllipticK.value(m, 0.0) / value - 1.0).abs() < 1e-13, "K({m})");
+        }
+        assert_eq!(
+            Expr::function(Gamma, vec![Expr::number(ratio(5, 2))])
+                .unwrap()
+                .to_string(),
+            "3*sqrt(pi)/4"
+        );
     }
 
     /// What simplification claims must be what the numbers say.

@@ -65,13 +65,13 @@ impl fmt::Display for Equation {
     }
 }
 
-/// Reads an expression. Every printed expression can be read, so the names of answers (`A`, `theta`, `omega`) are
-/// allowed, and so are primes after longer names.
+/// Reads an expression. Every printed expression can be read, so the names of answers (`A`, `theta`, `omega`) and special
+/// functions (`J1(A)`) are allowed, and so are primes after longer names.
 ///
 /// # Errors
 /// See [`ParseError`].
 pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
-    let mut parser = Parser::new(text)?;
+    let mut parser = Parser::new(text, true)?;
     let expr = parser.sum()?;
     match parser.peek() {
         Kind::End => Ok(expr),
@@ -89,7 +89,7 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 /// # Errors
 /// See [`ParseError`]; also for [`RESERVED_NAMES`], and for primes on more than one letter.
 pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
-    let mut parser = Parser::new(text)?;
+    let mut parser = Parser::new(text, false)?;
     let coordinate = parser.coordinate()?;
     let left = parser.sum()?;
     let mut right = Expr::zero();
@@ -119,10 +119,12 @@ struct Parser<'a> {
     next: usize,
     depth: usize,
     work: u64,
+    /// Whether special functions may occur, as they do in answers.
+    special: bool,
 }
 
 impl<'a> Parser<'a> {
-    fn new(text: &'a str) -> Result<Self, ParseError> {
+    fn new(text: &'a str, special: bool) -> Result<Self, ParseError> {
         let tokens = lexer::tokens(text)?;
         let parser = Self {
             text,
@@ -130,6 +132,7 @@ impl<'a> Parser<'a> {
             next: 0,
             depth: 0,
             work: 0,
+            special,
         };
         if parser.peek() == Kind::End {
             return Err(parser.error(0..0, "the text is empty", "an example: `x'' + sin(x) = 0`"));
@@ -263,7 +266,10 @@ impl<'a> Parser<'a> {
             return Err(self.error(token.span(), &format!("`{name}` is no number"), ""));
         }
         let square_root = name == "sqrt";
-        let function = Function::from_name(name);
+        let function = match self.special && called {
+            true => Function::from_name_in_answers(name),
+            false => Function::from_name(name),
+        };
         match (called, square_root || function.is_some()) {
             (true, true) => {
                 let arguments = self.arguments(token)?;

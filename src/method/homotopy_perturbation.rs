@@ -16,61 +16,41 @@
 use num_traits::{One, Zero};
 
 use super::expansion::expand_exactly;
+use super::one_term::conservative_force;
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
-use super::{Options, Refusal, first_term};
+use super::{Options, Refusal};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter, Term};
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
 use crate::symbol::Symbol;
-
-const TITLE: &str = "homotopy perturbation";
 
 /// Derives the relation between frequency and amplitude, and the motion, to an order in the bookkeeping parameter.
 ///
 /// # Errors
 /// Damping, forcing, velocities, or a force that cannot be expanded, each by name.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    let parts = oscillator.parts()?;
-    if !parts.forcing.is_zero() {
-        return Err(Refusal::Forcing {
-            method: TITLE,
-            term: first_term(&parts.forcing),
-        });
-    }
-    match parts.damping.terms() {
-        [zero] if zero.is_zero() => {}
-        [only] => {
-            return Err(Refusal::Damping {
-                method: TITLE,
-                term: only.to_string(),
-            });
-        }
-        // Terms that feed energy for some motions and drain it for others.
-        _ => {
-            return Err(Refusal::Velocity {
-                method: TITLE,
-                term: first_term(&parts.damping),
-            });
-        }
-    }
-    if !parts.inertia.is_zero() {
-        return Err(Refusal::Velocity {
-            method: TITLE,
-            term: first_term(&parts.inertia),
-        });
-    }
-    if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention { method: TITLE });
-    }
+    with_stiffness(oscillator, options, true)
+}
+
+/// As [`solve`], where the linear force may be missing: `0 = omega^2 + p a_1 + ...`. What parameter expansion allows.
+pub(super) fn solve_without_linear_part(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    with_stiffness(oscillator, options, false)
+}
+
+fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> Result<Solution, Refusal> {
+    conservative_force(oscillator, options, Method::HomotopyPerturbation)?;
     let order = options.order.unwrap_or(2);
     let degree = match oscillator.polynomial_degree()? {
         Some(degree) if options.taylor.is_none() => degree,
         _ => options.taylor.unwrap_or(2 * order + 1),
     };
-    let force = oscillator.expand(SmallParameter::Amplitude, degree.saturating_sub(1))?;
+    let force = match needed {
+        true => oscillator.expand(SmallParameter::Amplitude, degree.saturating_sub(1))?,
+        false => oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?,
+    };
     let (amplitude, omega) = (Symbol::new("A"), Symbol::new("omega"));
     // Everything beside the linear force stands at p^1, in units of omega^2.
     let term = |term: &Term| {
@@ -104,7 +84,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 
     let frequency_squared = (lowest == 0).then_some(explicit);
     let closed_form = match frequency_squared {
-        None => quadratic_root(&relation, omega)?.map(|root| format!("omega^2 = {root}")),
+        None => quadratic_root(&relation, omega)?.map(|value| ClosedForm { squared: true, value }),
         Some(_) => None,
     };
     let small = match oscillator.small_parameter(options.small.as_deref()) {
@@ -130,6 +110,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         frequency_squared,
         relation: Some(relation),
         closed_form,
+        by_quadrature: None,
+        system: None,
         displacement: series
             .displacement
             .map(|coefficient, _| coefficient.product(&Polynomial::symbol(amplitude))),
@@ -137,6 +119,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         numerical: false,
         validity,
         steps: series.steps,
+        derivation: vec![],
     })
 }
 

@@ -133,11 +133,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         frequency_squared: Some(times(series.frequency_squared, &squared_unit)),
         relation: None,
         closed_form: None,
+        by_quadrature: None,
+        system: None,
         displacement,
         limit_cycle,
         numerical: false,
         validity,
         steps: series.steps,
+        derivation: vec![],
     })
 }
 

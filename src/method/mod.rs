@@ -3,10 +3,24 @@
 //! One file per method, each opening with its reference and equations. To add one: write its file with a function
 //! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`], and add one line to [`solve`].
 
+pub mod amplitude_frequency;
+pub mod energy_balance;
+pub mod exact;
 pub mod expansion;
+pub mod frequency_formula;
+pub mod hamiltonian;
+pub mod harmonic_balance;
+pub mod homotopy_analysis;
 pub mod homotopy_perturbation;
+pub mod iteration_perturbation;
 pub mod lindstedt_poincare;
+pub mod max_min;
+pub mod numbers;
+pub mod one_term;
+pub mod pade;
+pub mod parameter_expansion;
 pub mod secular;
+pub mod variational_iteration;
 
 use num_traits::{One, Zero};
 
@@ -23,7 +37,7 @@ use crate::solution::{AmplitudeConvention, Method, Solution};
 pub const HIGHEST_ORDER: u32 = 400;
 
 /// What a user may choose; `None` leaves the choice to the method.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The method.
     pub method: Option<Method>,
@@ -33,8 +47,12 @@ pub struct Options {
     pub amplitude: Option<AmplitudeConvention>,
     /// The name of the small parameter; `A` or `a` for the amplitude.
     pub small: Option<String>,
-    /// Degree of the Taylor polynomial by which homotopy perturbation replaces the force.
+    /// Degree of the Taylor polynomial by which homotopy methods replace the force.
     pub taylor: Option<u32>,
+    /// Degrees of numerator and denominator of a Pade approximant.
+    pub pade: Option<(u32, u32)>,
+    /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for where it is not given.
+    pub hbar: Option<Expr>,
 }
 
 /// Why a method does not answer, and what to do instead.
@@ -90,6 +108,58 @@ pub enum Refusal {
     /// The periodic expansion breaks down.
     #[error("no periodic expansion: {0}")]
     Secular(#[from] secular::SecularError),
+    /// An even part of the force, in a method for odd forces.
+    #[error("{method} is for forces with f(-x) = -f(x), but `{term}` is not odd")]
+    NotOdd {
+        /// The method's name in running text.
+        method: &'static str,
+        /// The even term.
+        term: String,
+    },
+    /// An order beyond what a method has.
+    #[error("{method} has no order above {highest}")]
+    HighestOrder {
+        /// The method's name in running text.
+        method: &'static str,
+        /// Its highest order.
+        highest: u32,
+    },
+    /// A force that is no polynomial, where one is needed.
+    #[error("{method} needs a polynomial force at this order, not `{force}`")]
+    PolynomialOnly {
+        /// The method's name in running text.
+        method: &'static str,
+        /// The force.
+        force: String,
+    },
+    /// `f(x)/x` has no finite bounds.
+    #[error("max-min needs bounds of f(x)/x, but `{quotient}` has no finite value at rest")]
+    Unbounded {
+        /// f(x)/x.
+        quotient: String,
+    },
+    /// A force that is flat at half the amplitude.
+    #[error("the slope of `{force}` at x = A/2 is zero, so the formula gives no frequency")]
+    NoSlope {
+        /// The force.
+        force: String,
+    },
+    /// The algebra grew beyond reason.
+    #[error("stopped at {terms} terms in one coefficient")]
+    TooLong {
+        /// The limit.
+        terms: usize,
+    },
+    /// Degrees of a Pade approximant for which no approximant exists.
+    #[error("no Pade approximant of degrees [{numerator}/{denominator}]: {reason}")]
+    Pade {
+        /// Degree of the numerator.
+        numerator: u32,
+        /// Degree of the denominator.
+        denominator: u32,
+        /// Why.
+        reason: &'static str,
+    },
     /// The order asked for is too high.
     #[error("order {asked} is above the limit of {HIGHEST_ORDER}")]
     Order {
@@ -114,6 +184,14 @@ impl Refusal {
                 Some("leave the term out to get the frequency of the free vibration (the backbone curve)".to_owned())
             }
             Self::Velocity { .. } => Some("try --method lindstedt-poincare".to_owned()),
+            Self::NotOdd { .. } => Some("try --method harmonic-balance, which balances the drift as well".to_owned()),
+            Self::HighestOrder { highest, .. } => Some(format!("try --order {highest}")),
+            Self::PolynomialOnly { .. } => {
+                Some("try --order 1, which takes any force, or --taylor DEGREE".to_owned())
+            }
+            Self::Unbounded { .. } | Self::NoSlope { .. } => Some("try --method hamiltonian".to_owned()),
+            Self::Pade { .. } => Some("try other degrees, such as --order 1,1".to_owned()),
+            Self::TooLong { .. } => Some("try a lower order".to_owned()),
             Self::Convention { .. } => Some("leave out --amplitude first-harmonic".to_owned()),
             Self::AmplitudeNotFree { .. } => {
                 Some("give the term a small factor, as in eps*(1 - x^2)*x', and expand in that".to_owned())
@@ -146,16 +224,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Err(Refusal::Order { asked });
     }
     let method = options.method.unwrap_or(Method::LindstedtPoincare);
-    // Every method expands about x = 0: the equation is seen from its equilibrium, and the answer moved back.
-    let degree = match method {
-        Method::LindstedtPoincare => options.order.unwrap_or(4) + 1,
-        Method::HomotopyPerturbation => options.taylor.unwrap_or(2 * options.order.unwrap_or(2) + 1),
-    };
-    let centred = centred(oscillator, degree)?;
-    let mut solution = match method {
-        Method::LindstedtPoincare => lindstedt_poincare::solve(&centred.oscillator, options),
-        Method::HomotopyPerturbation => homotopy_perturbation::solve(&centred.oscillator, options),
-    }?;
+    // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
+    let centred = centred(oscillator, numerical_degree(method, options))?;
+    let mut solution = by_method(method, &centred.oscillator, options)?;
+    if let Some(assumption) = &centred.assumption {
+        solution
+            .validity
+            .push(format!("for {assumption}: no barrier acts at rest"));
+    }
     if centred.position.is_zero() {
         return Ok(solution);
     }
@@ -177,6 +253,44 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .push(format!("swings about the equilibrium x = {position}"));
     solution.equilibrium = Expr::number(centred.position);
     Ok(solution)
+}
+
+/// The one place that knows every method.
+fn by_method(method: Method, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let solve = match method {
+        Method::LindstedtPoincare => lindstedt_poincare::solve,
+        Method::HomotopyPerturbation => homotopy_perturbation::solve,
+        Method::HomotopyAnalysis => homotopy_analysis::solve,
+        Method::IterationPerturbation => iteration_perturbation::solve,
+        Method::ParameterExpansion => parameter_expansion::solve,
+        Method::HarmonicBalance => harmonic_balance::solve,
+        Method::EnergyBalance => energy_balance::solve,
+        Method::MaxMin => max_min::solve,
+        Method::AmplitudeFrequency => amplitude_frequency::solve,
+        Method::Hamiltonian => hamiltonian::solve,
+        Method::VariationalIteration => variational_iteration::solve,
+        Method::FrequencyFormula => frequency_formula::solve,
+        Method::Pade => pade::solve,
+        Method::Exact => exact::solve,
+    };
+    solve(oscillator, options)
+}
+
+/// The degree of the polynomial that stands for the force about an equilibrium that is no fraction.
+fn numerical_degree(method: Method, options: &Options) -> u32 {
+    /// Enough for every method that takes the force as it is.
+    const AS_IT_IS: u32 = 24;
+    match method {
+        Method::LindstedtPoincare => options.order.unwrap_or(4) + 1,
+        Method::HomotopyPerturbation | Method::HomotopyAnalysis => {
+            options.taylor.unwrap_or(2 * options.order.unwrap_or(2) + 1)
+        }
+        Method::Pade => {
+            let (numerator, denominator) = options.pade.unwrap_or((2, 1));
+            2 * (numerator + denominator) + 1
+        }
+        _ => options.taylor.unwrap_or(AS_IT_IS),
+    }
 }
 
 /// The term of a sum that a refusal names.

@@ -413,6 +413,12 @@ impl FourierSeries<Polynomial> {
 }
 
 impl FourierSeries<f64> {
+    /// Every coefficient changed by a function of its harmonic.
+    pub fn by_harmonic(&self, change: impl Fn(usize, f64) -> f64) -> Self {
+        let all = |part: &[f64]| part.iter().enumerate().map(|(k, &value)| change(k, value)).collect();
+        Self::from_parts(all(&self.cosine), all(&self.sine), Integer::one())
+    }
+
     /// The value at `theta`.
     pub fn evaluate(&self, theta: f64) -> f64 {
         let cosines = self

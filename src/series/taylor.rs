@@ -75,6 +75,31 @@ pub fn taylor(expression: &Expr, point: &[(Symbol, Rational)], degree: u32) -> R
     Ok(parts)
 }
 
+/// The Maclaurin coefficient of `u^k` (NIST Digital Library of Mathematical Functions 10.2.2, 10.25.2 and 19.5.1).
+fn special_coefficient(function: Function, k: usize) -> Expr {
+    let fraction = |top: Rational, bottom: Rational| Expr::number(top / bottom);
+    let factorial = |n: usize| Rational::from_integer(crate::exact::rational::factorial(n as u32));
+    let quarter = |sign: i64, n: usize| num_traits::pow(crate::exact::rational::ratio(sign, 4), n);
+    let (half, odd) = (k / 2, k % 2 == 1);
+    match function {
+        Function::BesselJ0 | Function::BesselI0 if !odd => {
+            let sign = if function == Function::BesselJ0 { -1 } else { 1 };
+            fraction(quarter(sign, half), num_traits::pow(factorial(half), 2))
+        }
+        Function::BesselJ1 | Function::BesselI1 if odd => {
+            let sign = if function == Function::BesselJ1 { -1 } else { 1 };
+            fraction(quarter(sign, half), factorial(half) * factorial(half + 1) * integer(2))
+        }
+        Function::EllipticK => {
+            let choose = factorial(2 * k) / num_traits::pow(factorial(k), 2);
+            Expr::number(choose.clone() * choose * num_traits::pow(quarter(1, k), 2))
+                * Expr::pi()
+                * Expr::number(crate::exact::rational::ratio(1, 2))
+        }
+        _ => Expr::zero(),
+    }
+}
+
 /// A truncated power series in `s`; as many entries as the expansion is long.
 type Series = Vec<Expr>;
 
@@ -302,7 +327,28 @@ impl Expansion<'_> {
                     other.clone()
                 })
             }
+            Function::BesselJ0 | Function::BesselJ1 | Function::BesselI0 | Function::BesselI1 | Function::EllipticK
+                if of[0].is_zero() =>
+            {
+                self.composed(of, &|k| special_coefficient(function, k))
+            }
+            Function::BesselJ0
+            | Function::BesselJ1
+            | Function::BesselI0
+            | Function::BesselI1
+            | Function::EllipticK
+            | Function::Gamma => Err(self.not_analytic(term)),
         }
+    }
+
+    /// `sum_k coefficient(k) u^k` of a series without constant term, by Horner's rule.
+    fn composed(&self, of: &Series, coefficient: &dyn Fn(usize) -> Expr) -> Result<Series, TaylorError> {
+        let mut sum = self.constant(coefficient(self.length - 1));
+        for k in (0..self.length - 1).rev() {
+            sum = self.product(&sum, of)?;
+            sum[0] = &sum[0] + &coefficient(k);
+        }
+        Ok(sum)
     }
 
     fn not_analytic(&self, term: &Expr) -> TaylorError {

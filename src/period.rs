@@ -72,22 +72,12 @@ pub enum PeriodError {
 /// See [`PeriodError`].
 pub fn conservative_period(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
     let end = turning_point(force, equilibrium, start)?;
-    let (middle, radius) = (0.5 * (start + end), 0.5 * (start - end));
-    let mean_force = |from: f64, to: f64| integral(&|u| force(from + (to - from) * u), 0.0, 1.0);
     let mut failure = None;
-    let integrand = |phi: f64| {
-        let x = middle + radius * phi.sin();
-        let quotient = if phi >= 0.0 {
-            mean_force(x, start).map(|mean| mean / (x - end))
-        } else {
-            mean_force(end, x).map(|mean| -mean / (start - x))
-        };
-        match quotient {
-            Ok(quotient) => 1.0 / (2.0 * quotient).sqrt(),
-            Err(error) => {
-                failure = Some(error);
-                f64::NAN
-            }
+    let integrand = |phi: f64| match time_per_angle(force, start, end, phi) {
+        Ok(value) => value,
+        Err(error) => {
+            failure = Some(error);
+            f64::NAN
         }
     };
     let quarter = std::f64::consts::FRAC_PI_2;
@@ -98,6 +88,78 @@ pub fn conservative_period(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: 
             value, error_estimate, ..
         }) if error_estimate < 1e-9 * value => Ok(2.0 * value),
         Err(error) => Err(failure.unwrap_or(error).into()),
+    }
+}
+
+/// `dt/dphi = 1/sqrt(2 g)` of the substitution above.
+fn time_per_angle(force: &dyn Fn(f64) -> f64, start: f64, end: f64, phi: f64) -> Result<f64, QuadratureError> {
+    let mean_force = |from: f64, to: f64| integral(&|u| force(from + (to - from) * u), 0.0, 1.0);
+    let x = 0.5 * (start + end) + 0.5 * (start - end) * phi.sin();
+    let quotient = if phi >= 0.0 {
+        mean_force(x, start)? / (x - end)
+    } else {
+        -mean_force(end, x)? / (start - x)
+    };
+    Ok(1.0 / (2.0 * quotient).sqrt())
+}
+
+/// The period of a conservative motion released at rest from `start`, and the coefficients of `cos(k theta)` of the motion.
+///
+/// With `psi = pi/2 - phi` the rate `h = dt/dpsi` is an even, periodic function: its cosine series gives `omega t(psi)`, and
+/// sums over equal steps in `psi` give the coefficients, both to spectral accuracy for a smooth force.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn conservative_motion(
+    force: &dyn Fn(f64) -> f64,
+    equilibrium: f64,
+    start: f64,
+) -> Result<(f64, Vec<f64>), PeriodError> {
+    const FEWEST: usize = 64;
+    const MOST: usize = 1024;
+    const HARMONICS: usize = 64;
+    let end = turning_point(force, equilibrium, start)?;
+    let pi = std::f64::consts::PI;
+    let (mut points, mut last) = (FEWEST, f64::INFINITY);
+    loop {
+        let angle = |i: usize| pi * (i as f64 + 0.5) / points as f64;
+        let rates: Vec<f64> = (0..points)
+            .map(|i| time_per_angle(force, start, end, 0.5 * pi - angle(i)))
+            .collect::<Result<_, _>>()?;
+        let mean = rates.iter().sum::<f64>() / points as f64;
+        let settled = (mean - last).abs() <= 1e-13 * mean;
+        if !settled && points < MOST {
+            (points, last) = (2 * points, mean);
+            continue;
+        }
+        let kept = points / 2;
+        let rate_coefficients: Vec<f64> = (1..kept)
+            .map(|j| {
+                let sum: f64 = rates
+                    .iter()
+                    .enumerate()
+                    .map(|(i, rate)| rate * (j as f64 * angle(i)).cos())
+                    .sum();
+                2.0 * sum / points as f64
+            })
+            .collect();
+        let theta = |psi: f64| {
+            let waves = rate_coefficients
+                .iter()
+                .zip(1..)
+                .map(|(rate, j)| rate * (f64::from(j) * psi).sin() / f64::from(j));
+            psi + waves.sum::<f64>() / mean
+        };
+        let mut coefficients = vec![0.0; HARMONICS];
+        for (i, rate) in rates.iter().enumerate() {
+            let psi = angle(i);
+            let (x, theta) = (0.5 * (start + end) + 0.5 * (start - end) * psi.cos(), theta(psi));
+            for (k, coefficient) in coefficients.iter_mut().enumerate() {
+                let weight = if k == 0 { 1.0 } else { 2.0 } / points as f64;
+                *coefficient += weight * x * (k as f64 * theta).cos() * rate / mean;
+            }
+        }
+        return Ok((2.0 * pi * mean, coefficients));
     }
 }
 

@@ -1,0 +1,84 @@
+//! `lindstedt compare PROBLEM --at A=1.5`.
+
+use clap::Args;
+use lindstedt::export::{json, latex, text};
+use lindstedt::verify::Verdict;
+use lindstedt::verify::comparison::{self, Comparison};
+use lindstedt::{Oscillator, verify};
+
+use super::derive::{exact_values, problem};
+use super::{Common, Failure, Format, Outcome, json_text, tolerance};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
+    problem: String,
+    /// A value, exact (1.5, 3/2, pi/3): where the methods are compared; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    /// The small parameter; A for the amplitude
+    #[arg(long, value_name = "NAME")]
+    small: Option<String>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = problem(&arguments.problem)?;
+    let Some(equation) = &problem.equation else {
+        return Err(Failure::Refused(
+            "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
+        ));
+    };
+    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
+    let values = exact_values(&arguments.at, &problem)?.unwrap_or_default();
+    let small = arguments.small.as_deref().or(problem.small.as_deref());
+    let tolerance = tolerance(&arguments.common);
+    let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(|error| match &error {
+        comparison::ComparisonError::NoMethod(reason) => Failure::refused(&error, reason.help()),
+        comparison::ComparisonError::Verification(verify::VerificationError::Missing(names)) => {
+            let example: Vec<String> = names.iter().map(|name| format!("--at {name}=...")).collect();
+            Failure::Usage(format!("{error}\n  help: add {}", example.join(" ")))
+        }
+        comparison::ComparisonError::Verification(verify::VerificationError::Unknown { .. }) => {
+            Failure::Usage(error.to_string())
+        }
+        comparison::ComparisonError::Verification(_) => Failure::refused(&error, None),
+    })?;
+    let text = match arguments.common.format {
+        Format::Text => text::comparison(&comparison),
+        Format::Latex => latex::comparison(&comparison),
+        Format::Json => json_text(&json::comparison(&comparison)),
+    };
+    let picture = match &arguments.common.plot {
+        Some(path) => Some((path.clone(), picture(&oscillator, &comparison)?)),
+        None => None,
+    };
+    let failed = comparison.rows.iter().any(|row| row.verdict == Verdict::Fail);
+    Ok(Outcome {
+        text,
+        picture,
+        note: None,
+        verdict: Some(if failed { Verdict::Fail } else { Verdict::Pass }),
+    })
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &Oscillator, _: &Comparison) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, Failure> {
+    use lindstedt::export::figure::backbone_figure;
+
+    let (truth, curves) =
+        comparison::backbones(oscillator, comparison).map_err(|error| Failure::refused(&error, None))?;
+    let at: Vec<String> = comparison
+        .at
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    let caption = format!("{}; {}", comparison.equation, at.join(", "));
+    backbone_figure(&truth, &curves, &caption).map_err(|error| Failure::refused(&error, None))
+}

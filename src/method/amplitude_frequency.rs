@@ -1,0 +1,58 @@
+//! He's amplitude-frequency formulation: two trial motions and the residuals they leave at one instant.
+//!
+//! Reference: J.-H. He, *An improved amplitude-frequency formulation for nonlinear oscillators*, Int. J. Nonlinear Sci.
+//! Numer. Simul. 9 (2008) 211-212; the instant cos^2 = 3/4 (theta = pi/6): L. Geng, X.-C. Cai, Eur. J. Phys. 28 (2007) 923-931.
+//!
+//! ```text
+//! u_1 = A cos(omega_1 t),  u_2 = A cos(omega_2 t),   R_i = u_i'' + f(u_i) at cos^2 = 3/4
+//! omega^2 = (omega_1^2 R_2 - omega_2^2 R_1)/(R_2 - R_1)
+//! R_i = f(c A) - omega_i^2 c A, c = sqrt(3)/2   ->   omega^2 = f(c A)/(c A), whatever omega_1 and omega_2 are
+//! ```
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+//! let options = Options { method: Some(Method::AmplitudeFrequency), ..Options::default() };
+//! assert_eq!(solve(&duffing, &options)?.frequency_squared.unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use super::energy_balance::positive_amplitude;
+use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
+use super::{Options, Refusal};
+use crate::expr::Expr;
+use crate::oscillator::Oscillator;
+use crate::solution::{Method, Solution};
+
+/// The frequency from the residuals of two trial motions.
+///
+/// # Errors
+/// A force that is not conservative or not odd, by its term; an order above the first.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::AmplitudeFrequency;
+    first_order_only(options, METHOD)?;
+    let force = conservative_force(oscillator, options, METHOD)?;
+    require_odd(oscillator, &force, METHOD)?;
+    let place = Expr::divide(&(Expr::from(3).sqrt()? * Expr::symbol("A")), &Expr::from(2))?;
+    let trials = [Expr::one(), Expr::from(2)];
+    let force_there = force.substitute(oscillator.coordinate, &place)?;
+    let residual = |squared: &Expr| &force_there - &(squared * &place);
+    let [first, second] = trials.each_ref().map(residual);
+    let numerator = (&trials[0] * &second - &trials[1] * &first).expand()?;
+    let law = Expr::divide(&numerator, &(&second - &first).expand()?)?.expand()?;
+    let mut solution = unsolved(oscillator, options, METHOD, 1);
+    set_law(&mut solution, &positive_amplitude(&law).unwrap_or(law))?;
+    solution.derivation = vec![
+        format!(
+            "trials A*cos(omega_i*t) with omega_1^2 = {} and omega_2^2 = {}, at cos^2 = 3/4",
+            trials[0], trials[1]
+        ),
+        format!("R_1 = {first}"),
+        format!("R_2 = {second}"),
+        "omega^2 = (omega_1^2*R_2 - omega_2^2*R_1)/(R_2 - R_1)".to_owned(),
+    ];
+    solution
+        .validity
+        .push("one term, collocated at cos(theta)^2 = 3/4: the instant is a convention of the method".to_owned());
+    Ok(solution)
+}

@@ -1,0 +1,98 @@
+//! He's energy balance: the energy of a one-term motion collocated at an eighth of the period.
+//!
+//! Reference: J.-H. He, *Preliminary report on the energy balance for nonlinear oscillations*, Mech. Res. Commun. 29 (2002)
+//! 107-111.
+//!
+//! ```text
+//! x'^2/2 + V(x) = V(A),   x = A cos(omega t)
+//! at omega t = pi/4:   omega^2 A^2/4 + V(A/sqrt(2)) = V(A)
+//! omega^2 = 4 [V(A) - V(A/sqrt(2))]/A^2
+//! ```
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+//! let options = Options { method: Some(Method::EnergyBalance), ..Options::default() };
+//! assert_eq!(solve(&duffing, &options)?.frequency_squared.unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
+use super::{Options, Refusal};
+use crate::conservative::potential::potential;
+use crate::expr::Expr;
+use crate::ode::quadrature::integrate_smooth;
+use crate::oscillator::Oscillator;
+use crate::solution::{Method, Solution};
+
+const METHOD: Method = Method::EnergyBalance;
+
+/// The frequency by the energy at an eighth of the period.
+///
+/// # Errors
+/// A force that is not conservative or not odd, by its term; an order above the first.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    first_order_only(options, METHOD)?;
+    let force = conservative_force(oscillator, options, METHOD)?;
+    require_odd(oscillator, &force, METHOD)?;
+    let mut solution = unsolved(oscillator, options, METHOD, 1);
+    let potential = potential(&force, oscillator.coordinate);
+    let law = |potential: &Expr| {
+        let amplitude = Expr::symbol("A");
+        let at = |place: &Expr| potential.substitute(oscillator.coordinate, place).ok();
+        let rise = at(&amplitude)? - at(&Expr::divide(&amplitude, &Expr::from(2).sqrt().ok()?).ok()?)?;
+        let law = Expr::divide(&(Expr::from(4) * rise), &amplitude.integer_power(2).ok()?).ok()?;
+        positive_amplitude(&law)?.expand().ok()
+    };
+    match potential.as_ref().and_then(law) {
+        Some(law) => set_law(&mut solution, &law)?,
+        None => {
+            solution.by_quadrature = Some(format!(
+                "omega^2 = (4/A^2)*int_(A/sqrt(2))^A ({force}) d{}",
+                oscillator.coordinate
+            ));
+        }
+    }
+    if let Some(potential) = potential {
+        solution.derivation = vec![
+            format!("V = {potential}"),
+            "x'^2/2 + V(x) = V(A) with x = A*cos(theta), at theta = pi/4".to_owned(),
+            "omega^2*A^2/4 = V(A) - V(A/sqrt(2))".to_owned(),
+        ];
+    }
+    solution
+        .validity
+        .push("one term, collocated at theta = pi/4: the instant is a convention of the method".to_owned());
+    Ok(solution)
+}
+
+/// `abs` and `sgn` of the positive amplitude resolved: `|A| = A`.
+pub(super) fn positive_amplitude(law: &Expr) -> Option<Expr> {
+    use crate::expr::{Function, Node};
+    let amplitude = Expr::symbol("A");
+    law.fold(|expr, children: &[Expr]| match (expr.node(), children) {
+        (Node::Function(Function::Absolute | Function::Sign, _), [inside]) => {
+            let (number, factors) = inside.factors();
+            let size = |factor: &Expr| factor.base_and_exponent().0;
+            let known = factors
+                .iter()
+                .all(|factor| size(factor) == amplitude || factor.symbols().is_empty());
+            let sign = expr.with_children(&[Expr::number(number)])?;
+            match (expr.node(), known) {
+                (Node::Function(Function::Sign, _), true) => Ok(sign),
+                (_, true) => Ok(sign * Expr::product(factors.iter().cloned())),
+                _ => expr.with_children(children),
+            }
+        }
+        _ => expr.with_children(children),
+    })
+    .ok()
+}
+
+/// The law by numbers, for forces without a potential in closed form.
+pub(super) fn by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f64) -> Option<f64> {
+    let rise = integrate_smooth(force, amplitude / f64::sqrt(2.0), amplitude, 1e-12)
+        .ok()?
+        .0;
+    Some(4.0 * rise / (amplitude * amplitude))
+}

@@ -1,0 +1,187 @@
+//! The exact frequency: elliptic integrals and Gamma functions where the force is one of those that lead to them, quadrature
+//! for any other.
+//!
+//! References: L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., section 11; P. F. Byrd, M. D. Friedman, *Handbook of
+//! Elliptic Integrals*, 2nd ed., Springer 1971, 235 and 263; A. Belendez et al., *Closed-form exact solutions for the
+//! unforced quintic nonlinear oscillator*, Adv. Math. Phys. 2017, 7396063.
+//!
+//! ```text
+//! T = 2 int_(x_1)^A dx/sqrt(2 (V(A) - V(x)))
+//! c sgn(x)|x|^n:        omega = sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))
+//! k sin(c x):           omega = pi sqrt(k c)/(2 K(sin^2(c A/2)))
+//! k sinh(c x):          omega = pi sqrt(k c) cosh(c A/2)/(2 K(tanh^2(c A/2)))
+//! a x + b x^3 + l x^5:  with x = A cos phi, t = tan phi, p = a + b A^2 + l A^4, r = a + b A^2/2 + l A^4/3, q = 2 r + (b/2 + l A^2/3) A^2:
+//!   T = 4 int_0^inf dt/sqrt(r t^4 + q t^2 + p),   omega = pi (p r)^(1/4)/(2 K(1/2 - q/(4 sqrt(p r))))
+//! a x + b x^3:          omega = pi sqrt(a + b A^2)/(2 K(b A^2/(2 (a + b A^2))))
+//! a x + b x^2:          omega = pi sqrt((P + D)/2)/(2 K((P - D)/(P + D))),  P = a + 2 b A,  D^2 = a^2 - 4 a b A/3 - 4 b^2 A^2/3
+//! ```
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+//! let options = Options { method: Some(Method::Exact), ..Options::default() };
+//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega = pi/(2*K(sin(A/2)^2))");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use num_traits::{One, Zero};
+
+use super::iteration_perturbation::polynomial_coefficients;
+use super::one_term::{conservative_force, unsolved};
+use super::{Options, Refusal};
+use crate::conservative::{linear_in, split, take_powers};
+use crate::exact::rational::ratio;
+use crate::exact::{Polynomial, Rational};
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::oscillator::Oscillator;
+use crate::series::FourierSeries;
+use crate::solution::{ClosedForm, Method, Solution};
+
+/// The exact law of a conservative oscillator; its motion is known by numbers.
+///
+/// # Errors
+/// A force that is not conservative, by its term.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::Exact;
+    let force = conservative_force(oscillator, options, METHOD)?;
+    let mut solution = unsolved(oscillator, options, METHOD, 0);
+    solution.displacement = FourierSeries::zero();
+    let law = match polynomial_coefficients(oscillator, &force)? {
+        Some(coefficients) => of_polynomial(&coefficients)?,
+        None => of_function(oscillator, &force)?,
+    };
+    match law {
+        Some(Law::Squared(squared)) => solution.frequency_squared = Some(squared),
+        Some(Law::Form(value)) => solution.closed_form = Some(ClosedForm { squared: false, value }),
+        None => {
+            let x = oscillator.coordinate;
+            solution.by_quadrature = Some(format!(
+                "omega = 2*pi/T, T = 2*int_x1^A d{x}/sqrt(2*(V(A) - V({x}))), V' = {force}, V(x1) = V(A)"
+            ));
+        }
+    }
+    solution.derivation = vec![
+        "x'^2/2 + V(x) = V(A), V' = f".to_owned(),
+        "T = 2*int_x1^A dx/sqrt(2*(V(A) - V(x))), omega = 2*pi/T".to_owned(),
+    ];
+    solution.validity.push(match solution.by_quadrature {
+        None => "exact wherever the motion is periodic".to_owned(),
+        Some(_) => {
+            "exact wherever the motion is periodic, by quadrature: no elliptic or Gamma function is known to give it"
+                .to_owned()
+        }
+    });
+    Ok(solution)
+}
+
+enum Law {
+    Squared(Polynomial),
+    Form(Expr),
+}
+
+fn half() -> Expr {
+    Expr::number(ratio(1, 2))
+}
+
+fn elliptic(parameter: Expr) -> Result<Expr, ExprError> {
+    Expr::function(Function::EllipticK, vec![parameter.expand()?])
+}
+
+/// `pi scale/(2 K(parameter))`.
+fn by_elliptic(scale: &Expr, parameter: Expr) -> Result<Expr, ExprError> {
+    Expr::divide(&(Expr::pi() * scale), &(Expr::from(2) * elliptic(parameter)?))
+}
+
+fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
+    let powers: Vec<usize> = (0..coefficients.len())
+        .filter(|&n| !coefficients[n].is_zero())
+        .collect();
+    let of = |n: usize| coefficients.get(n).map_or_else(Expr::zero, Expr::from);
+    let amplitude = Expr::symbol("A");
+    let squared = amplitude.integer_power(2)?;
+    match powers.as_slice() {
+        [1] => Ok(coefficients.get(1).cloned().map(Law::Squared)),
+        [n] if n % 2 == 1 => Ok(Some(Law::Form(of_power(
+            &of(*n),
+            &Rational::from_integer((*n).into()),
+        )?))),
+        [1, 2] => {
+            let (a, b) = (of(1), of(2));
+            let product = &b * &amplitude;
+            let p = &a + &(Expr::from(2) * &product);
+            let third = |n: i64| Expr::number(ratio(n, 3));
+            let inside = a.integer_power(2)? - third(4) * &a * &product - third(4) * product.integer_power(2)?;
+            let d = inside.expand()?.sqrt()?;
+            let scale = ((&p + &d) * half()).sqrt()?;
+            let parameter = Expr::divide(&(&p - &d), &(&p + &d))?;
+            let law = Expr::divide(
+                &(Expr::pi() * scale),
+                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
+            )?;
+            Ok(Some(Law::Form(law)))
+        }
+        [1, 3] => {
+            let (a, stiff) = (of(1), of(3) * &squared);
+            let sum = &a + &stiff;
+            let parameter = Expr::divide(&stiff, &(Expr::from(2) * &sum))?;
+            let law = Expr::divide(
+                &(Expr::pi() * sum.sqrt()?),
+                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
+            )?;
+            Ok(Some(Law::Form(law)))
+        }
+        [1, 5] | [3, 5] | [1, 3, 5] => {
+            let (a, b, l) = (of(1), of(3) * &squared, of(5) * squared.integer_power(2)?);
+            let p = &a + &b + &l;
+            let r = &a + &(&b * &half()) + &l * &Expr::number(ratio(1, 3));
+            let q = Expr::from(2) * &r + &b * &half() + &l * &Expr::number(ratio(1, 3));
+            let product = (&p * &r).expand()?;
+            let quarter = Expr::power(&product, &Expr::number(ratio(1, 4)))?;
+            let parameter = half() - Expr::divide(&q.expand()?, &(Expr::from(4) * product.sqrt()?))?;
+            let law = Expr::divide(
+                &(Expr::pi() * quarter),
+                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
+            )?;
+            Ok(Some(Law::Form(law)))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// `sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))`.
+fn of_power(coefficient: &Expr, n: &Rational) -> Result<Expr, ExprError> {
+    let next = n + Rational::one();
+    let gamma = |argument: Rational| Expr::function(Function::Gamma, vec![Expr::number(argument)]);
+    let scale = (Expr::pi() * coefficient * Expr::number(&next / ratio(2, 1))).sqrt()?;
+    let amplitude = Expr::power(&Expr::symbol("A"), &Expr::number((n - Rational::one()) / ratio(2, 1)))?;
+    let inverse = next.recip();
+    Expr::divide(&(scale * amplitude * gamma(ratio(1, 2) + &inverse)?), &gamma(inverse)?)
+}
+
+/// A single term: a power with its sign, a sine or a hyperbolic sine.
+fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Law>, Refusal> {
+    let coordinate = oscillator.coordinate;
+    let [term] = force.terms() else { return Ok(None) };
+    let (mut outside, mut inside) = split(term, coordinate);
+    if let [factor] = inside.as_slice()
+        && let Node::Function(function @ (Function::Sin | Function::Sinh), arguments) = factor.node()
+        && let Some((slope, phase)) = arguments.first().and_then(|argument| linear_in(argument, coordinate))
+        && phase.is_zero()
+    {
+        let scale = (&outside * &slope).expand()?.sqrt()?;
+        let angle = Expr::divide(&(slope * Expr::symbol("A")), &Expr::from(2))?;
+        let law = if *function == Function::Sin {
+            by_elliptic(&scale, angle.sin()?.integer_power(2)?)?
+        } else {
+            let of = |function| Expr::function(function, vec![angle.clone()]);
+            by_elliptic(&(scale * of(Function::Cosh)?), of(Function::Tanh)?.integer_power(2)?)?
+        };
+        return Ok(Some(Law::Form(law)));
+    }
+    match take_powers(&mut inside, &mut outside, coordinate) {
+        Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
+            Ok(Some(Law::Form(of_power(&outside, &power.exponent)?)))
+        }
+        _ => Ok(None),
+    }
+}

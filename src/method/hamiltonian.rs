@@ -1,0 +1,66 @@
+//! The Hamiltonian approach: the mean Hamiltonian of a one-term motion made stationary in the amplitude.
+//!
+//! Reference: J.-H. He, *Hamiltonian approach to nonlinear oscillators*, Phys. Lett. A 374 (2010) 2312-2314.
+//!
+//! ```text
+//! H = x'^2/2 + V(x),   V' = f,   x = A cos(omega t)
+//! h(A) = int_0^(T/4) H dt = (1/omega) int_0^(pi/2) [omega^2 A^2 sin^2/2 + V(A cos theta)] dtheta
+//! d/dA dh/d(1/omega) = 0   ->   omega^2 = (2/A) d<V>/dA,   <V> = (1/pi) int_0^pi V(A cos theta) dtheta
+//! ```
+//!
+//! The mean is taken of the potential in closed form and then differentiated; where there is none the derivative is taken
+//! under the integral, which leaves the [shared integral](super::one_term).
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+//! let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
+//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega^2 = 2*J1(A)/A");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use super::one_term::{conservative_force, first_order_only, note_even_part, set_law, solve_by_integral, unsolved};
+use super::{Options, Refusal};
+use crate::conservative::potential::potential;
+use crate::conservative::projection::cosine_coefficient;
+use crate::expr::{Expr, Function};
+use crate::oscillator::Oscillator;
+use crate::solution::{Method, Solution};
+
+/// The frequency by the mean Hamiltonian.
+///
+/// # Errors
+/// A force that is not conservative, by its term; an order above the first.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::Hamiltonian;
+    first_order_only(options, METHOD)?;
+    let force = conservative_force(oscillator, options, METHOD)?;
+    let amplitude = Expr::symbol("A");
+    // The derivative of an arc's edge cancels, but leaves its traces: arcs are differentiated under the integral.
+    let has_arcs = force.contains_function(Function::Step);
+    let mean = potential(&force, oscillator.coordinate)
+        .and_then(|potential| cosine_coefficient(&potential, oscillator.coordinate, &amplitude, 0))
+        .map(|twice| twice * Expr::number(crate::exact::rational::ratio(1, 2)));
+    let law = |mean: &Expr| {
+        let slope = mean.differentiate("A".into()).ok()?;
+        Expr::divide(&(Expr::from(2) * slope), &amplitude).ok()?.expand().ok()
+    };
+    let Some((mean, law)) = mean
+        .filter(|_| !has_arcs)
+        .and_then(|mean| law(&mean).map(|law| (mean, law)))
+    else {
+        return solve_by_integral(oscillator, options, METHOD);
+    };
+    let mut solution = unsolved(oscillator, options, METHOD, 1);
+    set_law(&mut solution, &law)?;
+    solution.derivation = vec![
+        "H = x'^2/2 + V(x), x = A*cos(theta): the mean of V over the motion".to_owned(),
+        format!("<V> = {mean}"),
+        "omega^2 = (2/A)*d<V>/dA".to_owned(),
+    ];
+    solution
+        .validity
+        .push("one term: exact for a linear force, the first step beyond it otherwise".to_owned());
+    note_even_part(&mut solution, oscillator, &force)?;
+    Ok(solution)
+}

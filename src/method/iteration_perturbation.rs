@@ -1,0 +1,218 @@
+//! Iteration perturbation: the nonlinear factor frozen at the previous iterate.
+//!
+//! Reference: J.-H. He, *Iteration perturbation method for strongly nonlinear oscillations*, J. Vib. Control 7 (2001)
+//! 631-642; the second and later passes are the direct iteration of R. E. Mickens, *Truly Nonlinear Oscillations*, World
+//! Scientific 2010, chapter 4.
+//!
+//! ```text
+//! x_n'' + g(x_(n-1)) x_n = 0,   g(x) = f(x)/x,   x_0 = A cos(omega t)                (a Hill equation, as Mathieu's)
+//! x_n'' + omega^2 x_n = omega^2 x_(n-1) - g(x_(n-1)) x_(n-1) = omega^2 x_(n-1) - f(x_(n-1))
+//! no secular term fixes omega^2;   x_1 = A cos theta + sum_(k>1) c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)
+//! ```
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+//! let options = Options { method: Some(Method::IterationPerturbation), ..Options::default() };
+//! let solution = solve(&pendulum, &options)?;
+//! assert_eq!(solution.closed_form.unwrap().to_string(), "omega^2 = 2*J1(A)/A");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use num_traits::{One, Zero};
+
+use super::one_term::{conservative_force, cosine, note_even_part, solve_by_integral, unsolved};
+use super::{Options, Refusal};
+use crate::conservative::projection::cosine_coefficient;
+use crate::exact::polynomial::Monomial;
+use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::expr::Expr;
+use crate::oscillator::Oscillator;
+use crate::series::FourierSeries;
+use crate::series::fourier::linear_combination;
+use crate::solution::{Definition, Method, Solution};
+use crate::symbol::Symbol;
+
+const METHOD: Method = Method::IterationPerturbation;
+
+/// The most passes: the number of harmonics grows with their power.
+const MOST_PASSES: u32 = 3;
+
+/// Harmonics of the first iterate kept where the force has infinitely many.
+const HIGHEST_HARMONIC: usize = 5;
+
+/// Frequency and motion after so many passes, one by default.
+///
+/// # Errors
+/// A force that is not conservative, by its term; above one pass, a force that is no polynomial.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let force = conservative_force(oscillator, options, METHOD)?;
+    let passes = options.order.unwrap_or(1);
+    if passes > MOST_PASSES {
+        return Err(Refusal::HighestOrder {
+            method: METHOD.title(),
+            highest: MOST_PASSES,
+        });
+    }
+    if passes > 1 {
+        return iterated(oscillator, options, &force, passes);
+    }
+    let mut solution = solve_by_integral(oscillator, options, METHOD)?;
+    first_iterate(&mut solution, oscillator, &force)?;
+    let factor = Expr::divide(&force, &Expr::from(oscillator.coordinate))?.expand()?;
+    solution.derivation = vec![
+        format!(
+            "{x}1'' + ({factor})*{x}1 = 0 with {x} = A*cos(theta) in the factor",
+            x = oscillator.coordinate
+        ),
+        "no secular term:  omega^2 = c1/A, c1 the cos(theta) part of f(A*cos(theta))".to_owned(),
+    ];
+    solution.validity.retain(|line| !line.starts_with("the even part"));
+    note_even_part(&mut solution, oscillator, &force)?;
+    Ok(solution)
+}
+
+/// Puts the first iterate into an answer: its harmonics are exact for polynomials, the lowest of them otherwise.
+pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, force: &Expr) -> Result<(), Refusal> {
+    let amplitude = Expr::symbol("A");
+    let degree = oscillator.polynomial_degree()?.map(|degree| degree as usize);
+    let highest = degree.unwrap_or(HIGHEST_HARMONIC);
+    let mut motion = solution.displacement.clone();
+    for k in (0..=highest).filter(|&k| k != 1) {
+        let Some(coefficient) = cosine_coefficient(force, oscillator.coordinate, &amplitude, k) else {
+            return Ok(());
+        };
+        if coefficient.is_zero() {
+            continue;
+        }
+        let mut polynomial = match coefficient.to_polynomial(&mut |_| None)? {
+            Some(polynomial) => polynomial,
+            None => {
+                let symbol = free_name(&format!("c{k}"), solution);
+                solution.definitions.push(Definition {
+                    symbol,
+                    meaning: coefficient,
+                });
+                Polynomial::symbol(symbol)
+            }
+        };
+        // The constant term of the series is half of c_0.
+        let divisor = if k == 0 { -2 } else { (k * k - 1) as i64 };
+        polynomial = polynomial.times_monomial(&Monomial::power_of(Symbol::new("omega"), -2));
+        let wave = linear_combination(&[(1, &FourierSeries::cos(k)), (-1, &FourierSeries::cos(1))]);
+        let term = wave.product(&FourierSeries::constant(polynomial, Integer::one()));
+        motion = motion.sum(&term.divided_by(divisor));
+    }
+    if degree.is_none() && motion != solution.displacement {
+        solution
+            .validity
+            .push(format!("the motion is cut after its harmonic {highest}"));
+    }
+    solution.displacement = motion;
+    Ok(())
+}
+
+fn free_name(name: &str, solution: &Solution) -> Symbol {
+    let mut name = name.to_owned();
+    let taken = |symbol: Symbol| {
+        solution.parameters.contains(&symbol) || solution.definitions.iter().any(|entry| entry.symbol == symbol)
+    };
+    while taken(Symbol::new(&name)) {
+        name.push('_');
+    }
+    Symbol::new(&name)
+}
+
+/// Several passes for a polynomial force: an implicit relation in even powers of omega.
+fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u32) -> Result<Solution, Refusal> {
+    let (omega, amplitude) = (Symbol::new("omega"), Symbol::new("A"));
+    let not_polynomial = || Refusal::PolynomialOnly {
+        method: METHOD.title(),
+        force: force.to_string(),
+    };
+    let coefficients = polynomial_coefficients(oscillator, force)?.ok_or_else(not_polynomial)?;
+    let squared = FourierSeries::constant(
+        Polynomial::term(Monomial::power_of(omega, 2), Rational::one()),
+        Integer::one(),
+    );
+    let inverse = Monomial::power_of(omega, -2);
+    let mut solution = unsolved(oscillator, options, METHOD, passes);
+    let mut motion = cosine(Polynomial::symbol(amplitude));
+    let mut secular = Polynomial::zero();
+    for _ in 0..passes {
+        let right_side = motion.product(&squared).difference(&horner(&coefficients, &motion)?);
+        let (particular, resonance) = right_side.solve_oscillator();
+        secular = over_one(&resonance.cosine);
+        let particular = particular.map(|numerator, denominator| {
+            let mut polynomial = numerator.times_monomial(&inverse);
+            polynomial.divide(denominator);
+            polynomial
+        });
+        let rest =
+            FourierSeries::constant(Polynomial::symbol(amplitude), Integer::one()).difference(&particular.at_zero());
+        motion = particular.sum(&rest.product(&FourierSeries::cos(1)));
+    }
+    let relation = secular.times_monomial(&Monomial::power_of(amplitude, -1));
+    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
+    solution.relation = Some(relation.times_monomial(&Monomial::power_of(omega, -lowest)));
+    solution.displacement = motion;
+    solution.derivation = vec![
+        format!(
+            "{x}_n'' + omega^2*{x}_n = omega^2*{x}_(n-1) - f({x}_(n-1)), {x}_0 = A*cos(theta)",
+            x = oscillator.coordinate
+        ),
+        format!("no secular term after {passes} passes fixes omega^2"),
+    ];
+    solution.validity.push(format!(
+        "after {passes} passes; the frequency is the root that continues omega0^2 from A = 0"
+    ));
+    Ok(solution)
+}
+
+fn over_one(series: &FourierSeries<Polynomial>) -> Polynomial {
+    let (numerator, denominator) = series.mean();
+    let mut value = numerator;
+    value.divide(denominator);
+    value
+}
+
+/// The coefficients of a polynomial force, lowest power first; `None` for any other force.
+pub(super) fn polynomial_coefficients(
+    oscillator: &Oscillator,
+    force: &Expr,
+) -> Result<Option<Vec<Polynomial>>, Refusal> {
+    let Some(polynomial) = force.to_polynomial(&mut |_| None)? else {
+        return Ok(None);
+    };
+    let coordinate = oscillator.coordinate;
+    let Some((0.., highest)) = polynomial.exponent_range(coordinate) else {
+        return Ok(None);
+    };
+    let mut coefficients = vec![Polynomial::zero(); usize::try_from(highest).unwrap_or(0) + 1];
+    for (monomial, number) in polynomial.terms() {
+        let power = usize::try_from(monomial.exponent(coordinate)).unwrap_or(0);
+        coefficients[power].add_term(monomial.without(coordinate), number.clone());
+    }
+    Ok(Some(coefficients))
+}
+
+/// The most terms of one coefficient before a pass is given up.
+const MOST_TERMS: usize = 5000;
+
+/// The force along a motion.
+pub(super) fn horner(
+    coefficients: &[Polynomial],
+    motion: &FourierSeries<Polynomial>,
+) -> Result<FourierSeries<Polynomial>, Refusal> {
+    let mut value = FourierSeries::zero();
+    for coefficient in coefficients.iter().rev() {
+        value = value
+            .product(motion)
+            .sum(&FourierSeries::constant(coefficient.clone(), Integer::one()));
+        let longest = value.harmonics().iter().map(|entry| entry.1.terms().len()).max();
+        if longest.is_some_and(|longest| longest > MOST_TERMS) {
+            return Err(Refusal::TooLong { terms: MOST_TERMS });
+        }
+    }
+    Ok(value)
+}

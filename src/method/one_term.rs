@@ -1,0 +1,237 @@
+//! The motion of one term, `x = A cos(theta)`: what the classical frequency formulas share.
+//!
+//! References: R. E. Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, chapter 3; N. Krylov, N. Bogoliubov,
+//! *Introduction to Non-Linear Mechanics*, Princeton 1943 (equivalent linearisation).
+//!
+//! ```text
+//! x'' + f(x) = 0,   x = A cos(theta),   theta = omega t
+//! f(A cos theta) = c_0/2 + c_1 cos theta + c_2 cos 2 theta + ...
+//! omega^2 = c_1/A = (2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta
+//! ```
+//!
+//! Even terms of the force contribute nothing to `c_1`: the drift they cause is left out, and the answer says so.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use num_traits::One;
+
+use super::{Options, Refusal, first_term};
+use crate::conservative::is_odd;
+use crate::conservative::projection::cosine_coefficient;
+use crate::exact::{Integer, Polynomial};
+use crate::expr::{CompiledFunction, Expr};
+use crate::oscillator::{Oscillator, SmallParameter};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
+use crate::symbol::Symbol;
+
+/// The force of an oscillator that is conservative: no damping, forcing or velocities.
+///
+/// # Errors
+/// The term in the way, by name; or an amplitude of the first harmonic, which these methods do not use.
+pub(super) fn conservative_force(oscillator: &Oscillator, options: &Options, method: Method) -> Result<Expr, Refusal> {
+    let parts = oscillator.parts()?;
+    let title = method.title();
+    if !parts.forcing.is_zero() {
+        let term = first_term(&parts.forcing);
+        return Err(Refusal::Forcing { method: title, term });
+    }
+    match parts.damping.terms() {
+        [zero] if zero.is_zero() => {}
+        [only] => {
+            let term = only.to_string();
+            return Err(Refusal::Damping { method: title, term });
+        }
+        // Terms that feed energy for some motions and drain it for others.
+        _ => {
+            let term = first_term(&parts.damping);
+            return Err(Refusal::Velocity { method: title, term });
+        }
+    }
+    if !parts.inertia.is_zero() {
+        let term = first_term(&parts.inertia);
+        return Err(Refusal::Velocity { method: title, term });
+    }
+    if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
+        return Err(Refusal::Convention { method: title });
+    }
+    Ok(oscillator.force.clone())
+}
+
+/// Refuses a force that is not odd, by its first even term.
+pub(super) fn require_odd(oscillator: &Oscillator, force: &Expr, method: Method) -> Result<(), Refusal> {
+    if is_odd(force, oscillator.coordinate)? {
+        return Ok(());
+    }
+    let term = even_part(oscillator, force)?;
+    Err(Refusal::NotOdd {
+        method: method.title(),
+        term: first_term(&term),
+    })
+}
+
+/// Refuses any order but the first.
+pub(super) fn first_order_only(options: &Options, method: Method) -> Result<(), Refusal> {
+    match options.order {
+        None | Some(1) => Ok(()),
+        Some(_) => Err(Refusal::HighestOrder {
+            method: method.title(),
+            highest: 1,
+        }),
+    }
+}
+
+/// The terms of a force that keep their sign when the coordinate changes its own.
+pub(super) fn even_part(oscillator: &Oscillator, force: &Expr) -> Result<Expr, Refusal> {
+    let mirrored = force.substitute(oscillator.coordinate, &-&Expr::from(oscillator.coordinate))?;
+    let sum = (&mirrored + force).expand()?;
+    Ok(Expr::divide(&sum, &Expr::from(2))?)
+}
+
+/// An answer with the one-term motion and no law yet.
+pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Method, order: u32) -> Solution {
+    let amplitude = Symbol::new("A");
+    let small = match oscillator.small_parameter(options.small.as_deref()) {
+        Ok(SmallParameter::Parameter(name)) => name,
+        _ => amplitude,
+    };
+    Solution {
+        equation: oscillator.equation(),
+        method,
+        order,
+        small_parameter: small,
+        amplitude: AmplitudeConvention::Initial,
+        parameters: oscillator.parameters.clone(),
+        definitions: vec![],
+        equilibrium: Expr::zero(),
+        frequency: None,
+        frequency_squared: None,
+        relation: None,
+        closed_form: None,
+        by_quadrature: None,
+        system: None,
+        displacement: cosine(Polynomial::symbol(amplitude)),
+        limit_cycle: None,
+        numerical: false,
+        validity: vec![],
+        steps: vec![],
+        derivation: vec![],
+    }
+}
+
+/// `coefficient * cos(theta)`.
+pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomial> {
+    FourierSeries::cos(1).product(&FourierSeries::constant(coefficient, Integer::one()))
+}
+
+/// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form otherwise.
+pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal> {
+    match law.to_polynomial(&mut |_| None)? {
+        Some(polynomial) => solution.frequency_squared = Some(polynomial),
+        None => {
+            solution.closed_form = Some(ClosedForm {
+                squared: true,
+                value: law.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// `c_1/A` in closed form, where it has one.
+pub(super) fn shared_integral(oscillator: &Oscillator, force: &Expr) -> Option<Expr> {
+    let amplitude = Expr::symbol("A");
+    let first = cosine_coefficient(force, oscillator.coordinate, &amplitude, 1)?;
+    Expr::divide(&first, &amplitude).ok()?.expand().ok()
+}
+
+/// The answer of the methods whose law is the shared integral.
+///
+/// # Errors
+/// As [`conservative_force`]; an order above the first.
+pub(super) fn solve_by_integral(
+    oscillator: &Oscillator,
+    options: &Options,
+    method: Method,
+) -> Result<Solution, Refusal> {
+    let force = conservative_force(oscillator, options, method)?;
+    let mut solution = unsolved(oscillator, options, method, 1);
+    match shared_integral(oscillator, &force) {
+        Some(law) => set_law(&mut solution, &law)?,
+        None => {
+            solution.by_quadrature = Some(integral_text(&force, oscillator.coordinate, "cos(theta)"));
+        }
+    }
+    solution
+        .validity
+        .push("one term: exact for a linear force, the first step beyond it otherwise".to_owned());
+    note_even_part(&mut solution, oscillator, &force)?;
+    Ok(solution)
+}
+
+/// Says which part of the force a motion of one term leaves out.
+pub(super) fn note_even_part(solution: &mut Solution, oscillator: &Oscillator, force: &Expr) -> Result<(), Refusal> {
+    let even = even_part(oscillator, force)?;
+    if !even.is_zero() {
+        solution.validity.push(format!(
+            "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
+        ));
+    }
+    Ok(())
+}
+
+/// The law as an integral over the force, for forces without closed form.
+pub(super) fn integral_text(force: &Expr, coordinate: Symbol, weight: &str) -> String {
+    let along = Expr::symbol("A") * Expr::symbol("theta").cos().unwrap_or_else(|_| Expr::one());
+    let along = force
+        .substitute(coordinate, &along)
+        .map_or_else(|_| "f(A*cos(theta))".to_owned(), |f| f.to_string());
+    format!("omega^2 = (2/(pi*A))*int_0^pi ({along})*{weight} dtheta")
+}
+
+/// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its error: the midpoint
+/// rule in theta, which converges geometrically for smooth forces and like a power at corners.
+pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f64, k: usize) -> (f64, f64) {
+    const FEWEST: usize = 64;
+    const MOST: usize = 1 << 16;
+    let with_points = |points: usize| {
+        let value = |i: usize| {
+            let theta = PI * (i as f64 + 0.5) / points as f64;
+            force(amplitude * theta.cos()) * (k as f64 * theta).cos()
+        };
+        2.0 / points as f64 * (0..points).map(value).sum::<f64>()
+    };
+    let (mut value, mut points) = (with_points(FEWEST), 2 * FEWEST);
+    loop {
+        let finer = with_points(points);
+        let change = (finer - value).abs();
+        value = finer;
+        points *= 2;
+        if change <= 1e-15 * value.abs() || points > MOST {
+            return (value, change);
+        }
+    }
+}
+
+/// The force at given numbers, as a function of the position.
+pub(crate) fn compiled(
+    oscillator: &Oscillator,
+    force: &Expr,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<impl Fn(f64) -> f64 + use<>> {
+    let parameters: Vec<(Symbol, f64)> = numbers.iter().map(|(name, value)| (*name, *value)).collect();
+    let names: Vec<Symbol> = std::iter::once(oscillator.coordinate)
+        .chain(parameters.iter().map(|entry| entry.0))
+        .collect();
+    let function = CompiledFunction::new(force, &names).ok()?;
+    let mut arguments: Vec<f64> = std::iter::once(0.0)
+        .chain(parameters.iter().map(|entry| entry.1))
+        .collect();
+    let arguments = std::cell::RefCell::new(std::mem::take(&mut arguments));
+    Some(move |x: f64| {
+        let mut arguments = arguments.borrow_mut();
+        arguments[0] = x;
+        function.call(&arguments)
+    })
+}

@@ -1,0 +1,257 @@
+//! Pade approximants of omega^2: quotients of polynomials that agree with the exact series.
+//!
+//! Reference: G. A. Baker, P. Graves-Morris, *Pade Approximants*, 2nd ed., Cambridge 1996, section 1.1.
+//!
+//! ```text
+//! omega^2 = c_0 + c_1 s + c_2 s^2 + ...,   s = A^2, or the small parameter
+//! [L/M] = (p_0 + ... + p_L s^L)/(q_0 + ... + q_M s^M) = omega^2 + O(s^(L+M+1))
+//! sum_j q_j c_(L+k-j) = 0, k = 1..M    (q_j by cofactors),       p_i = sum_j q_j c_(i-j)
+//! ```
+//!
+//! `L = M + 1` suits a hardening spring, whose omega^2 grows like s; `L = M` one that saturates. The coefficients are those
+//! of [Lindstedt and Poincare](super::lindstedt_poincare), exact.
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+//! let options = Options { method: Some(Method::Pade), pade: Some((1, 1)), ..Options::default() };
+//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega^2 = (192 - 17*A^2)/(192 + 7*A^2)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use nalgebra::DMatrix;
+use num_traits::{One, Zero};
+
+use super::{Options, Refusal, lindstedt_poincare};
+use crate::decimal::decimal;
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
+use crate::exact::{Polynomial, Rational, Ring};
+use crate::expr::Expr;
+use crate::oscillator::{Oscillator, SmallParameter};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
+use crate::symbol::Symbol;
+
+const METHOD: Method = Method::Pade;
+
+/// The largest degrees.
+const LARGEST_NUMERATOR: u32 = 40;
+const LARGEST_DENOMINATOR: u32 = 8;
+
+/// The approximant of the degrees in the options, `[2/1]` by default.
+///
+/// # Errors
+/// As for the method of Lindstedt and Poincare; degrees without an approximant.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let (numerator_degree, denominator_degree) = options.pade.unwrap_or((2, 1));
+    let refused = |reason| {
+        Err(Refusal::Pade {
+            numerator: numerator_degree,
+            denominator: denominator_degree,
+            reason,
+        })
+    };
+    if numerator_degree > LARGEST_NUMERATOR || denominator_degree > LARGEST_DENOMINATOR {
+        return refused("degrees go up to [40/8]");
+    }
+    if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
+        return Err(Refusal::Convention { method: METHOD.title() });
+    }
+    let order = numerator_degree + denominator_degree;
+    let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
+    let series = |order| {
+        let options = Options {
+            order: Some(order),
+            ..options.clone()
+        };
+        lindstedt_poincare::solve(oscillator, &options)
+    };
+    // In the squared amplitude where the series has even powers alone.
+    let mut solution = series(if in_amplitude { 2 * order } else { order })?;
+    if solution.limit_cycle.is_some() {
+        return refused("the amplitude is not free");
+    }
+    let small = solution.small_parameter;
+    let law = solution.frequency_squared.clone().unwrap_or_else(Polynomial::zero);
+    let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
+    let step = if in_amplitude && even { 2 } else { 1 };
+    let coefficient = |power: i64| match u32::try_from(power) {
+        Ok(power) => part(&law, small, step * power as i32),
+        Err(_) => Polynomial::zero(),
+    };
+    let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
+    let rows: Vec<Vec<Polynomial>> = (1..=m as i64)
+        .map(|k| (0..=m as i64).map(|j| coefficient(l + k - j)).collect())
+        .collect();
+    let mut below: Vec<Polynomial> = (0..=m).map(|j| cofactor(&rows, j)).collect();
+    let Some(first) = below.first().filter(|first| !first.is_zero()).cloned() else {
+        return refused("the equations for its denominator are singular");
+    };
+    normalise(&mut below, &first);
+    let above: Vec<Polynomial> = (0..=l)
+        .map(|i| {
+            let mut sum = Polynomial::zero();
+            for (j, q) in below.iter().enumerate() {
+                sum.accumulate(&q.product(&coefficient(i - j as i64)));
+            }
+            sum
+        })
+        .collect();
+    let with_powers = |coefficients: &[Polynomial]| {
+        let mut sum = Polynomial::zero();
+        for (power, coefficient) in coefficients.iter().enumerate() {
+            sum.accumulate(&coefficient.times_monomial(&Monomial::power_of(small, step * power as i32)));
+        }
+        sum
+    };
+    let (above, below) = (with_powers(&above), with_powers(&below));
+    let value = Expr::divide(&Expr::from(&above), &Expr::from(&below))?;
+    let variable = if step == 2 {
+        format!("{small}^2")
+    } else {
+        small.to_string()
+    };
+    solution.method = METHOD;
+    solution.order = order;
+    solution.frequency = None;
+    solution.frequency_squared = None;
+    solution.closed_form = Some(ClosedForm { squared: true, value });
+    solution.steps = vec![];
+    solution.displacement = first_correction(&solution.displacement, small, step);
+    solution.validity = vec![
+        format!(
+            "degree {numerator_degree} over degree {denominator_degree} in {variable}: agrees with the exact series through {}",
+            if step == 2 {
+                format!("{small}^{}", 2 * order)
+            } else {
+                format!("{small}^{order}")
+            }
+        ),
+        poles(&below),
+        "the motion is that of Lindstedt-Poincare to its first correction".to_owned(),
+    ];
+    solution.derivation = vec![format!("exact series: omega^2 = {law} + ...")];
+    Ok(solution)
+}
+
+/// The terms of one power of the small parameter, without it.
+fn part(law: &Polynomial, small: Symbol, power: i32) -> Polynomial {
+    let mut part = Polynomial::zero();
+    for (monomial, number) in law.terms().filter(|(monomial, _)| monomial.exponent(small) == power) {
+        part.add_term(monomial.without(small), number.clone());
+    }
+    part
+}
+
+/// `(-1)^j` times the determinant of the rows without column `j`.
+fn cofactor(rows: &[Vec<Polynomial>], j: usize) -> Polynomial {
+    let columns: Vec<usize> = (0..=rows.len()).filter(|&column| column != j).collect();
+    let mut value = determinant(rows, &columns);
+    if j % 2 == 1 {
+        value.negate();
+    }
+    value
+}
+
+/// By expansion along the first row: at most 8! products.
+fn determinant(rows: &[Vec<Polynomial>], columns: &[usize]) -> Polynomial {
+    let Some((first, rest)) = rows.split_first() else {
+        return Polynomial::constant(Rational::one());
+    };
+    let mut sum = Polynomial::zero();
+    for (place, &column) in columns
+        .iter()
+        .enumerate()
+        .filter(|(_, column)| !first[**column].is_zero())
+    {
+        let others: Vec<usize> = columns.iter().copied().filter(|&other| other != column).collect();
+        let mut term = first[column].product(&determinant(rest, &others));
+        if place % 2 == 1 {
+            term.negate();
+        }
+        sum.accumulate(&term);
+    }
+    sum
+}
+
+/// Divides by the first coefficient where that is a single term.
+fn normalise(coefficients: &mut [Polynomial], first: &Polynomial) {
+    let Some((monomial, number)) = first.single_term() else {
+        return;
+    };
+    let (inverse, number) = (monomial.power(-1), number.recip());
+    for coefficient in coefficients {
+        *coefficient = coefficient.times_monomial(&inverse).map(|value| value * &number);
+    }
+}
+
+/// The motion up to the first power of the expansion variable beyond the leading term.
+fn first_correction(motion: &FourierSeries<Polynomial>, small: Symbol, step: i32) -> FourierSeries<Polynomial> {
+    let leading = if small == Symbol::new("A") { 1 } else { 0 };
+    motion.map(|numerator, denominator| {
+        let mut kept = numerator.truncated(small, leading + step);
+        if !kept.is_zero() {
+            kept.divide(denominator);
+        }
+        kept
+    })
+}
+
+/// The real zeros of the denominator, where it depends on one combination of symbols alone.
+fn poles(below: &Polynomial) -> String {
+    let Some((unit, coefficients)) = in_one_variable(below) else {
+        return "where its denominator vanishes the quotient has a pole: none may lie between rest and the amplitude"
+            .to_owned();
+    };
+    let mut roots: Vec<f64> = real_roots(&coefficients);
+    roots.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let name = Expr::from(&Polynomial::term(unit, Rational::one()));
+    match roots.as_slice() {
+        [] => "its denominator has no real zero".to_owned(),
+        roots => {
+            let list: Vec<String> = roots.iter().map(|&root| decimal(root)).collect();
+            format!(
+                "poles at {name} = {}: none may lie between rest and the amplitude",
+                list.join(", ")
+            )
+        }
+    }
+}
+
+/// A polynomial as one in a single product of symbols, lowest power first.
+fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<f64>)> {
+    let unit = polynomial
+        .terms()
+        .map(|(monomial, _)| monomial)
+        .filter(|monomial| !monomial.factors().is_empty())
+        .min_by_key(|monomial| monomial.degree().abs())?
+        .clone();
+    let mut coefficients = Vec::new();
+    for (monomial, number) in polynomial.terms() {
+        let power = (0..=LARGEST_DENOMINATOR as i32).find(|&power| unit.power(power) == *monomial)? as usize;
+        coefficients.resize(coefficients.len().max(power + 1), 0.0);
+        coefficients[power] = to_f64(number);
+    }
+    Some((unit, coefficients))
+}
+
+/// Real roots by the eigenvalues of the companion matrix.
+fn real_roots(coefficients: &[f64]) -> Vec<f64> {
+    let degree = coefficients.len().saturating_sub(1);
+    let Some(&leading) = coefficients.last().filter(|leading| **leading != 0.0) else {
+        return vec![];
+    };
+    let companion = DMatrix::from_fn(degree, degree, |row, column| {
+        if column + 1 == degree {
+            -coefficients[row] / leading
+        } else {
+            f64::from(u8::from(row == column + 1))
+        }
+    });
+    let eigenvalues = companion.complex_eigenvalues();
+    let real = eigenvalues
+        .iter()
+        .filter(|value| value.im.abs() < 1e-9 * (1.0 + value.re.abs()));
+    real.map(|value| value.re).collect()
+}

@@ -1,0 +1,45 @@
+//! Variational iteration: one correction functional, its secular term removed.
+//!
+//! Reference: J.-H. He, *Variational iteration method: a kind of non-linear analytical technique: some examples*, Int. J.
+//! Non-Linear Mech. 34 (1999) 699-708.
+//!
+//! ```text
+//! u_1(t) = u_0(t) + int_0^t lambda [u_0'' + f(u_0)] ds,   lambda = sin(omega (s - t))/omega,   u_0 = A cos(omega t)
+//! f(A cos theta) = sum_k c_k cos(k theta):   no t sin(omega t)   ->   omega^2 = c_1/A
+//! u_1 = A cos theta + sum_(k>1) c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)
+//! ```
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+//! let options = Options { method: Some(Method::VariationalIteration), ..Options::default() };
+//! let solution = solve(&duffing, &options)?;
+//! assert_eq!(solution.frequency_squared.as_ref().unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! assert_eq!(solution.displacement.harmonics()[1].1.to_string(), "eps*A^3/(32*omega^2)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use super::iteration_perturbation::first_iterate;
+use super::one_term::{conservative_force, first_order_only, note_even_part, solve_by_integral};
+use super::{Options, Refusal};
+use crate::oscillator::Oscillator;
+use crate::solution::{Method, Solution};
+
+/// Frequency and motion after one correction.
+///
+/// # Errors
+/// A force that is not conservative, by its term; an order above the first.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::VariationalIteration;
+    first_order_only(options, METHOD)?;
+    let force = conservative_force(oscillator, options, METHOD)?;
+    let mut solution = solve_by_integral(oscillator, options, METHOD)?;
+    first_iterate(&mut solution, oscillator, &force)?;
+    solution.derivation = vec![
+        "u1 = u0 + int_0^t sin(omega*(s - t))/omega*(u0'' + f(u0)) ds, u0 = A*cos(omega*t)".to_owned(),
+        "no term t*sin(omega*t):  omega^2 = c1/A, c1 the cos(theta) part of f(A*cos(theta))".to_owned(),
+    ];
+    solution.validity.retain(|line| !line.starts_with("the even part"));
+    note_even_part(&mut solution, oscillator, &force)?;
+    Ok(solution)
+}

@@ -1,0 +1,242 @@
+//! Every method on one equation, judged against one true motion.
+
+use std::collections::BTreeMap;
+
+use super::validity::{self, Reach, Truth};
+use super::{TrueMotion, Values, Verdict, VerificationError, formula_frequency, formula_motion};
+use crate::method::{Options, Refusal, solve};
+use crate::oscillator::Oscillator;
+use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::symbol::Symbol;
+
+/// A method that applies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// What it derived.
+    pub solution: Solution,
+    /// omega by the formula; `None` where it is not real.
+    pub frequency: Option<f64>,
+    /// `frequency / true_frequency - 1`.
+    pub relative_error: Option<f64>,
+    /// Largest deviation of the motion over one true period, over the amplitude.
+    pub max_deviation: Option<f64>,
+    /// The range in which the frequency is within the tolerance.
+    pub reach: Option<Reach>,
+    /// The verdict on the frequency.
+    pub verdict: Verdict,
+}
+
+/// A method that does not apply.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refused {
+    /// The method.
+    pub method: Method,
+    /// Why not.
+    pub reason: Refusal,
+}
+
+/// The table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The equation as it was understood.
+    pub equation: String,
+    /// The values at which the methods were judged.
+    pub at: Values,
+    /// omega of the true motion.
+    pub true_frequency: f64,
+    /// The tolerance of verdicts and ranges.
+    pub tolerance: f64,
+    /// The methods that apply, in the order of [`Method::ALL`].
+    pub rows: Vec<Row>,
+    /// Those that do not.
+    pub refused: Vec<Refused>,
+    /// Where the true motion is periodic.
+    pub validity: Vec<String>,
+}
+
+/// Why there is no table.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ComparisonError {
+    /// No method applies; the reason of the first.
+    #[error("no method applies: {0}")]
+    NoMethod(Box<Refusal>),
+    /// There is no true motion to compare with.
+    #[error(transparent)]
+    Verification(#[from] VerificationError),
+}
+
+/// The variants of each method that are compared: the defaults and, for parameter expansion, the force as a polynomial as
+/// well as the force as it is.
+fn variants(small: Option<&str>) -> Vec<Options> {
+    let default = |method| Options {
+        method: Some(method),
+        small: small.map(str::to_owned),
+        ..Options::default()
+    };
+    let mut variants = Vec::new();
+    for method in Method::ALL {
+        variants.push(default(method));
+        if method == Method::HomotopyPerturbation {
+            variants.push(Options {
+                order: Some(1),
+                ..default(method)
+            });
+        }
+    }
+    variants
+}
+
+/// Judges every method on `oscillator` at the values `at`.
+///
+/// # Errors
+/// No method applies; values are missing or unknown; no periodic motion there.
+pub fn compare(
+    oscillator: &Oscillator,
+    at: &Values,
+    small: Option<&str>,
+    tolerance: f64,
+) -> Result<Comparison, ComparisonError> {
+    let (mut solutions, mut refused) = (Vec::new(), Vec::new());
+    for options in variants(small) {
+        match (solve(oscillator, &options), options.method) {
+            (Ok(solution), _) => solutions.push(solution),
+            (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
+                refused.push(Refused { method, reason });
+            }
+            (Err(_), _) => {}
+        }
+    }
+    solutions.dedup_by(|second, first| second.method == first.method && second.formula() == first.formula());
+    let Some(first) = solutions.first() else {
+        let reason = refused.into_iter().next().map(|refused| refused.reason);
+        let reason = reason.unwrap_or(Refusal::Order { asked: 0 });
+        return Err(ComparisonError::NoMethod(Box::new(reason)));
+    };
+    let numbers = numbers(first, at)?;
+    let truths = Truths::new(oscillator, &solutions, &numbers)?;
+    let at_amplitude = Truth::new(oscillator, first, &numbers);
+    let rows = solutions
+        .iter()
+        .map(|solution| row(oscillator, solution, &numbers, &truths, &at_amplitude, tolerance))
+        .collect();
+    let validity = validity::of_equation(oscillator, first, &numbers);
+    Ok(Comparison {
+        equation: first.equation.clone(),
+        at: at.clone(),
+        true_frequency: truths.initial.frequency,
+        tolerance,
+        rows,
+        refused,
+        validity: validity.into_iter().map(|range| range.text).collect(),
+    })
+}
+
+/// The values as numbers, checked for what is missing, unknown or at rest.
+fn numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
+    super::checked_numbers(solution, at)
+}
+
+/// The true motions that the answers are meant for: from a given start, or with a given first harmonic.
+struct Truths {
+    initial: TrueMotion,
+}
+
+impl Truths {
+    fn new(
+        oscillator: &Oscillator,
+        solutions: &[Solution],
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
+        let first = solutions.first().ok_or(VerificationError::AtRest)?;
+        Ok(Self {
+            initial: TrueMotion::of(oscillator, first, numbers)?,
+        })
+    }
+}
+
+fn row(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    truths: &Truths,
+    truth: &Truth,
+    tolerance: f64,
+) -> Row {
+    let true_frequency = truths.initial.frequency;
+    let frequency = formula_frequency(oscillator, solution, numbers);
+    let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
+    let max_deviation = formula_motion(oscillator, solution, numbers)
+        .map(|(frequency, motion)| truths.initial.largest_deviation(frequency, &motion))
+        .filter(|deviation| deviation.is_finite());
+    let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
+    let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
+    Row {
+        solution: solution.clone(),
+        frequency,
+        relative_error,
+        max_deviation,
+        reach: match free {
+            true => validity::reach(oscillator, solution, truth, tolerance),
+            false => None,
+        },
+        verdict: if pass { Verdict::Pass } else { Verdict::Fail },
+    }
+}
+
+/// One curve of omega against the amplitude.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Backbone {
+    /// The methods that share it.
+    pub methods: Vec<String>,
+    /// Amplitude and frequency.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// omega against the amplitude: the truth, and every method of the table; methods with one and the same curve together.
+pub fn backbones(
+    oscillator: &Oscillator,
+    comparison: &Comparison,
+) -> Result<(Backbone, Vec<Backbone>), ComparisonError> {
+    const POINTS: usize = 120;
+    let first = &comparison.rows.first().ok_or(VerificationError::AtRest)?.solution;
+    let numbers = numbers(first, &comparison.at)?;
+    let truth = Truth::new(oscillator, first, &numbers);
+    let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
+    // To the escape, or to twice the amplitude asked for.
+    let last = f64::min(truth.largest_amplitude() * 0.995, 2.0 * asked);
+    let amplitudes: Vec<f64> = (1..=POINTS).map(|k| last * k as f64 / POINTS as f64).collect();
+    let curve = |of: &dyn Fn(f64) -> Option<f64>| -> Vec<(f64, f64)> {
+        amplitudes
+            .iter()
+            .map_while(|&amplitude| Some((amplitude, of(amplitude)?)))
+            .collect()
+    };
+    let true_curve = Backbone {
+        methods: vec!["true motion".to_owned()],
+        points: curve(&|amplitude| truth.frequency(amplitude)),
+    };
+    let mut curves: Vec<Backbone> = Vec::new();
+    for row in comparison
+        .rows
+        .iter()
+        .filter(|row| row.solution.method != Method::Exact)
+    {
+        let points = curve(&|amplitude| formula_frequency(oscillator, &row.solution, &truth.numbers_at(amplitude)));
+        let same = |known: &&mut Backbone| {
+            known.points.len() == points.len()
+                && known
+                    .points
+                    .iter()
+                    .zip(&points)
+                    .all(|(a, b)| (a.1 - b.1).abs() <= 1e-9 * b.1.abs())
+        };
+        match curves.iter_mut().find(same) {
+            Some(known) => known.methods.push(row.solution.title()),
+            None => curves.push(Backbone {
+                methods: vec![row.solution.title()],
+                points,
+            }),
+        }
+    }
+    Ok((true_curve, curves))
+}

@@ -15,7 +15,7 @@ fn cases() -> u32 {
     std::env::var("LINDSTEDT_FUZZ_CASES")
         .ok()
         .and_then(|number| number.parse().ok())
-        .unwrap_or(300)
+        .unwrap_or(150)
 }
 
 /// Pieces of equations, right and wrong, in any order.
@@ -69,6 +69,9 @@ fn answer(equation: &str) {
                 amplitude: Some(amplitude),
                 ..Options::default()
             };
+            if std::env::var_os("LINDSTEDT_FUZZ_TRACE").is_some() {
+                eprintln!("{} {equation}", method.name());
+            }
             match solve(&oscillator, &options) {
                 Err(refusal) => assert!(!refusal.to_string().is_empty()),
                 Ok(solution) => {

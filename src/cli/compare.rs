@@ -80,5 +80,6 @@ fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, F
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
     let caption = format!("{}; {}", comparison.equation, at.join(", "));
-    backbone_figure(&truth, &curves, &caption).map_err(|error| Failure::refused(&error, None))
+    let marked = comparison.at.get("A".into()).map(f64::abs);
+    backbone_figure(&truth, &curves, marked, &caption).map_err(|error| Failure::refused(&error, None))
 }

@@ -22,7 +22,7 @@ use crate::symbol::Symbol;
 /// ```
 /// use lindstedt::{conservative::potential::potential, expr::Expr};
 /// let force: Expr = "sin(x) + eps*x^3".parse().unwrap();
-/// assert_eq!(potential(&force, "x".into()).unwrap().to_string(), "-cos(x) + eps*x^4/4");
+/// assert_eq!(potential(&force, "x".into()).unwrap().to_string(), "eps*x^4/4 - cos(x)");
 /// ```
 pub fn potential(force: &Expr, coordinate: Symbol) -> Option<Expr> {
     let terms = |force: &Expr| -> Option<Expr> {

@@ -237,20 +237,40 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     figure(&panels, data.caption)
 }
 
-/// omega against the amplitude, every method over the true motion, and below it the error on a logarithmic axis.
+/// omega against the amplitude, every method over the true motion, and below it the error on a logarithmic axis. Methods
+/// with one and the same law share a curve, and the caption names them. `marked` is the amplitude of the table.
 ///
 /// # Errors
 /// As [`figure`].
-pub fn backbone_figure(truth: &Backbone, curves: &[Backbone], caption: &str) -> Result<String, FigureError> {
+pub fn backbone_figure(
+    truth: &Backbone,
+    curves: &[Backbone],
+    marked: Option<f64>,
+    caption: &str,
+) -> Result<String, FigureError> {
+    /// Errors in per cent below which rounding of truth and formula shows.
+    const LEAST_ERROR: f64 = 1e-10;
     let drawn: Vec<&Backbone> = curves.iter().filter(|backbone| backbone.points.len() > 1).collect();
-    let labels: Vec<String> = drawn.iter().map(|backbone| backbone.methods.join(", ")).collect();
+    let mut caption = caption.to_owned();
+    let label = |backbone: &&Backbone| match backbone.methods.as_slice() {
+        [only] => only.clone(),
+        [first, second] => format!("{first}; {second}"),
+        methods => {
+            caption.push_str(&format!(
+                ". One law of {} methods: {}",
+                methods.len(),
+                methods.join("; ")
+            ));
+            format!("one law of {} methods", methods.len())
+        }
+    };
+    let labels: Vec<String> = drawn.iter().map(label).collect();
     let errors: Vec<Vec<(f64, f64)>> = drawn
         .iter()
         .map(|backbone| {
             let pairs = backbone.points.iter().zip(&truth.points);
-            pairs
-                .map(|(formula, truth)| (formula.0, 100.0 * (formula.1 / truth.1 - 1.0).abs()))
-                .collect()
+            let error = pairs.map(|(formula, truth)| (formula.0, 100.0 * (formula.1 / truth.1 - 1.0).abs()));
+            error.filter(|point| point.1 > LEAST_ERROR).collect()
         })
         .collect();
     let style = |index: usize| CurveStyle::SERIES[index % CurveStyle::SERIES.len()];
@@ -258,30 +278,25 @@ pub fn backbone_figure(truth: &Backbone, curves: &[Backbone], caption: &str) -> 
     let mut deviations = Vec::new();
     for (index, backbone) in drawn.iter().enumerate() {
         frequencies.push(curve(&labels[index], &backbone.points, style(index)));
-        // Errors below rounding have no place on a logarithmic axis.
-        let visible = errors[index].iter().filter(|point| point.1 > 1e-9).count();
-        if visible > 1 {
+        if errors[index].len() > 1 {
             deviations.push(curve(&labels[index], &errors[index], style(index)));
         }
     }
     let amplitude = "amplitude A";
+    let mark = || marked.map(|at| Guide::X(at, "")).into_iter();
     let mut panels = vec![panel(
         "Frequency",
         [amplitude, "frequency \u{3c9}"],
         frequencies,
-        vec![],
+        mark().collect(),
     )];
     if !deviations.is_empty() {
-        let mut below = panel(
-            "Error",
-            [amplitude, "|error| of \u{3c9} (%)"],
-            deviations,
-            vec![Guide::Y(1.0, "1 %")],
-        );
+        let guides = mark().chain([Guide::Y(1.0, "")]).collect();
+        let mut below = panel("Error", [amplitude, "|error| of \u{3c9} (%)"], deviations, guides);
         below.y_scale = Scale::Logarithmic;
         panels.push(below);
     }
-    stacked(&panels, caption)
+    stacked(&panels, &caption)
 }
 
 /// Width of the page in units of 1/96 inch (190 mm), and its margin.

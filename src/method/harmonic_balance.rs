@@ -32,7 +32,7 @@ use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
-use crate::expr::Expr;
+use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{Method, Solution, System};
@@ -96,6 +96,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
         Some(equations) => {
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
+            if equations
+                .iter()
+                .any(|equation| equation.contains_function(Function::Acos))
+            {
+                solution.validity.push("the arcs are written for a1 > 0".to_owned());
+            }
             solution.system = Some(System { unknowns, equations });
         }
         None => {

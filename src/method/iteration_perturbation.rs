@@ -38,6 +38,9 @@ const METHOD: Method = Method::IterationPerturbation;
 /// The most passes: the number of harmonics grows with their power.
 const MOST_PASSES: u32 = 3;
 
+/// The most harmonics after the last pass of a polynomial force.
+const MOST_HARMONICS: usize = 125;
+
 /// Harmonics of the first iterate kept where the force has infinitely many.
 const HIGHEST_HARMONIC: usize = 5;
 
@@ -131,6 +134,11 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
         force: force.to_string(),
     };
     let coefficients = polynomial_coefficients(oscillator, force)?.ok_or_else(not_polynomial)?;
+    // Every pass multiplies the number of harmonics by the degree.
+    let degree = coefficients.len().saturating_sub(1);
+    if degree.saturating_pow(passes) > MOST_HARMONICS {
+        return Err(Refusal::TooLong { terms: MOST_TERMS });
+    }
     let squared = FourierSeries::constant(
         Polynomial::term(Monomial::power_of(omega, 2), Rational::one()),
         Integer::one(),

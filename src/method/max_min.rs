@@ -22,10 +22,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use num_traits::Zero;
+use num_traits::{Signed, Zero};
 
 use super::one_term::{conservative_force, first_order_only, require_odd, solve_by_integral};
 use super::{Options, Refusal};
+use crate::conservative::{split, take_powers};
 use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -94,7 +95,21 @@ fn stiffness_at_rest(quotient: &Expr, force: &Expr, oscillator: &Oscillator) -> 
     if let Ok(value) = quotient.substitute(oscillator.coordinate, &Expr::zero()) {
         return Some(value);
     }
-    let parts = taylor(force, &[(oscillator.coordinate, Rational::zero())], 1).ok()?;
-    let slope = Expr::divide(parts.get(1)?, &Expr::from(oscillator.coordinate)).ok()?;
-    slope.expand().ok()
+    let coordinate = oscillator.coordinate;
+    if let Ok(parts) = taylor(force, &[(coordinate, Rational::zero())], 1) {
+        let slope = Expr::divide(parts.get(1)?, &Expr::from(coordinate)).ok()?;
+        return slope.expand().ok();
+    }
+    // Powers of |x| above zero vanish at rest, whatever they are.
+    let term = |term: &Expr| {
+        let (mut outside, mut inside) = split(term, coordinate);
+        let power = take_powers(&mut inside, &mut outside, coordinate)?;
+        match (inside.is_empty(), power.exponent.is_positive()) {
+            (true, true) => Some(Expr::zero()),
+            (true, false) if power.exponent.is_zero() && !power.odd => Some(outside),
+            _ => None,
+        }
+    };
+    let terms = quotient.terms().iter().map(term).collect::<Option<Vec<_>>>()?;
+    Some(Expr::sum(terms))
 }

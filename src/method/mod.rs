@@ -289,6 +289,9 @@ fn numerical_degree(method: Method, options: &Options) -> u32 {
             let (numerator, denominator) = options.pade.unwrap_or((2, 1));
             2 * (numerator + denominator) + 1
         }
+        Method::IterationPerturbation | Method::ParameterExpansion if options.order.is_some_and(|order| order > 1) => {
+            2 * options.order.unwrap_or(1) + 1
+        }
         _ => options.taylor.unwrap_or(AS_IT_IS),
     }
 }

@@ -89,13 +89,13 @@ fn contains(solution: &Solution, symbol: Symbol) -> bool {
             .any(|entry| entry.1.symbols().contains(&symbol))
 }
 
-/// Laws in closed form hold for positive amplitudes: a negative one is half a period away.
+/// Laws of one term are written for positive amplitudes: a negative one is half a period away.
 fn by_size(solution: &Solution) -> bool {
-    solution.closed_form.is_some()
+    solution.relation.is_none()
         && solution.amplitude == AmplitudeConvention::Initial
         && !matches!(
             solution.method,
-            Method::Pade | Method::HomotopyPerturbation | Method::LindstedtPoincare
+            Method::Pade | Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::LindstedtPoincare
         )
 }
 

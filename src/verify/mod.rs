@@ -185,7 +185,12 @@ pub enum VerificationError {
 /// The symbols that need a value before `solution` can be judged.
 pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     let mut needed = solution.parameters.clone();
-    if solution.limit_cycle.is_none() && solution.depends_on_amplitude() {
+    // A law such as omega^2 = 1 for x'' + x + x^2 = 0 is free of A where the true motion is not.
+    let linear = || {
+        let oscillator = Oscillator::parse(&solution.equation);
+        oscillator.is_ok_and(|oscillator| matches!(oscillator.polynomial_degree(), Ok(Some(0 | 1))))
+    };
+    if solution.limit_cycle.is_none() && (solution.depends_on_amplitude() || !linear()) {
         needed.push(solution.amplitude.symbol());
     }
     needed

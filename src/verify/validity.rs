@@ -20,7 +20,7 @@ use super::{VerificationError, formula_frequency, true_frequency};
 use crate::decimal::significant;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
-use crate::method::one_term::compiled;
+use crate::method::one_term::{coefficient_by_quadrature, compiled};
 use crate::method::{Options, solve};
 use crate::ode::quadrature::integrate_smooth;
 use crate::ode::root::find_root;
@@ -207,6 +207,7 @@ pub(super) fn ranges(
     let Some(&amplitude) = numbers.get(&solution.amplitude.symbol()) else {
         return ranges;
     };
+    ranges.extend(integral_error(oscillator, solution, numbers));
     let truth = Truth::new(oscillator, solution, numbers);
     let limit = truth.largest_amplitude();
     ranges.extend(vanishing(oscillator, solution, numbers, limit));
@@ -238,6 +239,24 @@ pub(super) fn of_equation(
     Some(Range {
         text,
         outside: amplitude.abs() >= well.escape,
+    })
+}
+
+/// How good the integral of a law by quadrature is.
+fn integral_error(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
+    let one_term = solution.by_quadrature.is_some()
+        && !matches!(
+            solution.method,
+            Method::Exact | Method::HarmonicBalance | Method::EnergyBalance
+        );
+    let amplitude = numbers.get(&solution.amplitude.symbol()).filter(|_| one_term)?.abs();
+    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
+    let force = compiled(oscillator, &oscillator.force, numbers)?;
+    let (value, change) = coefficient_by_quadrature(&|y| force(equilibrium + y), amplitude, 1);
+    let error = (change / value).abs().max(1e-15);
+    Some(Range {
+        text: format!("the integral of the law is good to {error:.0e}"),
+        outside: error > 1e-6,
     })
 }
 

@@ -5,8 +5,10 @@ use lindstedt::Oscillator;
 use lindstedt::contact::hertz::Design;
 use lindstedt::contact::linearisation::Rule;
 use lindstedt::impact::{self, Setup};
-use lindstedt::method::{Options, solve};
+use lindstedt::method::{Options, numbers, solve};
 use lindstedt::solution::Method;
+use lindstedt::verify::Values;
+use lindstedt::verify::comparison::compare;
 
 fn derivations(criterion: &mut Criterion) {
     for (name, equation, method, order) in [
@@ -56,6 +58,32 @@ fn derivations(criterion: &mut Criterion) {
     }
 }
 
+/// The balance of many harmonics, and the whole table.
+fn methods(criterion: &mut Criterion) {
+    for (name, equation) in [("Duffing", "x'' + x + x^3 = 0"), ("pendulum", "x'' + sin(x) = 0")] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let options = Options {
+            method: Some(Method::HarmonicBalance),
+            order: Some(20),
+            ..Options::default()
+        };
+        let at = [("A".into(), 2.0)].into();
+        criterion.bench_function(&format!("20 harmonics balanced, {name}"), |bencher| {
+            bencher.iter(|| {
+                let solution = solve(&oscillator, &options).expect("a balance");
+                numbers::evaluate(&oscillator, &solution, &at).expect("numbers")
+            });
+        });
+        let mut values = Values::default();
+        values
+            .insert("A".into(), "3/2".parse().expect("a number"))
+            .expect("a value");
+        criterion.bench_function(&format!("every method compared, {name}"), |bencher| {
+            bencher.iter(|| compare(&oscillator, &values, None, 0.01).expect("a table"));
+        });
+    }
+}
+
 fn contact(criterion: &mut Criterion) {
     let stiffness = Design::default().stiffness().expect("a stiffness");
     criterion.bench_function("impact of the paper", |bencher| {
@@ -77,6 +105,6 @@ fn contact(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = derivations, contact
+    targets = derivations, methods, contact
 }
 criterion_main!(benches);

@@ -205,6 +205,8 @@ pub struct Solution {
     pub method: Method,
     /// Highest power kept, inclusive, of the small parameter.
     pub order: u32,
+    /// Degrees of numerator and denominator of a Pade approximant.
+    pub degrees: Option<(u32, u32)>,
     /// The parameter in which the expansion runs; the amplitude symbol where it runs in the amplitude.
     pub small_parameter: Symbol,
     /// What the amplitude symbol measures.
@@ -326,7 +328,11 @@ impl Solution {
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method {
-            Method::LindstedtPoincare | Method::Pade => format!("to order {order} in {}", self.small_parameter),
+            Method::Pade => {
+                let (numerator, denominator) = self.degrees.unwrap_or((order, 0));
+                format!("[{numerator}/{denominator}]")
+            }
+            Method::LindstedtPoincare => format!("to order {order} in {}", self.small_parameter),
             Method::HomotopyPerturbation | Method::ParameterExpansion => format!("to order {order} in p"),
             Method::HomotopyAnalysis => format!("to order {order} in q"),
             Method::IterationPerturbation if order == 1 => "after one pass".to_owned(),

@@ -70,7 +70,8 @@ fn rounded(value: &mut Value) {
                 *slope = format!("{number:.2}").into();
             }
             for (key, entry) in map.iter_mut() {
-                let noise = key.ends_with("_error") && entry.as_f64().is_some_and(|error| error.abs() < 1e-8);
+                let noise = (key.ends_with("_error") || key == "max_deviation" || key == "residual")
+                    && entry.as_f64().is_some_and(|error| error.abs() < 1e-8);
                 if noise { *entry = "noise".into() } else { rounded(entry) }
             }
         }
@@ -90,6 +91,26 @@ fn every_example_prints_what_it_printed() {
             rounded(&mut document);
             insta::assert_json_snapshot!("json", document);
         });
+    });
+}
+
+/// The table of every method in text, LaTeX and JSON.
+#[test]
+fn every_comparison_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/compare"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("compare-text", output(&["compare", path]));
+                insta::assert_snapshot!("compare-latex", output(&["compare", path, "--format", "latex"]));
+                let mut document: Value =
+                    serde_json::from_str(&output(&["compare", path, "--format", "json"])).expect("the output is JSON");
+                rounded(&mut document);
+                insta::assert_json_snapshot!("compare-json", document);
+            }
+        );
     });
 }
 
@@ -130,6 +151,7 @@ fn help_says_what_there_is() {
     snapshots(|| {
         insta::assert_snapshot!("help", output(&["--help"]));
         insta::assert_snapshot!("help-derive", output(&["derive", "--help"]));
+        insta::assert_snapshot!("help-compare", output(&["compare", "--help"]));
         insta::assert_snapshot!("help-impact", output(&["impact", "--help"]));
         insta::assert_snapshot!("help-catalog", output(&["catalog", "--help"]));
         insta::assert_snapshot!("catalog", output(&["catalog"]));
@@ -164,6 +186,24 @@ fn exit_codes_are_those_of_the_manual() {
         (vec!["derive", "x'' + eps*x^3 + x", "--at", "A=1"], 1),
         (vec!["derive", "x'' + sin(x) = 0", "--at", "B=1"], 2),
         (vec!["derive", "x'' + sin(x) = 0", "--method", "magic"], 2),
+        (vec!["compare", "pendulum", "--at", "A=1.5"], 0),
+        (vec!["compare", "pendulum", "--at", "A=1.5", "--tolerance", "0.01"], 3),
+        (vec!["compare", "pendulum", "--at", "A=1", "--tolerance", "0.01"], 0),
+        (vec!["compare", "pendulum", "--at", "A=4"], 1),
+        (vec!["compare", "duffing", "--at", "A=1"], 2),
+        (vec!["compare", "damped-pendulum", "--at", "A=1", "--at", "zeta=0.1"], 1),
+        (vec!["derive", "duffing", "--method", "pade", "--order", "3,2"], 0),
+        (vec!["derive", "duffing", "--method", "pade", "--order", "3"], 2),
+        (vec!["derive", "duffing", "--order", "3,2"], 2),
+        (
+            vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "-1"],
+            0,
+        ),
+        (vec!["derive", "duffing", "--hbar", "-1"], 2),
+        (
+            vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "x"],
+            2,
+        ),
         (vec!["impact", "--tolerance", "0.1"], 0),
         (vec!["impact", "--tolerance", "0.01"], 3),
         (vec!["imapct"], 2),
@@ -206,6 +246,26 @@ fn latex_documents() -> Vec<(String, String)> {
         ];
         documents.push((method.to_owned(), output(&steps)));
     }
+    for problem in ["duffing", "pendulum", "quadratic"] {
+        let path = format!("{folder}/compare/{problem}.toml");
+        documents.push((
+            format!("compare {problem}"),
+            output(&["compare", &path, "--format", "latex"]),
+        ));
+    }
+    for method in [
+        "harmonic-balance",
+        "exact",
+        "pade",
+        "energy-balance",
+        "iteration-perturbation",
+        "homotopy-analysis",
+    ] {
+        for equation in ["pendulum", "duffing"] {
+            let arguments = ["derive", equation, "--method", method, "--steps", "--format", "latex"];
+            documents.push((format!("{method} {equation}"), output(&arguments)));
+        }
+    }
     documents.push(("catalog".to_owned(), output(&["catalog", "--format", "latex"])));
     documents.sort();
     documents
@@ -213,7 +273,9 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 49] = [
+    const COMMANDS: [&str; 51] = [
+        "hbar",
+        "Gamma",
         "begin",
         "item",
         "end",
@@ -280,7 +342,8 @@ fn latex_is_balanced_and_uses_known_commands_only() {
             assert!(delimiters >= 0, "{name}: \\right without \\left");
         }
         assert_eq!(delimiters, 0, "{name}: \\left without \\right");
-        assert!(text.contains("\\begin{align*}") || name == "catalog", "{name}");
+        let aligned = text.contains("\\begin{align*}");
+        assert!(aligned || name == "catalog" || name.starts_with("compare"), "{name}");
         assert!(text.matches("\\begin{").count() == text.matches("\\end{").count());
     }
 }
@@ -316,7 +379,11 @@ fn latex_compiles_where_latex_is() {
 fn pictures_are_drawn_and_the_same_on_every_run() {
     let folder = std::env::temp_dir().join(format!("lindstedt-pictures-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for pictures");
-    for arguments in [vec!["impact"], vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5"]] {
+    for arguments in [
+        vec!["impact"],
+        vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5"],
+        vec!["compare", "x'' + x + x^3 = 0", "--at", "A=1.5"],
+    ] {
         let draw = |name: &str| {
             let path = folder.join(name);
             let mut arguments = arguments.clone();
@@ -325,7 +392,12 @@ fn pictures_are_drawn_and_the_same_on_every_run() {
             std::fs::read_to_string(path).expect("the picture was written")
         };
         let picture = draw("first.svg");
-        assert!(picture.contains("<svg") && picture.contains("Runge-Kutta"));
+        let truth = if arguments[0] == "compare" {
+            "true motion"
+        } else {
+            "Runge-Kutta"
+        };
+        assert!(picture.contains("<svg") && picture.contains(truth));
         assert_eq!(picture, draw("second.svg"));
     }
     std::fs::remove_dir_all(folder).expect("the folder goes");

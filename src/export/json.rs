@@ -93,6 +93,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Val
         "equation": solution.equation,
         "method": solution.method.name(),
         "order": solution.order,
+        "degrees": solution.degrees.map(|(numerator, denominator)| json!([numerator, denominator])),
         "small_parameter": small.name(),
         "amplitude": solution.amplitude.name(),
         "parameters": names,
@@ -139,6 +140,7 @@ pub fn comparison(comparison: &Comparison) -> Value {
         json!({
             "method": row.solution.method.name(),
             "order": row.solution.order,
+            "degrees": row.solution.degrees.map(|(numerator, denominator)| json!([numerator, denominator])),
             "applies": true,
             "reason": null,
             "formula": row.solution.formula(),
@@ -373,6 +375,7 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         equation: text(document, "equation")?.to_owned(),
         method,
         order: order.map_or_else(|| unexpected("order", "a whole number"), Ok)?,
+        degrees: read_degrees(&document["degrees"])?,
         small_parameter: Symbol::new(text(document, "small_parameter")?),
         amplitude,
         parameters: strings("parameters")?.iter().map(|name| Symbol::new(name)).collect(),
@@ -391,6 +394,17 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         steps: vec![],
         derivation: vec![],
     })
+}
+
+fn read_degrees(value: &Value) -> Result<Option<(u32, u32)>, JsonError> {
+    if value.is_null() {
+        return Ok(None);
+    }
+    let degree = |index: usize| value[index].as_u64().and_then(|degree| u32::try_from(degree).ok());
+    match (degree(0), degree(1)) {
+        (Some(numerator), Some(denominator)) => Ok(Some((numerator, denominator))),
+        _ => unexpected("degrees", "two whole numbers"),
+    }
 }
 
 fn read_closed_form(value: &Value) -> Result<Option<ClosedForm>, JsonError> {

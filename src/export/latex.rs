@@ -152,6 +152,7 @@ pub fn symbol(symbol: Symbol) -> String {
     };
     let letter = match stem {
         "eps" | "epsilon" => "\\varepsilon".to_owned(),
+        "hbar" => "\\hbar".to_owned(),
         _ if GREEK.contains(&stem) => format!("\\{stem}"),
         _ if stem.chars().count() == 1 => stem.to_owned(),
         _ => format!("\\mathrm{{{}}}", stem.replace('_', "\\_")),

@@ -27,6 +27,14 @@ pub fn percent(error: f64) -> String {
     format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
 }
 
+/// A size in percent: `2.86 %`; what is rounding is called that.
+fn size_in_percent(size: f64) -> String {
+    match size < 1e-9 {
+        true => "< 1e-7 %".to_owned(),
+        false => format!("{} %", significant(100.0 * size, 3)),
+    }
+}
+
 /// The derived formula, and the verdict where it was judged.
 pub fn solution(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> String {
     let mut text = format!("{}\n\n", solution.equation);
@@ -236,17 +244,11 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     if let Some(deviation) = verification.max_deviation {
         line(
             "largest deviation",
-            format!(
-                "{} % of the amplitude over one period",
-                significant(100.0 * deviation, 3)
-            ),
+            format!("{} of the amplitude over one period", size_in_percent(deviation)),
         );
     }
     if let Some(residual) = verification.residual {
-        line(
-            "residual",
-            format!("{} % of the force (rms)", significant(100.0 * residual, 3)),
-        );
+        line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
     }
     line(
         "slope of the error",
@@ -296,8 +298,7 @@ pub fn comparison(comparison: &Comparison) -> String {
     let within = format!("{} % up to", significant(100.0 * comparison.tolerance, 3));
     let header = ["method", "omega", "error", "deviation", "verdict", &within, "formula"].map(str::to_owned);
     let row = |row: &Row| {
-        let percent_of =
-            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{} %", significant(100.0 * value, 3)));
+        let percent_of = |value: Option<f64>| value.map_or("-".to_owned(), size_in_percent);
         [
             row.solution.title(),
             row.frequency.map_or("not real".to_owned(), decimal),

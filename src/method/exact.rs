@@ -152,7 +152,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
 fn of_power(coefficient: &Expr, n: &Rational) -> Result<Expr, ExprError> {
     let next = n + Rational::one();
     let gamma = |argument: Rational| Expr::function(Function::Gamma, vec![Expr::number(argument)]);
-    let scale = (Expr::pi() * coefficient * Expr::number(&next / ratio(2, 1))).sqrt()?;
+    let scale = Expr::pi().sqrt()? * (coefficient * &Expr::number(&next / ratio(2, 1))).sqrt()?;
     let amplitude = Expr::power(&Expr::symbol("A"), &Expr::number((n - Rational::one()) / ratio(2, 1)))?;
     let inverse = next.recip();
     Expr::divide(&(scale * amplitude * gamma(ratio(1, 2) + &inverse)?), &gamma(inverse)?)

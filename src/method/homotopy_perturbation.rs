@@ -12,6 +12,14 @@
 //! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at order one, a square root at
 //! order two, implicit above. In units of omega^2 this is [`secular::expand`](super::secular::expand) with the corrections
 //! before `y` instead of `y''`. A force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`.
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let cubic = Oscillator::parse("x'' + x - x^3/6 = 0")?;
+//! let options = Options { method: Some(Method::HomotopyPerturbation), order: Some(1), ..Options::default() };
+//! assert_eq!(solve(&cubic, &options)?.frequency_squared.unwrap().to_string(), "1 - A^2/8");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use num_traits::{One, Zero};
 
@@ -101,6 +109,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         equation: oscillator.equation(),
         method: Method::HomotopyPerturbation,
         order,
+        degrees: None,
         small_parameter: small,
         amplitude: AmplitudeConvention::Initial,
         parameters: oscillator.parameters.clone(),

@@ -14,6 +14,15 @@
 //!
 //! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the first order,
 //! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`.
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+//! let options = Options { method: Some(Method::LindstedtPoincare), order: Some(2), ..Options::default() };
+//! let law = solve(&duffing, &options)?.frequency.unwrap();
+//! assert_eq!(law.to_string(), "1 + 3*eps*A^2/8 - 21*eps^2*A^4/256");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use num_bigint::BigInt;
 use num_integer::Integer as _;
@@ -124,6 +133,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         equation: oscillator.equation(),
         method: Method::LindstedtPoincare,
         order,
+        degrees: None,
         small_parameter: delta,
         amplitude: convention,
         parameters: oscillator.parameters.clone(),

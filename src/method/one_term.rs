@@ -100,6 +100,7 @@ pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Metho
         equation: oscillator.equation(),
         method,
         order,
+        degrees: None,
         small_parameter: small,
         amplitude: AmplitudeConvention::Initial,
         parameters: oscillator.parameters.clone(),

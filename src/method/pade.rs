@@ -114,6 +114,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.method = METHOD;
     solution.order = order;
+    solution.degrees = Some((numerator_degree, denominator_degree));
     solution.frequency = None;
     solution.frequency_squared = None;
     solution.closed_form = Some(ClosedForm { squared: true, value });

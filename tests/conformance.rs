@@ -260,7 +260,8 @@ fn barriers_by_arcs() {
 /// The formulas of He's family on Duffing and the pendulum, by hand.
 #[test]
 fn laws_derived_by_hand() {
-    let cases: [(&str, Method, &dyn Fn(f64) -> f64); 9] = [
+    type Case<'a> = (&'a str, Method, &'a dyn Fn(f64) -> f64);
+    let cases: [Case; 9] = [
         ("x'' + sin(x) = 0", Method::EnergyBalance, &|a| {
             4.0 * ((a / 2f64.sqrt()).cos() - a.cos()) / (a * a)
         }),

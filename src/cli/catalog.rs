@@ -52,13 +52,45 @@ fn text(entry: &Entry) -> String {
         format!("  {}", entry.source),
     ];
     lines.extend(published(entry).map(|law| format!("  published: {law}")));
+    let (mut applying, mut refused): (Vec<&str>, Vec<(String, Vec<&str>)>) = (vec![], vec![]);
     for (method, result) in methods(entry) {
-        lines.push(match result {
-            Ok(()) => format!("  {}", method.name()),
-            Err(refusal) => format!("  not {}: {refusal}", method.name()),
-        });
+        let Err(refusal) = result else {
+            applying.push(method.name());
+            continue;
+        };
+        let reason = refusal.reason(method);
+        match refused.iter_mut().find(|known| known.0 == reason) {
+            Some(known) => known.1.push(method.name()),
+            None => refused.push((reason, vec![method.name()])),
+        }
+    }
+    lines.extend(wrapped("  by ", &applying, ""));
+    for (reason, names) in refused {
+        lines.extend(wrapped("  not by ", &names, &format!(": {reason}")));
     }
     lines.join("\n") + "\n"
+}
+
+/// Names after a beginning, broken into lines of about a hundred characters, and an end.
+fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
+    const WIDTH: usize = 100;
+    let mut lines = vec![start.to_owned()];
+    for (index, name) in names.iter().enumerate() {
+        let separator = if index + 1 < names.len() { ", " } else { end };
+        let full = lines.last().is_some_and(|line| line.len() + name.len() > WIDTH);
+        if full {
+            lines.push("    ".to_owned());
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push_str(name);
+            line.push_str(separator);
+        }
+    }
+    if names.is_empty() {
+        vec![]
+    } else {
+        lines.iter().map(|line| line.trim_end().to_owned()).collect()
+    }
 }
 
 /// Equation and published law; titles and sources hold nothing that LaTeX reads as a command.

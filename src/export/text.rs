@@ -326,7 +326,7 @@ pub fn comparison(comparison: &Comparison) -> String {
                 text,
                 "  {:<width$}  {}",
                 refused.method.title(),
-                refused.reason,
+                refused.reason.reason(refused.method),
                 width = widths[0]
             );
         }

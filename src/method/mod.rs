@@ -172,6 +172,13 @@ pub enum Refusal {
 }
 
 impl Refusal {
+    /// The message without the name of the method at its head, for lists that name it already.
+    pub fn reason(&self, method: Method) -> String {
+        let text = self.to_string();
+        text.strip_prefix(method.title())
+            .map_or(text.clone(), |rest| rest.trim_start().to_owned())
+    }
+
     /// A way forward, where one is known.
     pub fn help(&self) -> Option<String> {
         match self {

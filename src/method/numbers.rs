@@ -102,7 +102,7 @@ fn by_size(solution: &Solution) -> bool {
 fn frequency_squared(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let amplitude = solution.amplitude.symbol();
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
-    let sized = by_size(solution) && !(solution.method == Method::Exact && !odd_equation(solution));
+    let sized = by_size(solution) && (solution.method != Method::Exact || odd_equation(solution));
     solution.frequency_squared_at(&|symbol| {
         let value = numbers.get(&symbol).copied()?;
         Some(if sized && symbol == amplitude {

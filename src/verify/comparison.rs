@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::validity::{self, Reach, Truth};
-use super::{TrueMotion, Values, Verdict, VerificationError, formula_frequency, formula_motion};
+use super::{TrueMotion, Values, Verdict, VerificationError, checked_numbers, formula_frequency, formula_motion};
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -112,18 +112,18 @@ pub fn compare(
         let reason = reason.unwrap_or(Refusal::Order { asked: 0 });
         return Err(ComparisonError::NoMethod(Box::new(reason)));
     };
-    let numbers = numbers(first, at)?;
-    let truths = Truths::new(oscillator, &solutions, &numbers)?;
+    let numbers = checked_numbers(first, at)?;
+    let true_motion = TrueMotion::of(oscillator, first, &numbers)?;
     let at_amplitude = Truth::new(oscillator, first, &numbers);
     let rows = solutions
         .iter()
-        .map(|solution| row(oscillator, solution, &numbers, &truths, &at_amplitude, tolerance))
+        .map(|solution| row(oscillator, solution, &numbers, &true_motion, &at_amplitude, tolerance))
         .collect();
     let validity = validity::of_equation(oscillator, first, &numbers);
     Ok(Comparison {
         equation: first.equation.clone(),
         at: at.clone(),
-        true_frequency: truths.initial.frequency,
+        true_frequency: true_motion.frequency,
         tolerance,
         rows,
         refused,
@@ -131,42 +131,19 @@ pub fn compare(
     })
 }
 
-/// The values as numbers, checked for what is missing, unknown or at rest.
-fn numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
-    super::checked_numbers(solution, at)
-}
-
-/// The true motions that the answers are meant for: from a given start, or with a given first harmonic.
-struct Truths {
-    initial: TrueMotion,
-}
-
-impl Truths {
-    fn new(
-        oscillator: &Oscillator,
-        solutions: &[Solution],
-        numbers: &BTreeMap<Symbol, f64>,
-    ) -> Result<Self, VerificationError> {
-        let first = solutions.first().ok_or(VerificationError::AtRest)?;
-        Ok(Self {
-            initial: TrueMotion::of(oscillator, first, numbers)?,
-        })
-    }
-}
-
 fn row(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    truths: &Truths,
+    true_motion: &TrueMotion,
     truth: &Truth,
     tolerance: f64,
 ) -> Row {
-    let true_frequency = truths.initial.frequency;
+    let true_frequency = true_motion.frequency;
     let frequency = formula_frequency(oscillator, solution, numbers);
     let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
     let max_deviation = formula_motion(oscillator, solution, numbers)
-        .map(|(frequency, motion)| truths.initial.largest_deviation(frequency, &motion))
+        .map(|(frequency, motion)| true_motion.largest_deviation(frequency, &motion))
         .filter(|deviation| deviation.is_finite());
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
@@ -199,7 +176,7 @@ pub fn backbones(
 ) -> Result<(Backbone, Vec<Backbone>), ComparisonError> {
     const POINTS: usize = 120;
     let first = &comparison.rows.first().ok_or(VerificationError::AtRest)?.solution;
-    let numbers = numbers(first, &comparison.at)?;
+    let numbers = checked_numbers(first, &comparison.at)?;
     let truth = Truth::new(oscillator, first, &numbers);
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
     // To the escape, or to twice the amplitude asked for.

@@ -20,6 +20,7 @@ use super::{VerificationError, formula_frequency, true_frequency};
 use crate::decimal::significant;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
+use crate::expr::Expr;
 use crate::method::one_term::{coefficient_by_quadrature, compiled};
 use crate::method::{Options, solve};
 use crate::ode::quadrature::integrate_smooth;
@@ -380,12 +381,10 @@ fn convergence(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<
 
 /// The equation with exact numbers for all parameters but one.
 fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: Symbol) -> Option<Oscillator> {
-    use crate::exact::Rational;
-    use crate::expr::Expr;
     let names = oscillator.parameters.iter().filter(|&&name| name != but);
     let exact = |name: &Symbol| {
         let value = crate::decimal::rounded(*numbers.get(name)?);
-        Some((*name, Expr::number(value as Rational)))
+        Some((*name, Expr::number(value)))
     };
     let values = names.map(exact).collect::<Option<_>>()?;
     let mut numerical = oscillator.clone();
@@ -505,9 +504,7 @@ pub(super) fn reach(oscillator: &Oscillator, solution: &Solution, truth: &Truth,
         return None;
     }
     let good = |size: f64| {
-        let Some(true_frequency) = truth.frequency(size) else {
-            return None;
-        };
+        let true_frequency = truth.frequency(size)?;
         let frequency = formula_frequency(oscillator, solution, &truth.numbers_at(size));
         Some(frequency.is_some_and(|frequency| (frequency / true_frequency - 1.0).abs() <= tolerance))
     };

@@ -154,9 +154,14 @@ impl OscillatorError {
             Self::AmbiguousSmallParameter(candidates) => {
                 Some(format!("choose one with `--small {}`", candidates.first()?))
             }
-            Self::NotSmall { .. } | Self::NotPolynomial(_) => {
-                Some("expand in the amplitude instead: `--small A`".to_owned())
+            Self::NotSmall { .. } => Some("expand in the amplitude instead: `--small A`".to_owned()),
+            Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. }) if !term.contains('\'') => {
+                Some("take the force as it is: `--method hamiltonian` or `--method harmonic-balance`".to_owned())
             }
+            Self::NoRestoringForce(term) if term == "0" => Some(
+                "methods that need no linear part: `--method parameter-expansion` or `--method harmonic-balance`"
+                    .to_owned(),
+            ),
             Self::SymbolicEquilibrium(_) => {
                 Some("give numbers for the parameters, or measure x from the equilibrium".to_owned())
             }

@@ -43,8 +43,8 @@ const METHOD: Method = Method::HarmonicBalance;
 /// The most harmonics.
 pub const MOST_HARMONICS: u32 = 100;
 
-/// The longest system that is written out, in terms.
-const MOST_TERMS: usize = 3000;
+/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. Beyond, nobody reads it.
+const MOST_TERMS: usize = 3500;
 
 /// The balance of so many harmonics, two by default.
 ///
@@ -157,7 +157,7 @@ fn equations(
     if let Some(coefficients) = polynomial_coefficients(oscillator, force)? {
         // Roughly the number of products of a power of so many harmonics.
         let degree = coefficients.len().saturating_sub(1) as u32;
-        if harmonics.len().saturating_pow(degree) > MOST_TERMS * 10 {
+        if harmonics.len().saturating_pow(degree) > MOST_TERMS {
             return Ok(None);
         }
         let along = horner(&coefficients, motion)?;

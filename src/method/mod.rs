@@ -234,6 +234,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
     let centred = centred(oscillator, numerical_degree(method, options))?;
     let mut solution = by_method(method, &centred.oscillator, options)?;
+    if expands(method) && has_corners(&oscillator.force) {
+        solution
+            .validity
+            .push("the force has corners: the expansion holds for motions that stay before the nearest".to_owned());
+    }
     if let Some(assumption) = &centred.assumption {
         solution
             .validity
@@ -260,6 +265,20 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .push(format!("swings about the equilibrium x = {position}"));
     solution.equilibrium = Expr::number(centred.position);
     Ok(solution)
+}
+
+/// Whether a method sees of the force only its derivatives at the equilibrium.
+fn expands(method: Method) -> bool {
+    matches!(
+        method,
+        Method::LindstedtPoincare | Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::Pade
+    )
+}
+
+fn has_corners(force: &Expr) -> bool {
+    use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
+    let corners = [Absolute, Maximum, Minimum, Sign, Step];
+    corners.into_iter().any(|function| force.contains_function(function))
 }
 
 /// The one place that knows every method.

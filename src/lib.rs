@@ -57,6 +57,7 @@ pub mod method;
 pub mod verify;
 
 pub mod contact;
+pub mod damper;
 pub mod impact;
 
 pub mod catalog;

@@ -19,7 +19,7 @@ const LAYERS: [&[&str]; 16] = [
     &["method"],
     &["verify"],
     &["contact"],
-    &["impact"],
+    &["impact", "damper"],
     &["problem"],
     &["catalog"],
     &["export"],

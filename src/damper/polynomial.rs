@@ -1,0 +1,211 @@
+//! Polynomials on an interval that begins at 0: value, slope, and every place where the sign changes.
+//!
+//! ```text
+//! p(u) = c_0 + c_1 u + ... + c_n u^n,  0 <= u <= h
+//! |p(u) - p(m) - p'(m)(u - m)| <= r^2/2 max|p''|   for |u - m| <= r
+//! max|p''| <= sum k (k - 1) |c_k| h^(k-2)
+//! ```
+//!
+//! An interval on which the line through the middle stays further from zero than the second bound holds no root; one
+//! on which the slope stays further from zero than the first bound on p'' holds at most one; any other is halved. So no
+//! root is missed, however close two of them lie, down to the rounding of the polynomial itself.
+
+use crate::ode::root::find_root;
+
+/// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series never has more.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Roots {
+    values: [f64; Roots::LIMIT],
+    count: usize,
+}
+
+impl Roots {
+    pub(super) const LIMIT: usize = 16;
+
+    pub(super) const fn new() -> Self {
+        Self {
+            values: [0.0; Self::LIMIT],
+            count: 0,
+        }
+    }
+
+    pub(super) fn push(&mut self, value: f64) {
+        if let Some(place) = self.values.get_mut(self.count) {
+            *place = value;
+            self.count += 1;
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+
+    fn is_full(&self) -> bool {
+        self.count == Self::LIMIT
+    }
+}
+
+/// p(u).
+pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
+    let mut sum = 0.0;
+    for &coefficient in coefficients.iter().rev() {
+        sum = sum * u + coefficient;
+    }
+    sum
+}
+
+/// p(u) and p'(u).
+pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
+    let (mut sum, mut slope) = (0.0, 0.0);
+    for &coefficient in coefficients.iter().rev() {
+        slope = slope * u + sum;
+        sum = sum * u + coefficient;
+    }
+    (sum, slope)
+}
+
+/// A bound on |p(u) - p(0)| for 0 <= u <= h.
+pub(super) fn variation(coefficients: &[f64], h: f64) -> f64 {
+    let mut sum = 0.0;
+    for coefficient in coefficients.iter().skip(1).rev() {
+        sum = (sum + coefficient.abs()) * h;
+    }
+    sum
+}
+
+/// A bound on |p''(u)| for 0 <= u <= h.
+fn curvature(coefficients: &[f64], h: f64) -> f64 {
+    let mut sum = 0.0;
+    for (k, coefficient) in coefficients.iter().enumerate().skip(2).rev() {
+        sum = sum * h + (k * (k - 1)) as f64 * coefficient.abs();
+    }
+    sum
+}
+
+/// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does not count: it was
+/// the end of the step before.
+pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
+    let mut found = Roots::new();
+    // Leaving zero is no change of sign: p(u)/u^k has the same sign for u > 0.
+    let zeros = coefficients
+        .iter()
+        .take_while(|coefficient| **coefficient == 0.0)
+        .count();
+    let coefficients = &coefficients[zeros..];
+    let Some(&first) = coefficients.first() else {
+        return found;
+    };
+    if first.abs() > variation(coefficients, h) {
+        return found;
+    }
+    let curvature = curvature(coefficients, h);
+    // Intervals still to look at, the leftmost on top.
+    let mut stack = [(0.0, 0.0); 64];
+    stack[0] = (0.0, h);
+    let mut waiting = 1;
+    let mut sign = first.signum();
+    while waiting > 0 && !found.is_full() {
+        waiting -= 1;
+        let (from, to) = stack[waiting];
+        let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
+        let (height, slope) = value_and_slope(coefficients, middle);
+        if height.abs() > slope.abs() * radius + 0.5 * curvature * radius * radius {
+            // The sign is the same all over the interval; a change since the last one lies at its very beginning.
+            if height.signum() != sign {
+                found.push(from);
+                sign = height.signum();
+            }
+            continue;
+        }
+        let narrow = radius <= 4.0 * f64::EPSILON * to || waiting + 2 > stack.len();
+        if narrow || slope.abs() > curvature * radius {
+            let end = value(coefficients, to);
+            if end == 0.0 {
+                found.push(to);
+                sign = -sign;
+            } else if end.signum() != sign {
+                let start = value(coefficients, from);
+                let root = if narrow || start == 0.0 || start.signum() != sign {
+                    middle.min(to).max(from)
+                } else {
+                    crossing(coefficients, from, to)
+                };
+                found.push(root);
+                sign = end.signum();
+            }
+            continue;
+        }
+        stack[waiting] = (middle, to);
+        stack[waiting + 1] = (from, middle);
+        waiting += 2;
+    }
+    found
+}
+
+/// The place between `from` and `to` where p changes sign once; the nearer end where it does not.
+pub(super) fn crossing(coefficients: &[f64], from: f64, to: f64) -> f64 {
+    crossing_of(|u| value(coefficients, u), from, to)
+}
+
+/// The same for any function with one change of sign.
+pub(super) fn crossing_of(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    match find_root(&function, from, to) {
+        Ok(root) => root,
+        // Rounding took the change of sign away: it happens where the function is closest to zero.
+        Err(_) if function(from).abs() < function(to).abs() => from,
+        Err(_) => to,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The product of (u - root) over the roots, lowest power first.
+    fn with_roots(roots: &[f64]) -> Vec<f64> {
+        let mut coefficients = vec![1.0];
+        for root in roots {
+            let mut next = vec![0.0; coefficients.len() + 1];
+            for (power, coefficient) in coefficients.iter().enumerate() {
+                next[power + 1] += coefficient;
+                next[power] -= root * coefficient;
+            }
+            coefficients = next;
+        }
+        coefficients
+    }
+
+    #[test]
+    fn value_slope_and_bounds_of_a_cubic() {
+        let cubic = [1.0, -2.0, 0.5, 3.0];
+        assert_eq!(
+            value_and_slope(&cubic, 2.0),
+            (1.0 - 4.0 + 2.0 + 24.0, -2.0 + 2.0 + 36.0)
+        );
+        assert_eq!(variation(&cubic, 2.0), 4.0 + 2.0 + 24.0);
+        assert_eq!(curvature(&cubic, 2.0), 1.0 + 36.0);
+    }
+
+    #[test]
+    fn every_change_of_sign_is_found_and_none_invented() {
+        for (roots, expected) in [
+            (vec![0.3], vec![0.3]),
+            (vec![0.3, 0.7], vec![0.3, 0.7]),
+            (vec![0.5, 0.5 + 1e-6], vec![0.5, 0.5 + 1e-6]),
+            (vec![0.1, 0.2, 0.9, 1.5], vec![0.1, 0.2, 0.9]),
+            (vec![-0.1, 1.01], vec![]),
+            (vec![0.0, 0.4], vec![0.4]),
+            (vec![0.0, 0.0, 0.4], vec![0.4]),
+            (vec![1.0], vec![1.0]),
+        ] {
+            let found = sign_changes(&with_roots(&roots), 1.0);
+            assert_eq!(found.as_slice().len(), expected.len(), "{roots:?}: {found:?}");
+            for (found, expected) in found.as_slice().iter().zip(&expected) {
+                assert!((found - expected).abs() < 1e-9, "{found} against {expected}");
+            }
+        }
+        // Two complex roots next to the interval: no real one.
+        assert!(sign_changes(&[0.25 + 1e-12, -1.0, 1.0], 1.0).as_slice().is_empty());
+        assert!(sign_changes(&[0.0, 0.0], 1.0).as_slice().is_empty());
+    }
+}

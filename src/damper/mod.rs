@@ -31,6 +31,7 @@
 
 mod energy;
 mod judge;
+mod lanes;
 mod model;
 mod path;
 mod polynomial;
@@ -254,6 +255,24 @@ pub fn simulate(
         Integrator::Taylor => Ok(run::alone(*model, start, *options)),
         Integrator::RungeKutta => judge::follow(model, start, options),
     }
+}
+
+/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.
+///
+/// # Errors
+/// As [`simulate`], for the first that cannot begin, with its number.
+pub fn simulate_many(motions: &[(Model, Start)], options: &Options) -> Result<Vec<Simulation>, (usize, SimulationError)> {
+    for (number, (model, start)) in motions.iter().enumerate() {
+        check(model, *start, options).map_err(|error| (number, error))?;
+    }
+    let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
+    let runs = motions.iter().map(|(model, start)| run::Runner::new(*model, *start, *options));
+    lanes::follow(runs, |number, runner| {
+        if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
+            *place = Some(runner.finish(*start));
+        }
+    });
+    Ok(results.into_iter().flatten().collect())
 }
 
 fn check(model: &Model, start: Start, options: &Options) -> Result<(), SimulationError> {

@@ -24,7 +24,7 @@ use super::{Impact, Integrator, Options, Simulation, Stop, Turn};
 const LONGEST_STEP: f64 = 2.0;
 
 /// The part of the tolerance that a step may use up: so the error of a run of some ten swings stays near the tolerance.
-const SAFETY: f64 = 0.02;
+const SAFETY: f64 = 0.005;
 
 /// Events in a row without progress of time after which a run is called stalled.
 const MOST_IDLE: usize = 100;

@@ -26,11 +26,21 @@ pub(super) const HIGHEST_ORDER: usize = 30;
 pub(super) type Series<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
 
 /// Which terms of equation (7) are on in at least one of the motions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Terms {
     pub(super) arctangent: bool,
     pub(super) excited: bool,
     pub(super) damped_contact: bool,
+}
+
+impl Terms {
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            arctangent: self.arctangent || other.arctangent,
+            excited: self.excited || other.excited,
+            damped_contact: self.damped_contact || other.damped_contact,
+        }
+    }
 }
 
 /// The present moment of `L` motions and their parameters. In contact everything is seen in the mirror of its side.

@@ -27,13 +27,7 @@ fn main() {
                 right: Some(0.05 + 0.5 * f64::from(i) / 10_000.0),
                 ..Model::default()
             };
-            (
-                model,
-                Start {
-                    x: -1.5,
-                    velocity: 0.0,
-                },
-            )
+            (model, Start { x: -1.5, velocity: 0.0 })
         })
         .collect();
     let options = Options {

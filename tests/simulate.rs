@@ -142,8 +142,8 @@ fn the_judge_agrees() {
             ..damped
         },
     ] {
-        let fast = taylor(&model, start, 1e-11, 40.0);
-        let judge = run(&model, start, 1e-12, 40.0, Integrator::RungeKutta);
+        let fast = taylor(&model, start, 1e-13, 40.0);
+        let judge = run(&model, start, 1e-13, 40.0, Integrator::RungeKutta);
         assert_eq!(judge.stop, Stop::Duration, "{}", judge.stop);
         assert_eq!(fast.stop, Stop::Duration, "{}", fast.stop);
         assert_eq!(fast.impacts.len(), judge.impacts.len(), "{model:?}");

@@ -4,16 +4,53 @@
 //! it together. The lanes never touch each other and no operation is fused or reordered: a run gives bit for bit what it
 //! gives alone, whatever runs beside it.
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::run::{Equation, Runner};
-use super::taylor::{Coefficients, HIGHEST_ORDER, Moment, Terms, contact, flight};
+use super::taylor::{Coefficients, Ends, HIGHEST_ORDER, Moment, Terms, contact, flight};
 
 /// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
 const LANES: usize = 8;
 
 /// Runs under way at once: so many that eight of them nearly always want the same series.
 const POOL: usize = 48;
+
+/// The series of one group; always compiled into its caller, so that it gets the widest registers there are.
+struct Expansion<'a> {
+    moment: &'a Moment<LANES>,
+    order: usize,
+    terms: Terms,
+    series: &'a mut Coefficients<LANES>,
+    equation: Equation,
+}
+
+impl WithSimd for Expansion<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        match self.equation {
+            Equation::Flight => flight(self.moment, self.order, self.terms, self.series),
+            Equation::Contact => contact(self.moment, self.order, self.terms, self.series),
+        }
+    }
+}
+
+/// Its values at the ends of the steps.
+struct Evaluation<'a> {
+    series: &'a Coefficients<LANES>,
+    lengths: &'a [f64; LANES],
+    order: usize,
+}
+
+impl WithSimd for Evaluation<'_> {
+    type Output = Ends<LANES>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Ends<LANES> {
+        self.series.ends(self.lengths, self.order)
+    }
+}
 
 /// Follows every run to its end, and hands each over as it ends, with its number. All have the same tolerance.
 pub(super) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(usize, Runner)) {
@@ -48,39 +85,53 @@ pub(super) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(us
                 }
             }
         }
-        let flying = flights.len() >= contacts.len();
-        let queue = if flying { &mut flights } else { &mut contacts };
-        if queue.is_empty() {
-            break;
+        let (queue, equation) = if flights.len() >= contacts.len() {
+            (&mut flights, Equation::Flight)
+        } else {
+            (&mut contacts, Equation::Contact)
+        };
+        let mut group = [0; LANES];
+        let mut count = 0;
+        while count < LANES
+            && let Some(place) = queue.pop()
+        {
+            group[count] = place;
+            count += 1;
         }
-        let group: Vec<usize> = queue.split_off(queue.len().saturating_sub(LANES));
+        let Some(last) = count.checked_sub(1) else {
+            break;
+        };
         let mut terms = Terms::default();
         let mut order = HIGHEST_ORDER;
         for lane in 0..LANES {
             // Lanes without a run repeat the last one.
-            let Some((_, runner)) = group.get(lane).or(group.last()).and_then(|place| pool.get(*place)) else {
-                continue;
-            };
-            runner.moment(lane, &mut moment);
-            terms = terms.or(runner.terms());
-            order = runner.order();
-        }
-        let (moment, series) = (&moment, &mut *series);
-        if flying {
-            arch.dispatch(|| flight(moment, order, terms, series));
-        } else {
-            arch.dispatch(|| contact(moment, order, terms, series));
-        }
-        for (lane, &place) in group.iter().enumerate() {
-            let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
-            for (own, all) in own.iter_mut().zip([&series.place, &series.velocity, &series.time]) {
-                for (coefficient, lanes) in own[..=order].iter_mut().zip(all) {
-                    *coefficient = lanes[lane];
-                }
+            if let Some((_, runner)) = pool.get(group[lane.min(last)]) {
+                runner.moment(lane, &mut moment);
+                terms = terms.or(runner.terms());
+                order = runner.order();
             }
-            let [place_series, velocity, time] = &mut own;
+        }
+        arch.dispatch(Expansion {
+            moment: &moment,
+            order,
+            terms,
+            series: &mut series,
+            equation,
+        });
+        let mut lengths = [0.0; LANES];
+        for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                runner.advance(place_series, velocity, time);
+                lengths[lane] = runner.reach(series.last(order, lane));
+            }
+        }
+        let ends = arch.dispatch(Evaluation {
+            series: &series,
+            lengths: &lengths,
+            order,
+        });
+        for (lane, &place) in group[..count].iter().enumerate() {
+            if let Some((_, runner)) = pool.get_mut(place) {
+                runner.advance(ends.lane(lane), || series.lane(lane));
             }
             fresh.push(place);
         }

@@ -261,12 +261,17 @@ pub fn simulate(
 ///
 /// # Errors
 /// As [`simulate`], for the first that cannot begin, with its number.
-pub fn simulate_many(motions: &[(Model, Start)], options: &Options) -> Result<Vec<Simulation>, (usize, SimulationError)> {
+pub fn simulate_many(
+    motions: &[(Model, Start)],
+    options: &Options,
+) -> Result<Vec<Simulation>, (usize, SimulationError)> {
     for (number, (model, start)) in motions.iter().enumerate() {
         check(model, *start, options).map_err(|error| (number, error))?;
     }
     let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
-    let runs = motions.iter().map(|(model, start)| run::Runner::new(*model, *start, *options));
+    let runs = motions
+        .iter()
+        .map(|(model, start)| run::Runner::new(*model, *start, *options));
     lanes::follow(runs, |number, runner| {
         if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
             *place = Some(runner.finish(*start));

@@ -142,9 +142,45 @@ pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
     found
 }
 
-/// The place between `from` and `to` where p changes sign once; the nearer end where it does not.
+/// The place between `from` and `to` where p changes sign once; the nearer end where it does not: Newton's method,
+/// halving the interval where that would leave it.
 pub(super) fn crossing(coefficients: &[f64], from: f64, to: f64) -> f64 {
-    crossing_of(|u| value(coefficients, u), from, to)
+    level_crossing(coefficients, 0.0, from, to)
+}
+
+/// The same for p - level.
+pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f64) -> f64 {
+    let start = value(coefficients, from) - level;
+    let end = value(coefficients, to) - level;
+    if start == 0.0 || end == 0.0 || (start > 0.0) == (end > 0.0) {
+        return if start.abs() < end.abs() { from } else { to };
+    }
+    let (mut left, mut right) = (from, to);
+    let mut u = from + (to - from) * (start / (start - end));
+    // Newton's steps converge in a few, halvings in 60.
+    for _ in 0..100 {
+        let (sum, slope) = value_and_slope(coefficients, u);
+        let height = sum - level;
+        if height == 0.0 {
+            return u;
+        }
+        if (height > 0.0) == (start > 0.0) {
+            left = u;
+        } else {
+            right = u;
+        }
+        let newton = u - height / slope;
+        let next = if newton > left && newton < right {
+            newton
+        } else {
+            0.5 * (left + right)
+        };
+        if (next - u).abs() <= 2.0 * f64::EPSILON * u.abs() || next <= left || next >= right {
+            return next;
+        }
+        u = next;
+    }
+    u
 }
 
 /// The same for any function with one change of sign.

@@ -1,7 +1,7 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
 //! ```text
-//! step:    |c_p| h^p <= tolerance and |c_(p-1)| h^(p-1) <= tolerance for the last two coefficients
+//! step:    |v_n| h^n <= tolerance for the last coefficients of the velocity, n = p-4 ... p
 //! turn:    v = 0, every change of sign in the step; between two of them x only rises or only falls
 //! touch:   x = x_r on a rising part that ends beyond it: whether there is one is decided at the turning point, where
 //!          x is known best, so grazing contacts are neither missed nor invented
@@ -16,15 +16,21 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use super::model::{Friction, Model, Side, Start};
 use super::path::{Path, State};
-use super::polynomial::{Roots, crossing, crossing_of, sign_changes, value, variation};
-use super::taylor::{Coefficients, HIGHEST_ORDER, Moment, Terms, contact, flight};
+use super::polynomial::{Roots, crossing, crossing_of, level_crossing, sign_changes, value, variation};
+use super::taylor::{Coefficients, End, HIGHEST_ORDER, INVERSE, LAST, Moment, Terms, contact, flight};
 use super::{Impact, Integrator, Options, Simulation, Stop, Turn};
 
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
 
 /// The part of the tolerance that a step may use up: so the error of a run of some ten swings stays near the tolerance.
-const SAFETY: f64 = 0.005;
+const SAFETY: f64 = 0.5;
+
+/// The same in contact, where a small error of the speed goes a long way afterwards.
+const CONTACT_SAFETY: f64 = 0.5;
+
+/// The longest step in contact, in units of its own scale.
+const LONGEST_CONTACT_STEP: f64 = 64.0;
 
 /// Events in a row without progress of time after which a run is called stalled.
 const MOST_IDLE: usize = 100;
@@ -53,6 +59,10 @@ pub(super) struct Runner {
     /// Let go by friction just now: the acceleration is still zero.
     released: bool,
     unit: f64,
+    /// The step under way: how long the series is good for, how much of that is taken, and whether it is the last.
+    proposed: f64,
+    length: f64,
+    last: bool,
     steps: usize,
     idle: usize,
     pub(super) stop: Option<Stop>,
@@ -86,11 +96,9 @@ pub(super) fn alone(model: Model, start: Start, options: Options) -> Simulation 
             Equation::Flight => flight(&moment, order, terms, &mut series),
             Equation::Contact => contact(&moment, order, terms, &mut series),
         }
-        runner.advance(
-            series.place.as_flattened_mut(),
-            series.velocity.as_flattened_mut(),
-            series.time.as_flattened(),
-        );
+        let length = runner.reach(series.last(order, 0));
+        let ends = series.ends(&[length], order);
+        runner.advance(ends.lane(0), || series.lane(0));
     }
     runner.finish(start)
 }
@@ -117,6 +125,9 @@ impl Runner {
             direction: 0.0,
             released: false,
             unit: 1.0,
+            proposed: 0.0,
+            length: 0.0,
+            last: false,
             steps: 0,
             idle: 0,
             stop: None,
@@ -247,31 +258,128 @@ impl Runner {
         moment.mu[lane] = model.mu;
     }
 
-    /// Goes on with the coefficients of the series at the present moment: x and v, or w, v and t.
-    pub(super) fn advance(&mut self, place: &mut [f64], velocity: &mut [f64], time: &[f64]) {
-        let order = self.order;
-        if !(place[order].is_finite() && velocity[order].is_finite()) {
+    /// How far the series reaches, in its unit: from the last coefficients of the velocity. The step ends there if
+    /// nothing happens before.
+    pub(super) fn reach(&mut self, last: [f64; LAST]) -> f64 {
+        let tolerance = &self.options;
+        if matches!(self.state, State::Contact(_)) {
+            let entry = self.impacts.last().map_or(0.0, |impact| impact.speed_in);
+            let size = tolerance.relative_tolerance * entry.max(self.velocity.abs());
+            let allowed = CONTACT_SAFETY * (size + tolerance.absolute_tolerance);
+            self.proposed = step_length(allowed, last, self.order);
+            self.length = self.proposed.min(LONGEST_CONTACT_STEP);
+            self.last = false;
+            return self.length;
+        }
+        let size = self.place.abs().max(self.velocity.abs());
+        let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
+        self.proposed = step_length(allowed, last, self.order);
+        let remaining = self.options.duration - self.t;
+        let length = self.proposed.min(LONGEST_STEP / self.unit);
+        self.last = length * self.unit >= remaining;
+        self.length = if self.last { remaining / self.unit } else { length };
+        self.length
+    }
+
+    /// Goes on with the series at the present moment: its values at the end of the step, and where they do not say
+    /// enough, its coefficients: x and v, or w, v and t.
+    pub(super) fn advance(&mut self, end: End, load: impl FnOnce() -> [[f64; HIGHEST_ORDER + 1]; 3]) {
+        let before = self.t;
+        if !(end.place.is_finite() && end.variation.is_finite()) {
             self.stop = Some(Stop::NotFinite { t: self.t });
             return;
         }
-        if self.released {
-            (velocity[1], place[2]) = (0.0, 0.0);
+        let contact = self.side().filter(|_| matches!(self.state, State::Contact(_)));
+        if !contact.is_some() && !self.last && self.t + self.length * self.unit <= self.t {
+            self.stop = Some(Stop::StepTooSmall { t: self.t });
+            return;
         }
-        self.released = false;
-        let before = self.t;
-        match self.side() {
-            Some((side, barrier)) if matches!(self.state, State::Contact(_)) => {
-                self.advance_contact(side, barrier, place, velocity, time);
+        let uneventful = match contact {
+            Some(contact) => self.press_on(contact, end),
+            None => self.fly_on(end),
+        };
+        if !uneventful {
+            let [mut place, mut velocity, time] = load();
+            if self.released {
+                (velocity[1], place[2]) = (0.0, 0.0);
             }
-            _ => self.advance_flight(place, velocity),
-        }
-        while self.stop == Some(Stop::Calm) && self.turns.last().is_some_and(|turn| turn.t > self.t) {
-            self.turns.pop();
+            self.released = false;
+            match contact {
+                Some(contact) => self.advance_contact(contact, &place, &velocity, &time),
+                None => self.advance_flight(&place, &velocity),
+            }
         }
         self.idle = if self.t > before { 0 } else { self.idle + 1 };
         if self.idle > MOST_IDLE && self.stop.is_none() {
             self.stop = Some(Stop::Stalled { t: self.t });
         }
+    }
+
+    /// Takes a whole step of free flight if its ends show that nothing happens in it and nobody wants to see it.
+    fn fly_on(&mut self, end: End) -> bool {
+        let turns = self.velocity.abs() <= end.variation;
+        let beyond = |side: Side| {
+            self.model
+                .barrier(side)
+                .is_some_and(|barrier| side.sign() * (end.place - barrier) > 0.0)
+        };
+        if turns
+            || self.options.keep_path
+            || self.released
+            || self.state != State::Free
+            || beyond(Side::Left)
+            || beyond(Side::Right)
+        {
+            return false;
+        }
+        let (sine, cosine) = end.place.sin_cos();
+        if self.is_calm(end.velocity, cosine) {
+            return false;
+        }
+        self.t = if self.last {
+            self.options.duration
+        } else {
+            self.t + self.length * self.unit
+        };
+        (self.place, self.velocity, self.sine, self.cosine) = (end.place, end.velocity, sine, cosine);
+        self.adapt();
+        true
+    }
+
+    /// Takes a whole step in contact likewise.
+    fn press_on(&mut self, (side, barrier): (Side, f64), end: End) -> bool {
+        let turns = self.velocity.abs() <= end.variation;
+        let lowest = self.velocity - end.variation;
+        let pulls = self.model.gamma + self.model.mu * lowest < 0.0;
+        if turns
+            || pulls
+            || self.options.keep_path
+            || self.released
+            || end.place <= 0.0
+            || self.options.duration - self.t <= end.time
+        {
+            return false;
+        }
+        let depth = end.place * end.place;
+        let (sine, cosine) = (barrier + side.sign() * depth).sin_cos();
+        // What is stored in the barrier comes on top.
+        if self.is_calm(end.velocity, cosine) {
+            return false;
+        }
+        if let Some(impact) = self.impacts.last_mut() {
+            impact.penetration = impact.penetration.max(depth);
+        }
+        self.t += end.time.max(0.0);
+        (self.place, self.velocity, self.sine, self.cosine) = (end.place, end.velocity, sine, cosine);
+        self.adapt();
+        true
+    }
+
+    /// Whether the swing alone has no more than the rest energy.
+    fn is_calm(&self, velocity: f64, cosine: f64) -> bool {
+        self.options
+            .rest_energy
+            .is_some_and(|calm| 0.5 * velocity * velocity + (1.0 - cosine) <= calm)
     }
 
     fn side(&self) -> Option<(Side, f64)> {
@@ -282,20 +390,8 @@ impl Runner {
     }
 
     fn advance_flight(&mut self, x: &[f64], v: &[f64]) {
-        let order = self.order;
-        let size = self.place.abs().max(self.velocity.abs());
-        let allowed = SAFETY * (self.options.absolute_tolerance + self.options.relative_tolerance * size);
-        let largest = |n: usize| x[n].abs().max(v[n].abs());
-        let proposed = step_length(allowed, [largest(order - 1), largest(order)], order);
-        let remaining = self.options.duration - self.t;
-        let mut h = proposed.min(LONGEST_STEP / self.unit);
-        let last = h * self.unit >= remaining;
-        if last {
-            h = remaining / self.unit;
-        } else if self.t + h * self.unit <= self.t {
-            self.stop = Some(Stop::StepTooSmall { t: self.t });
-            return;
-        }
+        let (x, v) = (&x[..=self.order], &v[..=self.order]);
+        let h = self.length;
         let (mut end, mut event) = match self.state {
             State::Detached(side) => self.detached_event(side, x, v, h),
             _ => self.flight_event(x, v, h),
@@ -304,7 +400,7 @@ impl Runner {
         let (mut x_end, mut v_end) = (value(x, end), value(v, end));
         let (mut sine, mut cosine) = x_end.sin_cos();
         if let Some(calm) = self.options.rest_energy
-            && 0.5 * v_end * v_end + 1.0 - cosine <= calm
+            && self.is_calm(v_end, cosine)
             && matches!(self.state, State::Free)
         {
             end = crossing_of(|u| energy(u) - calm, 0.0, end);
@@ -313,17 +409,16 @@ impl Runner {
             (sine, cosine) = x_end.sin_cos();
         }
         let start = self.t;
-        self.t = if last && end == h {
+        self.t = if self.last && end == h {
             self.options.duration
         } else {
             start + end * self.unit
         };
         if self.options.keep_path {
-            self.path
-                .push_flight([start, self.t], self.state, self.unit, &x[..=order], &v[..=order]);
+            self.path.push_flight([start, self.t], self.state, self.unit, x, v);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x_end, v_end, sine, cosine);
-        self.adapt(proposed);
+        self.adapt();
         match event {
             None => {}
             Some(Event::Turn) => {
@@ -342,14 +437,22 @@ impl Runner {
                     );
                 }
             }
-            Some(Event::Calm) => self.stop = Some(Stop::Calm),
+            Some(Event::Calm) => self.calm(),
             Some(Event::Detach) => {}
+        }
+    }
+
+    /// Ends the run where it is; turning points noted in the rest of the step are no longer part of it.
+    fn calm(&mut self) {
+        self.stop = Some(Stop::Calm);
+        while self.turns.last().is_some_and(|turn| turn.t > self.t) {
+            self.turns.pop();
         }
     }
 
     /// What ends a free flight before `h`, and where. Turning points on the way are noted.
     fn flight_event(&mut self, x: &[f64], v: &[f64], h: f64) -> (f64, Option<Event>) {
-        let turns = turning_points(&v[..=self.order], h);
+        let turns = turning_points(v, h);
         let mut from = 0.0;
         let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
         for (to, turning) in ends {
@@ -359,7 +462,7 @@ impl Runner {
                 if let Some(barrier) = self.model.barrier(side)
                     && sign * (x_to - barrier) > 0.0
                 {
-                    let touch = crossing_of(|u| sign * (value(x, u) - barrier), from, to);
+                    let touch = level_crossing(x, barrier, from, to);
                     // Rounding alone is no touch.
                     if sign * value(v, touch) > 0.0 {
                         return (touch, Some(Event::Touch(side)));
@@ -394,24 +497,20 @@ impl Runner {
         let catch = catches.as_slice().first().copied().unwrap_or(h);
         // Until then it moves away from the barrier all the time.
         if sign * (value(x, catch) - barrier) <= 0.0 {
-            let release = crossing_of(|u| sign * (value(x, u) - barrier), 0.0, catch);
+            let release = level_crossing(x, barrier, 0.0, catch);
             return (release, Some(Event::Release));
         }
         (catch, catches.as_slice().first().map(|_| Event::Reattach))
     }
 
-    fn advance_contact(&mut self, side: Side, barrier: f64, w: &[f64], v: &[f64], time: &[f64]) {
+    fn advance_contact(&mut self, (side, barrier): (Side, f64), w: &[f64], v: &[f64], time: &[f64]) {
         let order = self.order;
         let (w, v, time) = (&w[..=order], &v[..=order], &time[..=order]);
-        let entry = self.impacts.last().map_or(0.0, |impact| impact.speed_in);
-        let allowed = 0.1 * SAFETY * self.options.relative_tolerance * entry.max(v[0].abs()).max(v[1].abs());
-        let proposed = step_length(allowed, [v[order - 1].abs(), v[order].abs()], order);
         let remaining = self.options.duration - self.t;
-        let mut h = proposed.min(64.0);
-        let mut last = false;
-        if value(time, h) >= remaining {
+        let mut h = self.length;
+        let last = value(time, h) >= remaining;
+        if last {
             h = crossing_of(|u| value(time, u) - remaining, 0.0, h);
-            last = true;
         }
         let turns = turning_points(v, h);
         let (mut end, mut event) = (h, None);
@@ -475,7 +574,7 @@ impl Runner {
         if event != Some(Event::Release) {
             self.look(barrier + side.sign() * w_end * w_end);
         }
-        self.adapt(proposed);
+        self.adapt();
         match event {
             Some(Event::Turn) => {
                 self.velocity = 0.0;
@@ -491,7 +590,7 @@ impl Runner {
                 self.velocity = side.sign() * v_end;
                 self.fly_in_state();
             }
-            Some(Event::Calm) => self.stop = Some(Stop::Calm),
+            Some(Event::Calm) => self.calm(),
             _ => {}
         }
     }
@@ -555,7 +654,8 @@ impl Runner {
     }
 
     /// Keeps the unit near the length of the steps.
-    fn adapt(&mut self, proposed: f64) {
+    fn adapt(&mut self) {
+        let proposed = self.proposed;
         if !(0.125..=8.0).contains(&proposed) && proposed.is_finite() {
             let unit = self.unit * proposed;
             if unit > 0.0 && unit <= LONGEST_STEP {
@@ -652,24 +752,35 @@ fn turning_points(v: &[f64], h: f64) -> Roots {
     sign_changes(v, h)
 }
 
-/// The longest step at which the last two coefficients stay within what is allowed.
-fn step_length(allowed: f64, [before, last]: [f64; 2], order: usize) -> f64 {
-    let p = order as f64;
-    root(allowed / last, 1.0 / p).min(root(allowed / before, 1.0 / (p - 1.0)))
+/// The longest step at which each of the last coefficients stays within what is allowed.
+fn step_length(allowed: f64, last: [f64; LAST], order: usize) -> f64 {
+    let mut largest = -1e3_f64;
+    for (back, coefficient) in last.iter().enumerate() {
+        let excess = logarithm(coefficient.abs()) - logarithm(allowed);
+        largest = largest.max(excess * INVERSE[order - back]);
+    }
+    power(-largest)
 }
 
-/// `ratio^power` to a percent, which is enough for a step.
-fn root(ratio: f64, power: f64) -> f64 {
-    if !(1e-300..1e300).contains(&ratio) {
-        return if ratio < 1.0 { 0.0 } else { 1e6 };
-    }
-    let bits = ratio.to_bits();
+/// The logarithm to base 2, to two decimals, which is enough for a step: from the bits of the number.
+fn logarithm(number: f64) -> f64 {
+    let bits = number.to_bits();
     let mantissa = f64::from_bits((bits & ((1 << 52) - 1)) | (1023 << 52)) - 1.0;
     let exponent = (bits >> 52) as f64 - 1023.0;
-    let logarithm = power * (exponent + mantissa * (1.343_5 - 0.343_5 * mantissa));
-    let whole = logarithm.floor();
-    let part = logarithm - whole;
-    let scale = f64::from_bits(((whole as i64 + 1023).clamp(1, 2046) as u64) << 52);
+    exponent + mantissa * (1.343_5 - 0.343_5 * mantissa)
+}
+
+/// Two to this power, to a percent.
+fn power(exponent: f64) -> f64 {
+    // The integer below it, without a call.
+    let toward_zero = exponent as i64;
+    let whole = if (toward_zero as f64) > exponent {
+        toward_zero - 1
+    } else {
+        toward_zero
+    };
+    let part = exponent - whole as f64;
+    let scale = f64::from_bits(((whole + 1023).clamp(1, 2046) as u64) << 52);
     scale * (1.0 + part * (0.656_5 + 0.343_5 * part))
 }
 

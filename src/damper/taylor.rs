@@ -22,6 +22,10 @@ use super::model::STEEPNESS;
 /// Highest order of a series.
 pub(super) const HIGHEST_ORDER: usize = 30;
 
+/// How many of the last coefficients decide on the length of a step: a series may have gaps. At touch v is a series in
+/// s^5, for v' = -gamma w^4 and w' = v/2.
+pub(super) const LAST: usize = 5;
+
 /// Coefficients of a series, those of `L` motions side by side.
 pub(super) type Series<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
 
@@ -125,6 +129,85 @@ impl<const L: usize> Coefficients<L> {
     }
 }
 
+/// The values of the series at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ends<const L: usize> {
+    place: [f64; L],
+    velocity: [f64; L],
+    time: [f64; L],
+    variation: [f64; L],
+}
+
+/// Those of one motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    pub(super) place: f64,
+    pub(super) velocity: f64,
+    /// In contact: the time that the step takes.
+    pub(super) time: f64,
+    /// A bound on the change of the velocity within the step.
+    pub(super) variation: f64,
+}
+
+impl<const L: usize> Ends<L> {
+    pub(super) fn lane(&self, lane: usize) -> End {
+        End {
+            place: self.place[lane],
+            velocity: self.velocity[lane],
+            time: self.time[lane],
+            variation: self.variation[lane],
+        }
+    }
+}
+
+impl<const L: usize> Coefficients<L> {
+    /// The last coefficients of v, the very last first.
+    #[inline(always)]
+    pub(super) fn last(&self, order: usize, lane: usize) -> [f64; LAST] {
+        let mut last = [0.0; LAST];
+        for (back, coefficient) in last.iter_mut().enumerate() {
+            *coefficient = self.velocity[order - back][lane];
+        }
+        last
+    }
+
+    /// The series of one motion: x or w, v, t.
+    pub(super) fn lane(&self, lane: usize) -> [[f64; HIGHEST_ORDER + 1]; 3] {
+        let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
+        for (own, all) in own.iter_mut().zip([&self.place, &self.velocity, &self.time]) {
+            for (coefficient, lanes) in own.iter_mut().zip(all) {
+                *coefficient = lanes[lane];
+            }
+        }
+        own
+    }
+
+    /// The values of the series where the steps end: Horner's rule, all four at once.
+    #[inline(always)]
+    pub(super) fn ends(&self, lengths: &[f64; L], order: usize) -> Ends<L> {
+        let zero = [0.0; L];
+        let (mut place, mut velocity, mut time, mut variation) = (zero, zero, zero, zero);
+        let terms = self.place.iter().zip(&self.velocity).zip(&self.time).take(order + 1);
+        for (n, ((a, b), c)) in terms.enumerate().rev() {
+            for lane in 0..L {
+                let h = lengths[lane];
+                place[lane] = place[lane] * h + a[lane];
+                velocity[lane] = velocity[lane] * h + b[lane];
+                time[lane] = time[lane] * h + c[lane];
+                if n > 0 {
+                    variation[lane] = (variation[lane] + b[lane].abs()) * h;
+                }
+            }
+        }
+        Ends {
+            place,
+            velocity,
+            time,
+            variation,
+        }
+    }
+}
+
 /// (a b)_n. Two sums, of even and of odd k: half the waiting of one on the other.
 #[inline(always)]
 fn product<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize) -> [f64; L] {
@@ -173,7 +256,7 @@ fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
 }
 
 /// 1/n.
-const INVERSE: [f64; HIGHEST_ORDER + 2] = {
+pub(super) const INVERSE: [f64; HIGHEST_ORDER + 2] = {
     let mut table = [0.0; HIGHEST_ORDER + 2];
     let mut n = 1;
     while n < table.len() {

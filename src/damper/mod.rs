@@ -257,6 +257,42 @@ pub fn simulate(
     }
 }
 
+/// How two motions differ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// The largest difference in x, rad.
+    pub displacement: f64,
+    /// The largest difference in x'.
+    pub velocity: f64,
+    /// Until when they were compared.
+    pub until: f64,
+}
+
+impl Simulation {
+    /// Compares the paths at so many times, as far as both go.
+    pub fn difference(&self, other: &Self, count: usize) -> Difference {
+        let until = self.end_time.min(other.end_time);
+        let mut difference = Difference {
+            displacement: 0.0,
+            velocity: 0.0,
+            until,
+        };
+        for index in 0..count {
+            let t = until * (index as f64 / (count.max(2) - 1) as f64);
+            if let (Some((x, v)), Some((other_x, other_v))) = (self.path.at(t), other.path.at(t)) {
+                difference.displacement = difference.displacement.max((x - other_x).abs());
+                difference.velocity = difference.velocity.max((v - other_v).abs());
+            }
+        }
+        difference
+    }
+
+    /// Whether a barrier was touched at all.
+    pub fn touches(&self) -> bool {
+        !self.impacts.is_empty()
+    }
+}
+
 /// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.
 ///
 /// # Errors

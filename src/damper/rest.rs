@@ -102,9 +102,12 @@ impl Simulation {
         Some(above.t + fraction * (below.t - above.t))
     }
 
-    /// Between turning points x only rises or only falls: the last stretch that reaches from beyond the level to
-    /// within it holds the crossing.
+    /// Between turning points x only rises or only falls: the last stretch that begins beyond the level holds the
+    /// crossing, unless the run ends beyond it.
     fn last_crossing(&self, level: f64) -> Option<f64> {
+        if self.path.pieces().is_empty() || self.end_x.abs() > level {
+            return None;
+        }
         let start = Turn {
             t: 0.0,
             x: self.start.x,
@@ -113,23 +116,18 @@ impl Simulation {
             t: self.end_time,
             x: self.end_x,
         };
-        let nodes: Vec<Turn> = std::iter::once(start)
-            .chain(self.turns.iter().copied())
-            .chain([end])
-            .collect();
-        let pair = nodes.windows(2).rev().find(|pair| {
-            let beyond = |turn: &Turn| turn.x.abs() > level;
-            beyond(&pair[0]) || beyond(&pair[1])
-        })?;
-        let (from, to) = (pair[0], pair[1]);
-        let outward = to.x.abs() > level;
-        if outward && pair[1] != end && from.x.abs() > level && from.x * to.x > 0.0 {
-            return None;
-        }
-        let distance = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x);
-        // The crossing that comes last: on the way in where it ends inside, on the way out where it ends beyond.
-        let side = if outward { to.x.signum() } else { from.x.signum() };
-        let edge = side * level;
-        ((from.x - edge) * (to.x - edge) < 0.0).then(|| crossing_of(|t| distance(t) - edge, from.t, to.t))
+        let index = self.turns.iter().rposition(|turn| turn.x.abs() > level);
+        let from = match index {
+            Some(index) => self.turns[index],
+            None if start.x.abs() > level => start,
+            None => return None,
+        };
+        let to = index
+            .map_or(self.turns.first(), |index| self.turns.get(index + 1))
+            .copied()
+            .unwrap_or(end);
+        let edge = level.copysign(from.x);
+        let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
+        Some(crossing_of(excess, from.t, to.t))
     }
 }

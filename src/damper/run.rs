@@ -290,7 +290,7 @@ impl Runner {
             return;
         }
         let contact = self.side().filter(|_| matches!(self.state, State::Contact(_)));
-        if !contact.is_some() && !self.last && self.t + self.length * self.unit <= self.t {
+        if contact.is_none() && !self.last && self.t + self.length * self.unit <= self.t {
             self.stop = Some(Stop::StepTooSmall { t: self.t });
             return;
         }

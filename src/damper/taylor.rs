@@ -338,11 +338,9 @@ pub(super) fn flight<const L: usize>(moment: &Moment<L>, order: usize, terms: Te
             let push = product(&series.drive[0], &series.cosine, n);
             force = each(|lane| force[lane] + moment.beta[lane] * push[lane]);
         }
-        for lane in 0..L {
-            let factor = moment.unit[lane] * INVERSE[n + 1];
-            series.place[n + 1][lane] = factor * series.velocity[n][lane];
-            series.velocity[n + 1][lane] = factor * force[lane];
-        }
+        let factor: [f64; L] = each(|lane| moment.unit[lane] * INVERSE[n + 1]);
+        series.place[n + 1] = each(|lane| factor[lane] * series.velocity[n][lane]);
+        series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
     }
 }
 
@@ -396,11 +394,9 @@ pub(super) fn contact<const L: usize>(moment: &Moment<L>, order: usize, terms: T
             let damped = product(&series.velocity, &series.fourth, n);
             force = each(|lane| force[lane] - moment.mu[lane] * damped[lane]);
         }
-        for lane in 0..L {
-            let factor = moment.unit[lane] * INVERSE[n + 1];
-            series.place[n + 1][lane] = 0.5 * factor * series.velocity[n][lane];
-            series.velocity[n + 1][lane] = factor * force[lane];
-            series.time[n + 1][lane] = factor * series.place[n][lane];
-        }
+        let factor: [f64; L] = each(|lane| moment.unit[lane] * INVERSE[n + 1]);
+        series.time[n + 1] = each(|lane| factor[lane] * series.place[n][lane]);
+        series.place[n + 1] = each(|lane| 0.5 * factor[lane] * series.velocity[n][lane]);
+        series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
     }
 }

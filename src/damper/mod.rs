@@ -49,6 +49,7 @@ pub use model::{Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use path::{Path, Piece, State};
 pub use rest::{NoRest, REST_FRACTION, Rest};
 
+use crate::decimal::significant;
 use crate::ode::IntegrationError;
 
 /// By which method a motion is followed.
@@ -84,7 +85,7 @@ impl Default for Options {
             duration: 50.0,
             relative_tolerance: 1e-10,
             absolute_tolerance: 1e-12,
-            maximum_steps: 1_000_000,
+            maximum_steps: 250_000,
             rest_energy: None,
             keep_path: true,
         }
@@ -101,7 +102,7 @@ pub enum SimulationError {
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
     /// A tolerance no double-precision run can keep.
-    #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0}: 1e-10 is a good choice")]
+    #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
     Tolerance(f64),
     /// Runge-Kutta cannot begin.
     #[error("Runge-Kutta: {0}")]
@@ -146,26 +147,31 @@ impl Stop {
 
 impl fmt::Display for Stop {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = |t: &f64| significant(*t, 12);
         match self {
             Self::Duration => write!(formatter, "the end of the duration was reached"),
             Self::Calm => write!(formatter, "the energy fell to the rest energy"),
             Self::NotFinite { t } => {
                 write!(
                     formatter,
-                    "no finite value after t = {t}: the numbers of the problem are too large"
+                    "no finite value after t = {}: the numbers of the problem are too large",
+                    time(t)
                 )
             }
             Self::Steps { t } => write!(
                 formatter,
-                "the allowed number of steps was used up at t = {t}: shorten the duration or loosen the tolerance"
+                "the allowed number of steps was used up at t = {}: shorten the duration or loosen the tolerance",
+                time(t)
             ),
             Self::StepTooSmall { t } => write!(
                 formatter,
-                "the tolerance could not be reached at t = {t}: the steps became too small; loosen it"
+                "the tolerance could not be reached at t = {}: the steps became too small; loosen it",
+                time(t)
             ),
             Self::Stalled { t } => write!(
                 formatter,
-                "events follow each other without time going on at t = {t}: change the barrier or the friction a little"
+                "events follow each other without time going on at t = {}: change the barrier or the friction a little",
+                time(t)
             ),
         }
     }

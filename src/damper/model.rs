@@ -108,7 +108,7 @@ pub enum ModelError {
     /// A parameter that is no finite number.
     #[error("{name} must be a finite number, not {value}")]
     NotFinite {
-        /// The key of the problem file.
+        /// The section and key of the problem file.
         name: &'static str,
         /// What was given.
         value: f64,
@@ -116,14 +116,14 @@ pub enum ModelError {
     /// A parameter below zero.
     #[error("{name} must not be negative, but is {value}")]
     Negative {
-        /// The key of the problem file.
+        /// The section and key of the problem file.
         name: &'static str,
         /// What was given.
         value: f64,
     },
     /// A stiffness that is not positive.
     #[error(
-        "the stiffness gamma must be a positive number, not {0}: for a pendulum without a barrier put it out of reach"
+        "[contact] gamma must be a positive number, not {0}: for a pendulum without a barrier put it out of reach"
     )]
     Stiffness(f64),
     /// Barriers in the wrong order.
@@ -156,15 +156,15 @@ impl Model {
     /// [`ModelError`] names the first parameter that does not.
     pub fn check(&self, start: Start) -> Result<(), ModelError> {
         let numbers = [
-            ("zeta", self.zeta),
-            ("alpha", self.alpha),
-            ("mu", self.mu),
-            ("frequency_ratio", self.frequency_ratio),
-            ("beta", self.beta),
-            ("barrier", self.left.unwrap_or(0.0)),
-            ("barrier", self.right.unwrap_or(0.0)),
-            ("start", start.x),
-            ("speed", start.velocity),
+            ("[damping] zeta", self.zeta),
+            ("[damping] alpha", self.alpha),
+            ("[contact] mu", self.mu),
+            ("[excitation] frequency_ratio", self.frequency_ratio),
+            ("[excitation] beta", self.beta),
+            ("[pendulum] barrier", self.left.unwrap_or(0.0)),
+            ("[pendulum] barrier", self.right.unwrap_or(0.0)),
+            ("[pendulum] start", start.x),
+            ("[pendulum] speed", start.velocity),
         ];
         if let Some(&(name, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
             return Err(ModelError::NotFinite { name, value });

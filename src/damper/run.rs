@@ -76,6 +76,8 @@ pub(super) struct Runner {
 enum Event {
     Turn,
     Touch(Side),
+    /// At rest on the barrier, see [`Runner::lean`].
+    Settle(Side),
     Release,
     /// The contact would begin to pull.
     Detach,
@@ -426,6 +428,10 @@ impl Runner {
                 self.turn();
             }
             Some(Event::Touch(side)) => self.touch(side, side.sign() * v_end),
+            Some(Event::Settle(side)) => {
+                (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
+                self.fly();
+            }
             Some(Event::Release) => self.leave(v_end),
             Some(Event::Reattach) => {
                 if let State::Detached(side) = self.state {
@@ -463,9 +469,12 @@ impl Runner {
                     && sign * (x_to - barrier) > 0.0
                 {
                     let touch = level_crossing(x, barrier, from, to);
-                    // Rounding alone is no touch.
                     if sign * value(v, touch) > 0.0 {
                         return (touch, Some(Event::Touch(side)));
+                    }
+                    // Beyond it by more than rounding, and yet no speed: it turned on the barrier and is pushed in.
+                    if sign * (x_to - barrier) > 8.0 * f64::EPSILON * barrier.abs().max(1.0) {
+                        return (touch, Some(Event::Settle(side)));
                     }
                 }
             }

@@ -49,7 +49,7 @@ pub enum DamperError {
     #[error("[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing")]
     NoFrequency(f64),
     /// A tolerance that cannot be kept.
-    #[error("[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0}: 1e-10 is a good choice")]
+    #[error("[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
     Tolerance(f64),
     /// A duration that is none.
     #[error("[run] duration must be a positive number, not {0}")]

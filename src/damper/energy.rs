@@ -122,7 +122,8 @@ impl Simulation {
             State::Contact(side) if node.depth == 0.0 => inside(side),
             State::Contact(_) => node.depth,
             State::Detached(side) => inside(side),
-            _ => 0.0,
+            State::Stuck => self.model.depth(node.x).map_or(0.0, |(_, depth)| depth),
+            State::Free => 0.0,
         }
     }
 }

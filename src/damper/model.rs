@@ -122,9 +122,7 @@ pub enum ModelError {
         value: f64,
     },
     /// A stiffness that is not positive.
-    #[error(
-        "[contact] gamma must be a positive number, not {0}: for a pendulum without a barrier put it out of reach"
-    )]
+    #[error("[contact] gamma must be a positive number, not {0}: for a pendulum without a barrier put it out of reach")]
     Stiffness(f64),
     /// Barriers in the wrong order.
     #[error("the left barrier at {left} must lie below the right one at {right}: give [left, right]")]

@@ -16,9 +16,17 @@ const POINTS: usize = 1600;
 
 /// The motion at equal distances of time and at its turning points, so that no peak is cut.
 fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
-    let mut times: Vec<f64> = (0..=POINTS).map(|index| motion.end_time * (index as f64 / POINTS as f64)).collect();
+    let mut times: Vec<f64> = (0..=POINTS)
+        .map(|index| motion.end_time * (index as f64 / POINTS as f64))
+        .collect();
     times.extend(motion.turns.iter().map(|turn| turn.t));
-    times.extend(motion.impacts.iter().flat_map(|impact| [Some(impact.entry_time), impact.exit_time]).flatten());
+    times.extend(
+        motion
+            .impacts
+            .iter()
+            .flat_map(|impact| [Some(impact.entry_time), impact.exit_time])
+            .flatten(),
+    );
     times.sort_by(f64::total_cmp);
     times.dedup();
     times

@@ -17,7 +17,7 @@ pub struct Arguments {
     /// A TOML file, or - for standard input; without it the paper's pendulum and barrier
     file: Option<PathBuf>,
     /// Report the state at this time (repeatable)
-    #[arg(long, value_name = "T", value_parser = time)]
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     sample: Vec<f64>,
     /// The method; `both` sets the fast one beside its judge
     #[arg(long, value_enum, default_value_t = Method::Taylor)]

@@ -72,7 +72,6 @@ enum Format {
     Text,
     Latex,
     Json,
-    /// Comma-separated values: the trajectory of a simulation
     Csv,
 }
 

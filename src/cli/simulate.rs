@@ -19,7 +19,8 @@ pub struct Arguments {
     /// Report the state at this time (repeatable)
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     sample: Vec<f64>,
-    /// The method; `both` sets the fast one beside its judge
+    /// The method: power series with the contact in a variable in which it is analytic; Runge-Kutta, one smooth phase at
+    /// a time; or both, and how far they differ
     #[arg(long, value_enum, default_value_t = Method::Taylor)]
     integrator: Method,
     /// Follow many motions: one parameter over a range, equally spaced; twice for two (a grid)
@@ -34,11 +35,8 @@ pub struct Arguments {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Method {
-    /// Power series, the contact in a variable in which it is analytic
     Taylor,
-    /// Runge-Kutta, one smooth phase at a time
     RungeKutta,
-    /// Both, and how far they differ
     Both,
 }
 

@@ -66,6 +66,15 @@ fn method(motion: &Simulation) -> &'static str {
     }
 }
 
+/// A number as it was typed: every digit, unless there are very many zeros.
+fn typed(value: f64) -> String {
+    if (1e-6..1e9).contains(&value.abs()) || value == 0.0 {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// An order of magnitude is enough, and below rounding none is left.
 fn size(value: f64) -> String {
     if value < 1e-15 {
@@ -113,8 +122,8 @@ fn header(report: &Report) -> String {
         ),
     );
     match (left, right) {
-        (Some(left), Some(right)) => entry("xc", format!("{} and {}", decimal(left), decimal(right))),
-        (Some(only), None) | (None, Some(only)) => entry("xc", decimal(only)),
+        (Some(left), Some(right)) => entry("xc", format!("{} and {}", typed(left), typed(right))),
+        (Some(only), None) | (None, Some(only)) => entry("xc", typed(only)),
         (None, None) => {}
     }
     entry("gamma", format!("{}   ({gamma_source})", decimal(gamma)));
@@ -183,7 +192,10 @@ fn impacts(text: &mut String, motion: &Simulation) {
 
 fn rest(text: &mut String, motion: &Simulation) {
     let rest = motion.rest();
-    let _ = writeln!(text, "\nRest: 10 % of the amplitude {}", decimal(rest.amplitude));
+    let _ = match rest.amplitude {
+        0.0 => writeln!(text, "\nRest"),
+        amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}", decimal(amplitude)),
+    };
     let _ = match rest.time {
         Ok(time) => writeln!(
             text,

@@ -131,7 +131,7 @@ pub(super) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(us
         });
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                runner.advance(ends.lane(lane), || series.lane(lane));
+                runner.advance(ends.lane(lane), || series.lane(order, lane));
             }
             fresh.push(place);
         }

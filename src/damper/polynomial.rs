@@ -45,23 +45,33 @@ impl Roots {
     }
 }
 
-/// p(u).
+/// p(u), as even part + u odd part: two short chains of operations instead of a long one.
 pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
-    let mut sum = 0.0;
-    for &coefficient in coefficients.iter().rev() {
-        sum = sum * u + coefficient;
+    let square = u * u;
+    let pairs = coefficients.chunks_exact(2);
+    let mut even = pairs.remainder().first().copied().unwrap_or(0.0);
+    let mut odd = 0.0;
+    for pair in pairs.rev() {
+        even = even * square + pair[0];
+        odd = odd * square + pair[1];
     }
-    sum
+    even + u * odd
 }
 
-/// p(u) and p'(u).
+/// p(u) and p'(u), likewise.
 pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
-    let (mut sum, mut slope) = (0.0, 0.0);
-    for &coefficient in coefficients.iter().rev() {
-        slope = slope * u + sum;
-        sum = sum * u + coefficient;
+    let square = u * u;
+    let pairs = coefficients.chunks_exact(2);
+    let mut even = pairs.remainder().first().copied().unwrap_or(0.0);
+    let (mut odd, mut even_slope, mut odd_slope) = (0.0, 0.0, 0.0);
+    for pair in pairs.rev() {
+        even_slope = even_slope * square + even;
+        odd_slope = odd_slope * square + odd;
+        even = even * square + pair[0];
+        odd = odd * square + pair[1];
     }
-    (sum, slope)
+    // The slopes so far are those by u^2.
+    (even + u * odd, 2.0 * u * (even_slope + u * odd_slope) + odd)
 }
 
 /// A bound on |p(u) - p(0)| for 0 <= u <= h.
@@ -69,6 +79,15 @@ pub(super) fn variation(coefficients: &[f64], h: f64) -> f64 {
     let mut sum = 0.0;
     for coefficient in coefficients.iter().skip(1).rev() {
         sum = (sum + coefficient.abs()) * h;
+    }
+    sum
+}
+
+/// A bound on |p'(u) - p'(0)| for 0 <= u <= h.
+fn slope_variation(coefficients: &[f64], h: f64) -> f64 {
+    let mut sum = 0.0;
+    for (k, coefficient) in coefficients.iter().enumerate().skip(2).rev() {
+        sum = (sum + k as f64 * coefficient.abs()) * h;
     }
     sum
 }
@@ -85,6 +104,14 @@ fn curvature(coefficients: &[f64], h: f64) -> f64 {
 /// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does not count: it was
 /// the end of the step before.
 pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
+    if coefficients.first().is_some_and(|first| first.abs() > variation(coefficients, h)) {
+        return Roots::new();
+    }
+    near_sign_changes(coefficients, h, value(coefficients, h))
+}
+
+/// The same where it is known that p may vanish, and what it is at h.
+pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots {
     let mut found = Roots::new();
     // Leaving zero is no change of sign: p(u)/u^k has the same sign for u > 0.
     let zeros = coefficients
@@ -95,7 +122,17 @@ pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
     let Some(&first) = coefficients.first() else {
         return found;
     };
-    if first.abs() > variation(coefficients, h) {
+    // One that only rises or only falls has at most one root.
+    if let [_, slope, ..] = coefficients
+        && slope.abs() > slope_variation(coefficients, h)
+    {
+        // The sign at the end is that of p/u^k too.
+        if end == 0.0 {
+            found.push(h);
+        } else if end.signum() != first.signum() {
+            let end = if zeros == 0 { end } else { value(coefficients, h) };
+            found.push(bracketed(coefficients, 0.0, (0.0, first), (h, end)));
+        }
         return found;
     }
     let curvature = curvature(coefficients, h);
@@ -155,8 +192,24 @@ pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f6
     if start == 0.0 || end == 0.0 || (start > 0.0) == (end > 0.0) {
         return if start.abs() < end.abs() { from } else { to };
     }
+    bracketed(coefficients, level, (from, start), (to, end))
+}
+
+/// The same where the values of p - level at both ends are known, and of opposite sign.
+pub(super) fn bracketed(coefficients: &[f64], level: f64, (from, start): (f64, f64), (to, end): (f64, f64)) -> f64 {
     let (mut left, mut right) = (from, to);
     let mut u = from + (to - from) * (start / (start - end));
+    // From the beginning of the series: the parabola with the slope there is a better guess than the chord.
+    if from == 0.0
+        && let [_, slope, ..] = *coefficients
+    {
+        let bend = (end - start - slope * to) / (to * to);
+        let root = (slope * slope - 4.0 * bend * start).sqrt();
+        let guess = -2.0 * start / (slope + root.copysign(slope));
+        if guess > left && guess < right {
+            u = guess;
+        }
+    }
     // Newton's steps converge in a few, halvings in 60.
     for _ in 0..100 {
         let (sum, slope) = value_and_slope(coefficients, u);
@@ -170,12 +223,10 @@ pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f6
             right = u;
         }
         let newton = u - height / slope;
-        let next = if newton > left && newton < right {
-            newton
-        } else {
-            0.5 * (left + right)
-        };
-        if (next - u).abs() <= 2.0 * f64::EPSILON * u.abs() || next <= left || next >= right {
+        let next = if newton > left && newton < right { newton } else { 0.5 * (left + right) };
+        // The error of a step of Newton's is about the square of the one before.
+        let settled = next == newton && (next - u).abs() <= 1e-8 * (to - from);
+        if settled || next <= left || next >= right {
             return next;
         }
         u = next;

@@ -1,7 +1,7 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
 //! ```text
-//! step:    |v_n| h^n <= tolerance for the last coefficients of the velocity, n = p-4 ... p
+//! step:    (h/r)^(p+1) <= tolerance, 1/r = max |v_n|^(1/n) over the last coefficients of the velocity, n = p-4 ... p
 //! turn:    v = 0, every change of sign in the step; between two of them x only rises or only falls
 //! touch:   x = x_r on a rising part that ends beyond it: whether there is one is decided at the turning point, where
 //!          x is known best, so grazing contacts are neither missed nor invented
@@ -16,18 +16,17 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use super::model::{Friction, Model, Side, Start};
 use super::path::{Path, State};
-use super::polynomial::{Roots, crossing, crossing_of, level_crossing, sign_changes, value, variation};
+use super::polynomial::{
+    Roots, bracketed, crossing_of, level_crossing, near_sign_changes, sign_changes, value, variation,
+};
 use super::taylor::{Coefficients, End, HIGHEST_ORDER, INVERSE, LAST, Moment, Terms, contact, flight};
 use super::{Impact, Integrator, Options, Simulation, Stop, Turn};
 
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
 
-/// The part of the tolerance that a step may use up: so the error of a run of some ten swings stays near the tolerance.
+/// The part of the tolerance that the first term left out may use up; those after it add as much again.
 const SAFETY: f64 = 0.5;
-
-/// The same in contact, where a small error of the speed goes a long way afterwards.
-const CONTACT_SAFETY: f64 = 0.5;
 
 /// The longest step in contact, in units of its own scale.
 const LONGEST_CONTACT_STEP: f64 = 64.0;
@@ -100,7 +99,7 @@ pub(super) fn alone(model: Model, start: Start, options: Options) -> Simulation 
         }
         let length = runner.reach(series.last(order, 0));
         let ends = series.ends(&[length], order);
-        runner.advance(ends.lane(0), || series.lane(0));
+        runner.advance(ends.lane(0), || series.lane(order, 0));
     }
     runner.finish(start)
 }
@@ -266,16 +265,16 @@ impl Runner {
         let tolerance = &self.options;
         if matches!(self.state, State::Contact(_)) {
             let entry = self.impacts.last().map_or(0.0, |impact| impact.speed_in);
-            let size = tolerance.relative_tolerance * entry.max(self.velocity.abs());
-            let allowed = CONTACT_SAFETY * (size + tolerance.absolute_tolerance);
-            self.proposed = step_length(allowed, last, self.order);
+            let size = entry.max(self.velocity.abs()).max(tolerance.absolute_tolerance);
+            let allowed = SAFETY * (tolerance.relative_tolerance * size + tolerance.absolute_tolerance);
+            self.proposed = step_length(size, allowed, last, self.order);
             self.length = self.proposed.min(LONGEST_CONTACT_STEP);
             self.last = false;
             return self.length;
         }
-        let size = self.place.abs().max(self.velocity.abs());
+        let size = self.place.abs().max(self.velocity.abs()).max(tolerance.absolute_tolerance);
         let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
-        self.proposed = step_length(allowed, last, self.order);
+        self.proposed = step_length(size, allowed, last, self.order);
         let remaining = self.options.duration - self.t;
         let length = self.proposed.min(LONGEST_STEP / self.unit);
         self.last = length * self.unit >= remaining;
@@ -307,8 +306,8 @@ impl Runner {
             }
             self.released = false;
             match contact {
-                Some(contact) => self.advance_contact(contact, &place, &velocity, &time),
-                None => self.advance_flight(&place, &velocity),
+                Some(contact) => self.advance_contact(contact, end, [&place, &velocity, &time]),
+                None => self.advance_flight(end, &place, &velocity),
             }
         }
         self.idle = if self.t > before { 0 } else { self.idle + 1 };
@@ -391,15 +390,19 @@ impl Runner {
         }
     }
 
-    fn advance_flight(&mut self, x: &[f64], v: &[f64]) {
+    fn advance_flight(&mut self, whole: End, x: &[f64], v: &[f64]) {
         let (x, v) = (&x[..=self.order], &v[..=self.order]);
         let h = self.length;
         let (mut end, mut event) = match self.state {
             State::Detached(side) => self.detached_event(side, x, v, h),
-            _ => self.flight_event(x, v, h),
+            _ => self.flight_event(x, v, h, whole),
         };
         let energy = |u: f64| self.model.energy(value(x, u), value(v, u));
-        let (mut x_end, mut v_end) = (value(x, end), value(v, end));
+        let (mut x_end, mut v_end) = if end == h {
+            (whole.place, whole.velocity)
+        } else {
+            (value(x, end), value(v, end))
+        };
         let (mut sine, mut cosine) = x_end.sin_cos();
         if let Some(calm) = self.options.rest_energy
             && self.is_calm(v_end, cosine)
@@ -457,18 +460,22 @@ impl Runner {
     }
 
     /// What ends a free flight before `h`, and where. Turning points on the way are noted.
-    fn flight_event(&mut self, x: &[f64], v: &[f64], h: f64) -> (f64, Option<Event>) {
-        let turns = turning_points(v, h);
-        let mut from = 0.0;
+    fn flight_event(&mut self, x: &[f64], v: &[f64], h: f64, end: End) -> (f64, Option<Event>) {
+        let turns = turning_points(v, h, end);
+        let (mut from, mut x_from) = (0.0, x[0]);
         let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
         for (to, turning) in ends {
-            let x_to = value(x, to);
+            let x_to = if turning { value(x, to) } else { end.place };
             for side in [Side::Right, Side::Left] {
                 let sign = side.sign();
                 if let Some(barrier) = self.model.barrier(side)
                     && sign * (x_to - barrier) > 0.0
                 {
-                    let touch = level_crossing(x, barrier, from, to);
+                    let touch = if sign * (x_from - barrier) < 0.0 {
+                        bracketed(x, barrier, (from, x_from - barrier), (to, x_to - barrier))
+                    } else {
+                        from
+                    };
                     if sign * value(v, touch) > 0.0 {
                         return (touch, Some(Event::Touch(side)));
                     }
@@ -487,7 +494,7 @@ impl Runner {
                     return (to, Some(Event::Turn));
                 }
             }
-            from = to;
+            (from, x_from) = (to, x_to);
         }
         (h, None)
     }
@@ -512,23 +519,39 @@ impl Runner {
         (catch, catches.as_slice().first().map(|_| Event::Reattach))
     }
 
-    fn advance_contact(&mut self, (side, barrier): (Side, f64), w: &[f64], v: &[f64], time: &[f64]) {
+    fn advance_contact(
+        &mut self,
+        (side, barrier): (Side, f64),
+        whole: End,
+        series: [&[f64; HIGHEST_ORDER + 1]; 3],
+    ) {
         let order = self.order;
-        let (w, v, time) = (&w[..=order], &v[..=order], &time[..=order]);
+        let [w, v, time] = series.map(|series| &series[..=order]);
         let remaining = self.options.duration - self.t;
-        let mut h = self.length;
-        let last = value(time, h) >= remaining;
+        let (mut h, mut whole) = (self.length, whole);
+        let last = whole.time >= remaining;
         if last {
             h = crossing_of(|u| value(time, u) - remaining, 0.0, h);
+            whole = End {
+                place: value(w, h),
+                velocity: value(v, h),
+                time: remaining,
+                variation: variation(v, h),
+            };
         }
-        let turns = turning_points(v, h);
+        let turns = turning_points(v, h, whole);
         let (mut end, mut event) = (h, None);
-        let mut from = 0.0;
+        let (mut from, mut w_from) = (0.0, w[0]);
         let mut deepest = 0.0_f64;
         for (to, turning) in turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]) {
-            let w_to = value(w, to);
+            let w_to = if turning { value(w, to) } else { whole.place };
             if w_to <= 0.0 && to > 0.0 {
-                (end, event) = (crossing(w, from, to), Some(Event::Release));
+                let release = if w_from > 0.0 && w_to < 0.0 {
+                    bracketed(w, 0.0, (from, w_from), (to, w_to))
+                } else {
+                    to
+                };
+                (end, event) = (release, Some(Event::Release));
                 break;
             }
             deepest = deepest.max(w_to * w_to);
@@ -542,7 +565,7 @@ impl Runner {
                     break;
                 }
             }
-            from = to;
+            (from, w_from) = (to, w_to);
         }
         // The contact never pulls: gamma + mu v stays positive.
         if self.model.mu > 0.0 && v[0] - variation(v, end) < -self.model.gamma / self.model.mu {
@@ -556,7 +579,8 @@ impl Runner {
             }
         }
         let energy = |u: f64| {
-            let depth = value(w, u).powi(2);
+            let depth = value(w, u);
+            let depth = depth * depth;
             self.model.swing_energy(barrier + side.sign() * depth, value(v, u)) + self.model.elastic_energy(depth)
         };
         if let Some(calm) = self.options.rest_energy
@@ -569,7 +593,7 @@ impl Runner {
         self.t = if last && end == h {
             self.options.duration
         } else {
-            start + value(time, end).max(0.0)
+            start + if end == h { whole.time } else { value(time, end) }.max(0.0)
         };
         if self.options.keep_path {
             self.path
@@ -578,7 +602,7 @@ impl Runner {
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
         }
-        let (w_end, v_end) = (value(w, end), value(v, end));
+        let (w_end, v_end) = if end == h { (whole.place, whole.velocity) } else { (value(w, end), value(v, end)) };
         (self.place, self.velocity) = (w_end, v_end);
         if event != Some(Event::Release) {
             self.look(barrier + side.sign() * w_end * w_end);
@@ -754,21 +778,24 @@ impl Runner {
 }
 
 /// Where the velocity changes sign.
-fn turning_points(v: &[f64], h: f64) -> Roots {
-    if v[0].abs() > variation(v, h) {
+fn turning_points(v: &[f64], h: f64, end: End) -> Roots {
+    if v[0].abs() > end.variation {
         return Roots::new();
     }
-    sign_changes(v, h)
+    near_sign_changes(v, h, end.velocity)
 }
 
-/// The longest step at which each of the last coefficients stays within what is allowed.
-fn step_length(allowed: f64, last: [f64; LAST], order: usize) -> f64 {
-    let mut largest = -1e3_f64;
+/// The longest step at which the first term left out stays within what is allowed, by the radius of convergence that
+/// the last coefficients tell: |v_n| ~ size / radius^n.
+fn step_length(size: f64, allowed: f64, last: [f64; LAST], order: usize) -> f64 {
+    let logarithm_of_size = logarithm(size);
+    let mut inverse_radius = -1e3_f64;
     for (back, coefficient) in last.iter().enumerate() {
-        let excess = logarithm(coefficient.abs()) - logarithm(allowed);
-        largest = largest.max(excess * INVERSE[order - back]);
+        let excess = logarithm(coefficient.abs()) - logarithm_of_size;
+        inverse_radius = inverse_radius.max(excess * INVERSE[order - back]);
     }
-    power(-largest)
+    let left_out = (logarithm(allowed) - logarithm_of_size) * INVERSE[order + 1];
+    power(left_out - inverse_radius)
 }
 
 /// The logarithm to base 2, to two decimals, which is enough for a step: from the bits of the number.

@@ -172,33 +172,47 @@ impl<const L: usize> Coefficients<L> {
     }
 
     /// The series of one motion: x or w, v, t.
-    pub(super) fn lane(&self, lane: usize) -> [[f64; HIGHEST_ORDER + 1]; 3] {
+    pub(super) fn lane(&self, order: usize, lane: usize) -> [[f64; HIGHEST_ORDER + 1]; 3] {
         let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
         for (own, all) in own.iter_mut().zip([&self.place, &self.velocity, &self.time]) {
-            for (coefficient, lanes) in own.iter_mut().zip(all) {
+            for (coefficient, lanes) in own.iter_mut().zip(all).take(order + 1) {
                 *coefficient = lanes[lane];
             }
         }
         own
     }
 
-    /// The values of the series where the steps end: Horner's rule, all four at once.
+    /// The values of the series where the steps end, all four at once, in the order of operations of
+    /// [`value`](super::polynomial::value).
     #[inline(always)]
     pub(super) fn ends(&self, lengths: &[f64; L], order: usize) -> Ends<L> {
+        let order = order.min(HIGHEST_ORDER);
         let zero = [0.0; L];
-        let (mut place, mut velocity, mut time, mut variation) = (zero, zero, zero, zero);
-        let terms = self.place.iter().zip(&self.velocity).zip(&self.time).take(order + 1);
-        for (n, ((a, b), c)) in terms.enumerate().rev() {
-            for lane in 0..L {
-                let h = lengths[lane];
-                place[lane] = place[lane] * h + a[lane];
-                velocity[lane] = velocity[lane] * h + b[lane];
-                time[lane] = time[lane] * h + c[lane];
-                if n > 0 {
-                    variation[lane] = (variation[lane] + b[lane].abs()) * h;
+        let (mut even, mut odd, mut variation) = ([zero; 3], [zero; 3], zero);
+        let square: [f64; L] = each(|lane| lengths[lane] * lengths[lane]);
+        let all = [&self.place, &self.velocity, &self.time];
+        if order.is_multiple_of(2) {
+            even = all.map(|series| series[order]);
+            variation = each(|lane| self.velocity[order][lane].abs() * lengths[lane]);
+        }
+        for pair in (0..order.div_ceil(2)).rev() {
+            for (series, (even, odd)) in all.iter().zip(even.iter_mut().zip(&mut odd)) {
+                for lane in 0..L {
+                    even[lane] = even[lane] * square[lane] + series[2 * pair][lane];
+                    odd[lane] = odd[lane] * square[lane] + series[2 * pair + 1][lane];
                 }
             }
+            for lane in 0..L {
+                let outer = (variation[lane] + self.velocity[2 * pair + 1][lane].abs()) * lengths[lane];
+                variation[lane] = if pair == 0 {
+                    outer
+                } else {
+                    (outer + self.velocity[2 * pair][lane].abs()) * lengths[lane]
+                };
+            }
         }
+        let [place, velocity, time] =
+            [0, 1, 2].map(|part| each(|lane| even[part][lane] + lengths[lane] * odd[part][lane]));
         Ends {
             place,
             velocity,

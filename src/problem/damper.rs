@@ -165,8 +165,9 @@ impl Problem {
         }
         let options = Options {
             duration,
-            relative_tolerance: tolerance,
-            absolute_tolerance: 1e-2 * tolerance,
+            // The errors of some hundred steps add up, and impacts multiply them.
+            relative_tolerance: (1e-2 * tolerance).max(1e-15),
+            absolute_tolerance: 1e-4 * tolerance,
             ..Options::default()
         };
         Ok(Damper {

@@ -63,7 +63,7 @@ pub fn simulation(report: &Report) -> Value {
             "beta": model.beta,
             "frequency_ratio": model.frequency_ratio,
             "duration": motion.options.duration,
-            "integrator_tolerance": motion.options.relative_tolerance,
+            "step_tolerance": motion.options.relative_tolerance,
         },
         "integrator": integrator(motion),
         "final_state": final_state(motion),

@@ -21,7 +21,13 @@ fn run(model: &Model, start: Start, tolerance: f64, duration: f64, integrator: I
 
 /// As accurate as a run by the program with this `integrator_tolerance`, whose steps get a hundredth of it.
 fn taylor(model: &Model, start: Start, tolerance: f64, duration: f64) -> Simulation {
-    run(model, start, (1e-2 * tolerance).max(1e-15), duration, Integrator::Taylor)
+    run(
+        model,
+        start,
+        (1e-2 * tolerance).max(1e-15),
+        duration,
+        Integrator::Taylor,
+    )
 }
 
 /// The pendulum released at rest from x = -amplitude: sin(x/2) = -k cn/dn, k = sin(amplitude/2).

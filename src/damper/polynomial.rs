@@ -104,7 +104,10 @@ fn curvature(coefficients: &[f64], h: f64) -> f64 {
 /// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does not count: it was
 /// the end of the step before.
 pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
-    if coefficients.first().is_some_and(|first| first.abs() > variation(coefficients, h)) {
+    if coefficients
+        .first()
+        .is_some_and(|first| first.abs() > variation(coefficients, h))
+    {
         return Roots::new();
     }
     near_sign_changes(coefficients, h, value(coefficients, h))
@@ -135,57 +138,70 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
         }
         return found;
     }
-    let curvature = curvature(coefficients, h);
-    // Intervals still to look at, the leftmost on top.
-    let mut stack = [(0.0, 0.0); 64];
-    stack[0] = (0.0, h);
-    let mut waiting = 1;
-    let mut sign = first.signum();
-    while waiting > 0 && !found.is_full() {
-        waiting -= 1;
-        let (from, to) = stack[waiting];
+    let end = if zeros == 0 { end } else { value(coefficients, h) };
+    let mut search = Search {
+        coefficients,
+        curvature: curvature(coefficients, h),
+        sign: first.signum(),
+        found,
+    };
+    search.look((0.0, first), (h, end), DEEPEST);
+    search.found
+}
+
+/// Halvings after which an interval is called a point.
+const DEEPEST: usize = 56;
+
+/// A search from left to right.
+struct Search<'a> {
+    coefficients: &'a [f64],
+    /// A bound on |p''|.
+    curvature: f64,
+    /// The sign of p just before the place that is looked at.
+    sign: f64,
+    found: Roots,
+}
+
+impl Search<'_> {
+    /// Looks at the interval between two places with their values.
+    fn look(&mut self, left: (f64, f64), right: (f64, f64), halvings: usize) {
+        if self.found.is_full() {
+            return;
+        }
+        let (from, to) = (left.0, right.0);
         let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
-        let (height, slope) = value_and_slope(coefficients, middle);
-        if height.abs() > slope.abs() * radius + 0.5 * curvature * radius * radius {
+        let (height, slope) = value_and_slope(self.coefficients, middle);
+        if height.abs() > slope.abs() * radius + 0.5 * self.curvature * radius * radius {
             // The sign is the same all over the interval; a change since the last one lies at its very beginning.
-            if height.signum() != sign {
-                found.push(from);
-                sign = height.signum();
+            if height.signum() != self.sign {
+                self.add(from);
             }
-            continue;
+            return;
         }
-        let narrow = radius <= 4.0 * f64::EPSILON * to || waiting + 2 > stack.len();
-        if narrow || slope.abs() > curvature * radius {
-            let end = value(coefficients, to);
-            if end == 0.0 {
-                found.push(to);
-                sign = -sign;
-            } else if end.signum() != sign {
-                let start = value(coefficients, from);
-                let root = if narrow || start == 0.0 || start.signum() != sign {
-                    middle.min(to).max(from)
-                } else {
-                    crossing(coefficients, from, to)
-                };
-                found.push(root);
-                sign = end.signum();
-            }
-            continue;
+        let narrow = halvings == 0 || radius <= 4.0 * f64::EPSILON * to;
+        if !narrow && slope.abs() <= self.curvature * radius {
+            self.look(left, (middle, height), halvings - 1);
+            self.look((middle, height), right, halvings - 1);
+        } else if right.1 == 0.0 {
+            self.add(to);
+        } else if right.1.signum() != self.sign {
+            let clear = !narrow && left.1 != 0.0 && left.1.signum() == self.sign;
+            self.add(if clear {
+                bracketed(self.coefficients, 0.0, left, right)
+            } else {
+                middle
+            });
         }
-        stack[waiting] = (middle, to);
-        stack[waiting + 1] = (from, middle);
-        waiting += 2;
     }
-    found
+
+    fn add(&mut self, root: f64) {
+        self.found.push(root);
+        self.sign = -self.sign;
+    }
 }
 
-/// The place between `from` and `to` where p changes sign once; the nearer end where it does not: Newton's method,
-/// halving the interval where that would leave it.
-pub(super) fn crossing(coefficients: &[f64], from: f64, to: f64) -> f64 {
-    level_crossing(coefficients, 0.0, from, to)
-}
-
-/// The same for p - level.
+/// The place between `from` and `to` where p - level changes sign once; the nearer end where it does not: Newton's
+/// method, halving the interval where that would leave it.
 pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f64) -> f64 {
     let start = value(coefficients, from) - level;
     let end = value(coefficients, to) - level;
@@ -223,7 +239,11 @@ pub(super) fn bracketed(coefficients: &[f64], level: f64, (from, start): (f64, f
             right = u;
         }
         let newton = u - height / slope;
-        let next = if newton > left && newton < right { newton } else { 0.5 * (left + right) };
+        let next = if newton > left && newton < right {
+            newton
+        } else {
+            0.5 * (left + right)
+        };
         // The error of a step of Newton's is about the square of the one before.
         let settled = next == newton && (next - u).abs() <= 1e-8 * (to - from);
         if settled || next <= left || next >= right {

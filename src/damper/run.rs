@@ -272,7 +272,11 @@ impl Runner {
             self.last = false;
             return self.length;
         }
-        let size = self.place.abs().max(self.velocity.abs()).max(tolerance.absolute_tolerance);
+        let size = self
+            .place
+            .abs()
+            .max(self.velocity.abs())
+            .max(tolerance.absolute_tolerance);
         let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
         self.proposed = step_length(size, allowed, last, self.order);
         let remaining = self.options.duration - self.t;
@@ -519,12 +523,7 @@ impl Runner {
         (catch, catches.as_slice().first().map(|_| Event::Reattach))
     }
 
-    fn advance_contact(
-        &mut self,
-        (side, barrier): (Side, f64),
-        whole: End,
-        series: [&[f64; HIGHEST_ORDER + 1]; 3],
-    ) {
+    fn advance_contact(&mut self, (side, barrier): (Side, f64), whole: End, series: [&[f64; HIGHEST_ORDER + 1]; 3]) {
         let order = self.order;
         let [w, v, time] = series.map(|series| &series[..=order]);
         let remaining = self.options.duration - self.t;
@@ -602,7 +601,11 @@ impl Runner {
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
         }
-        let (w_end, v_end) = if end == h { (whole.place, whole.velocity) } else { (value(w, end), value(v, end)) };
+        let (w_end, v_end) = if end == h {
+            (whole.place, whole.velocity)
+        } else {
+            (value(w, end), value(v, end))
+        };
         (self.place, self.velocity) = (w_end, v_end);
         if event != Some(Event::Release) {
             self.look(barrier + side.sign() * w_end * w_end);

@@ -43,6 +43,8 @@ fn settings() -> insta::Settings {
     settings.add_filter(concat!(env!("CARGO_MANIFEST_DIR"), "/"), "");
     // Rounding noise by nature.
     settings.add_filter(r"residual +(< )?\S+", "residual noise");
+    settings.add_filter(r"in \d+ steps", "in some steps");
+    settings.add_filter(r#""steps": \d+"#, r#""steps": "some""#);
     settings
 }
 

@@ -103,6 +103,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         motion: &motion,
         judge: judge.as_ref(),
         sources: [damper.gamma_source, damper.mu_source],
+        tolerance: problem.run.integrator_tolerance,
         samples: &arguments.sample,
     };
     let text = match arguments.common.format {

@@ -63,6 +63,7 @@ pub fn simulation(report: &Report) -> Value {
             "beta": model.beta,
             "frequency_ratio": model.frequency_ratio,
             "duration": motion.options.duration,
+            "integrator_tolerance": report.tolerance,
             "step_tolerance": motion.options.relative_tolerance,
         },
         "integrator": integrator(motion),

@@ -22,6 +22,8 @@ pub struct Report<'a> {
     pub judge: Option<&'a Simulation>,
     /// Where gamma and mu come from.
     pub sources: [&'a str; 2],
+    /// The tolerance that was asked for; the steps of the integrator get a part of it.
+    pub tolerance: f64,
     /// Times at which the state is wanted, all within the duration.
     pub samples: &'a [f64],
 }

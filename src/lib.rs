@@ -32,6 +32,7 @@
 //! | method | [`method`] | one file each |
 //! | verify | [`verify`] | the true motion and the verdict |
 //! | contact | [`contact`], [`impact`] | the three phases of a pendulum that hits an elastic barrier |
+//! | damper | [`damper`] | the same pendulum with damping, friction, excitation and two barriers, event by event |
 //! | in and out | [`catalog`], [`problem`], [`export`] | classical oscillators, problem files; text, LaTeX, JSON, pictures |
 
 #![forbid(unsafe_code)]
@@ -61,6 +62,7 @@ pub mod method;
 pub mod verify;
 
 pub mod contact;
+pub mod damper;
 pub mod impact;
 
 pub mod catalog;

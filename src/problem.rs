@@ -3,6 +3,8 @@
 //! Angles in radians, `[design]` in SI units, the rest dimensionless as in the paper's equation (7), time in units of
 //! 1/omega, omega^2 = g/L.
 
+mod damper;
+
 use std::str::FromStr;
 
 use serde::Deserialize;
@@ -13,6 +15,8 @@ use crate::expr::{ParseError, parse_expression};
 use crate::spelling::nearest;
 use crate::symbol::Symbol;
 use crate::verify::{ValueError, Values};
+
+pub use damper::{Damper, DamperError, PARAMETERS};
 
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
@@ -55,6 +59,10 @@ pub struct Pendulum {
     pub amplitude: f64,
     /// x_c, rad, or `[left, right]`.
     pub barrier: Barrier,
+    /// x(0), rad, where it is not -amplitude.
+    pub start: Option<f64>,
+    /// x'(0), where it is not 0.
+    pub speed: Option<f64>,
 }
 
 /// One barrier on the right, or one on either side.
@@ -134,6 +142,8 @@ impl Default for Pendulum {
         Self {
             amplitude: 1.5,
             barrier: Barrier::Right(0.323),
+            start: None,
+            speed: None,
         }
     }
 }
@@ -319,7 +329,9 @@ mod tests {
             problem.pendulum,
             Pendulum {
                 amplitude: 1.5,
-                barrier: Barrier::Right(0.323)
+                barrier: Barrier::Right(0.323),
+                start: None,
+                speed: None,
             }
         );
         let (gamma, source) = problem.stiffness().unwrap();

@@ -20,7 +20,7 @@ const LAYERS: [&[&str]; 17] = [
     &["method"],
     &["verify"],
     &["contact"],
-    &["impact"],
+    &["impact", "damper"],
     &["problem"],
     &["catalog"],
     &["export"],

@@ -23,6 +23,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             let items: Vec<String> = CATALOG.iter().map(item).collect();
             format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
         }
+        Format::Csv => return super::no_table(),
         Format::Json => {
             let entries: Vec<Value> = CATALOG.iter().map(document).collect();
             json_text(&json!({ "schema": "lindstedt/catalog/1", "entries": entries }))

@@ -48,6 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let text = match arguments.common.format {
         Format::Text => text::comparison(&comparison),
         Format::Latex => latex::comparison(&comparison),
+        Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::comparison(&comparison)),
     };
     let picture = match &arguments.common.plot {

@@ -123,6 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             };
             derivation + &latex::solution(&solution, verification.as_ref())
         }
+        Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::solution(&solution, verification.as_ref())),
     };
     let picture = match (&arguments.common.plot, &verification) {

@@ -44,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let text = match arguments.common.format {
         Format::Text => text::impact(&impact, tolerance),
         Format::Latex => latex::impact(&impact, tolerance),
+        Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::impact(&impact, tolerance)),
     };
     let picture = match &arguments.common.plot {
@@ -80,6 +81,9 @@ fn setup(problem: &Problem) -> Result<Setup, Failure> {
         return refuse(
             "the three phases in closed form are those of the free motion, equation (9): leave out [excitation]",
         );
+    }
+    if problem.pendulum.start.is_some() || problem.pendulum.speed.is_some() {
+        return refuse("the three phases begin at rest at x = -amplitude: leave out `start` and `speed`");
     }
     if problem.equation.is_some() {
         return refuse("the swing of an impact is x'' + sin(x) = 0: leave out `equation`, or use `lindstedt derive`");

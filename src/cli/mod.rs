@@ -7,6 +7,7 @@ mod catalog;
 mod compare;
 mod derive;
 mod impact;
+mod simulate;
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -40,6 +41,8 @@ enum Command {
     Compare(compare::Arguments),
     /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
     Impact(impact::Arguments),
+    /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time
+    Simulate(simulate::Arguments),
     /// List the classical oscillators that `derive` knows by name
     Catalog(catalog::Arguments),
 }
@@ -72,6 +75,7 @@ enum Format {
     Text,
     Latex,
     Json,
+    Csv,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -129,6 +133,7 @@ pub fn run() -> ExitCode {
         Command::Derive(arguments) => arguments.common.clone(),
         Command::Compare(arguments) => arguments.common.clone(),
         Command::Impact(arguments) => arguments.common.clone(),
+        Command::Simulate(arguments) => arguments.common.clone(),
         Command::Catalog(arguments) => arguments.common.clone(),
     };
     let (sender, receiver) = channel();
@@ -138,6 +143,7 @@ pub fn run() -> ExitCode {
             Command::Derive(arguments) => derive::run(&arguments),
             Command::Compare(arguments) => compare::run(&arguments),
             Command::Impact(arguments) => impact::run(&arguments),
+            Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Catalog(arguments) => catalog::run(&arguments),
         };
         let _ = sender.send(outcome);
@@ -197,6 +203,13 @@ fn fail(code: u8, message: &str) -> ExitCode {
 
 fn write_file(path: &Path, text: &str) -> Result<(), String> {
     std::fs::write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+/// Refuses `--format csv` where there is no trajectory.
+fn no_table<T>() -> Result<T, Failure> {
+    Err(Failure::Usage(
+        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`".to_owned(),
+    ))
 }
 
 /// The text of a file, or of standard input for `-`; never more than a problem may have.

@@ -4,6 +4,7 @@
 pub mod figure;
 pub mod json;
 pub mod latex;
+pub mod simulation;
 pub mod text;
 
 mod terms;

@@ -1,0 +1,65 @@
+//! Time of simulations on one core: `cargo bench --bench simulate`.
+//!
+//! A hundredth of the two workloads of `examples/damper_workloads.rs`, one motion at a time and several at a time, and the
+//! judge for comparison.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use lindstedt::damper::{Integrator, Model, Options, Start, simulate, simulate_many};
+
+const REST: Start = Start { x: -1.5, velocity: 0.0 };
+
+fn conservative() -> (Vec<(Model, Start)>, Options) {
+    let start = |index: u32| Start {
+        x: -1.5 + 1e-2 * f64::from(index),
+        velocity: 0.0,
+    };
+    let motions = (0..10).map(|index| (Model::default(), start(index))).collect();
+    let options = Options {
+        keep_path: false,
+        ..Options::default()
+    };
+    (motions, options)
+}
+
+fn damped() -> (Vec<(Model, Start)>, Options) {
+    let model = |index: u32| Model {
+        zeta: 0.01,
+        mu: 1e4,
+        right: Some(0.05 + 0.005 * f64::from(index)),
+        ..Model::default()
+    };
+    let motions = (0..100).map(|index| (model(index), REST)).collect();
+    let options = Options {
+        duration: 1e4,
+        relative_tolerance: 1e-8,
+        absolute_tolerance: 1e-10,
+        rest_energy: Some(1e-3),
+        keep_path: false,
+        ..Options::default()
+    };
+    (motions, options)
+}
+
+fn workloads(criterion: &mut Criterion) {
+    for (name, (motions, options)) in [("conservative", conservative()), ("damped", damped())] {
+        criterion.bench_function(&format!("{name}, several at a time"), |bencher| {
+            bencher.iter(|| simulate_many(&motions, &options));
+        });
+        for (method, integrator) in [("Taylor", Integrator::Taylor), ("Runge-Kutta", Integrator::RungeKutta)] {
+            criterion.bench_function(&format!("{name}, one by one, {method}"), |bencher| {
+                bencher.iter(|| {
+                    for (model, start) in &motions {
+                        let _ = std::hint::black_box(simulate(model, *start, integrator, &options));
+                    }
+                });
+            });
+        }
+    }
+}
+
+criterion_group! {
+    name = simulations;
+    config = Criterion::default().sample_size(10);
+    targets = workloads
+}
+criterion_main!(simulations);

@@ -1,0 +1,71 @@
+//! Two workloads of the damper, timed on one core: what `benches/simulate.rs` measures, with the results to compare.
+//!
+//! W5: 1000 conservative motions to t = 50. W6: 10 000 damped ones until the energy is below 1e-3. Each one by one, and
+//! then several at a time, which must give the same to the last bit.
+
+use std::time::Instant;
+
+use lindstedt::damper::{Integrator, Model, Options, Simulation, Start, simulate, simulate_many};
+
+fn main() {
+    let w5: Vec<(Model, Start)> = (0..1000)
+        .map(|i| {
+            let x = -1.5 + 1e-4 * f64::from(i);
+            (Model::default(), Start { x, velocity: 0.0 })
+        })
+        .collect();
+    let options = Options {
+        keep_path: false,
+        ..Options::default()
+    };
+    measure("W5", &w5, &options);
+    let w6: Vec<(Model, Start)> = (0..10_000)
+        .map(|i| {
+            let model = Model {
+                zeta: 0.01,
+                mu: 1e4,
+                right: Some(0.05 + 0.5 * f64::from(i) / 10_000.0),
+                ..Model::default()
+            };
+            (model, Start { x: -1.5, velocity: 0.0 })
+        })
+        .collect();
+    let options = Options {
+        duration: 1e4,
+        relative_tolerance: 1e-8,
+        absolute_tolerance: 1e-10,
+        rest_energy: Some(1e-3),
+        ..options
+    };
+    measure("W6", &w6, &options);
+}
+
+fn measure(name: &str, motions: &[(Model, Start)], options: &Options) {
+    let begin = Instant::now();
+    let single: Vec<Simulation> = motions
+        .iter()
+        .map(|(model, start)| simulate(model, *start, Integrator::Taylor, options).expect("a motion"))
+        .collect();
+    let one_by_one = begin.elapsed().as_secs_f64();
+    let begin = Instant::now();
+    let runs = simulate_many(motions, options).expect("motions");
+    let together = begin.elapsed().as_secs_f64();
+    let impacts: usize = runs.iter().map(|run| run.impacts.len()).sum();
+    let steps: usize = runs.iter().map(|run| run.steps).sum();
+    println!("{name}: {together:.4} s ({one_by_one:.4} s one by one), {impacts} impacts, {steps} steps");
+    let same = single.iter().zip(&runs).all(|(one, other)| {
+        let bits = |run: &Simulation| [run.end_time, run.end_x, run.end_velocity].map(f64::to_bits);
+        bits(one) == bits(other) && one.impacts == other.impacts
+    });
+    println!("  the same one by one and together: {same}");
+    for index in [0, runs.len() / 2, runs.len() - 1] {
+        let run = &runs[index];
+        println!(
+            "  run {index}: t = {:.15}, x = {:.15}, x' = {:.15}, {} impacts",
+            run.end_time,
+            run.end_x,
+            run.end_velocity,
+            run.impacts.len()
+        );
+    }
+}

@@ -1,0 +1,265 @@
+//! `lindstedt simulate [FILE]`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use lindstedt::damper::sweep::{Axis, MOST_MOTIONS, Summary, sweep, sweep_on};
+use lindstedt::damper::{Integrator, Simulation, simulate};
+use lindstedt::export::simulation::{Report, SweepReport, csv, json, sweep_csv, sweep_json, sweep_text, text};
+use lindstedt::problem::{DamperError, Problem};
+use lindstedt::verify::Verdict;
+
+use super::{Common, Failure, Format, Outcome, json_text, read};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A TOML file, or - for standard input; without it the paper's pendulum and barrier
+    file: Option<PathBuf>,
+    /// Report the state at this time (repeatable)
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    sample: Vec<f64>,
+    /// The method: power series with the contact in a variable in which it is analytic; Runge-Kutta, one smooth phase at
+    /// a time; or both, and how far they differ
+    #[arg(long, value_enum, default_value_t = Method::Taylor)]
+    integrator: Method,
+    /// Follow many motions: one parameter over a range, equally spaced; twice for two (a grid)
+    #[arg(long, value_name = "NAME=from:to:count", value_parser = axis)]
+    sweep: Vec<Axis>,
+    /// Threads of a sweep; all cores without it. The result is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Method {
+    Taylor,
+    RungeKutta,
+    Both,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a time, 0 or later".to_owned()),
+    }
+}
+
+fn axis(text: &str) -> Result<Axis, String> {
+    text.parse()
+        .map_err(|error: lindstedt::damper::sweep::AxisError| error.to_string())
+}
+
+/// Without `--tolerance`: the energy that may go astray, relative to the largest.
+const ENERGY_TOLERANCE: f64 = 1e-6;
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = match &arguments.file {
+        None => Problem::default(),
+        Some(path) => read(path)?
+            .parse()
+            .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))?,
+    };
+    if arguments.common.format == Format::Latex {
+        return Err(Failure::Usage(
+            "a simulation has no LaTeX form: choose --format text, json or csv".to_owned(),
+        ));
+    }
+    if arguments.sweep.is_empty() {
+        one(arguments, &problem)
+    } else {
+        many(arguments, &problem)
+    }
+}
+
+fn refused(error: DamperError) -> Failure {
+    let help = error.help();
+    Failure::refused(&error, help)
+}
+
+fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+    let damper = problem.damper().map_err(refused)?;
+    let duration = damper.options.duration;
+    if let Some(late) = arguments.sample.iter().find(|sample| **sample > duration) {
+        return Err(Failure::Refused(format!(
+            "--sample {late} lies beyond the duration {duration}\n  help: raise `duration` in [run]"
+        )));
+    }
+    let follow = |integrator| {
+        simulate(&damper.model, damper.start, integrator, &damper.options)
+            .map_err(|error| Failure::refused(&error, None))
+    };
+    let motion = match arguments.integrator {
+        Method::RungeKutta => follow(Integrator::RungeKutta)?,
+        Method::Taylor | Method::Both => follow(Integrator::Taylor)?,
+    };
+    let judge = match arguments.integrator {
+        Method::Both => Some(follow(Integrator::RungeKutta)?),
+        Method::Taylor | Method::RungeKutta => None,
+    };
+    let report = Report {
+        motion: &motion,
+        judge: judge.as_ref(),
+        sources: [damper.gamma_source, damper.mu_source],
+        tolerance: problem.run.integrator_tolerance,
+        samples: &arguments.sample,
+    };
+    let text = match arguments.common.format {
+        Format::Csv => csv(&report),
+        Format::Json => json_text(&json(&report)),
+        Format::Text | Format::Latex => text(&report),
+    };
+    let picture = match &arguments.common.plot {
+        None => None,
+        Some(path) => Some((path.clone(), picture(&report)?)),
+    };
+    let broken = [Some(&motion), judge.as_ref()]
+        .into_iter()
+        .flatten()
+        .find(|motion| !motion.stop.is_complete());
+    let note = broken.map(|motion| format!("warning: stopped early, what there is is kept: {}", motion.stop));
+    Ok(Outcome {
+        text,
+        picture,
+        note,
+        verdict: Some(verdict(&motion, judge.as_ref(), arguments.common.tolerance)),
+    })
+}
+
+/// Complete, the energy accounted for, and where there is a judge, agreed with.
+fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f64>) -> Verdict {
+    let allowed = tolerance.unwrap_or(ENERGY_TOLERANCE);
+    let scale = motion.rest().amplitude.max(f64::MIN_POSITIVE);
+    let agreed = judge.is_none_or(|judge| {
+        judge.stop.is_complete()
+            && judge.impacts.len() == motion.impacts.len()
+            && motion.difference(judge, 2001).displacement <= allowed * scale
+    });
+    if agreed && motion.stop.is_complete() && motion.energy().residual <= allowed {
+        Verdict::Pass
+    } else {
+        Verdict::Fail
+    }
+}
+
+fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+    if arguments.sweep.len() > 2 {
+        return Err(Failure::Usage("a sweep has one or two parameters".to_owned()));
+    }
+    if arguments.integrator != Method::Taylor || !arguments.sample.is_empty() {
+        return Err(Failure::Usage(
+            "a sweep is done by Taylor series and reports one line a motion: leave out --integrator and --sample"
+                .to_owned(),
+        ));
+    }
+    let total = arguments
+        .sweep
+        .iter()
+        .try_fold(1_usize, |product, axis| product.checked_mul(axis.count))
+        .filter(|total| *total <= MOST_MOTIONS);
+    let Some(total) = total else {
+        return Err(Failure::Refused(format!(
+            "the sweep has more than {MOST_MOTIONS} motions: lower the counts"
+        )));
+    };
+    let mut motions = Vec::with_capacity(total);
+    let mut options = None;
+    let mut varied = problem.clone();
+    let mut add = |varied: &Problem| -> Result<(), Failure> {
+        let damper = varied.damper().map_err(refused)?;
+        motions.push((damper.model, damper.start));
+        options = Some(damper.options);
+        Ok(())
+    };
+    for axis in &arguments.sweep {
+        if axis.name == "duration" || axis.name == "integrator_tolerance" {
+            return Err(Failure::Refused(format!(
+                "`{}` is the same for all motions of a sweep: give it in [run]",
+                axis.name
+            )));
+        }
+    }
+    match &arguments.sweep[..] {
+        [one] => {
+            for value in one.values() {
+                varied.set(&one.name, value).map_err(refused)?;
+                add(&varied)?;
+            }
+        }
+        [down, across] => {
+            if down.name == across.name {
+                return Err(Failure::Usage(format!("`{}` is swept twice", down.name)));
+            }
+            for value in down.values() {
+                varied.set(&down.name, value).map_err(refused)?;
+                for value in across.values() {
+                    varied.set(&across.name, value).map_err(refused)?;
+                    add(&varied)?;
+                }
+            }
+        }
+        _ => {}
+    }
+    let Some(options) = options else {
+        return Err(Failure::Usage("the sweep has no motion".to_owned()));
+    };
+    // Draws on standard error, and only where that is a terminal.
+    let bar = if arguments.common.quiet {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new(total as u64)
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
+        bar.set_style(style);
+    }
+    let progress = |done: usize| bar.inc(done as u64);
+    let rows: Vec<Summary> = match arguments.jobs {
+        Some(threads) => sweep_on(usize::from(threads), &motions, &options, progress),
+        None => sweep(&motions, &options, progress),
+    }
+    .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
+    bar.finish_and_clear();
+    let report = SweepReport {
+        axes: &arguments.sweep,
+        rows: &rows,
+    };
+    let text = match arguments.common.format {
+        Format::Csv => sweep_csv(&report),
+        Format::Json => json_text(&sweep_json(&report)),
+        Format::Text | Format::Latex => sweep_text(&report),
+    };
+    let picture = match &arguments.common.plot {
+        None => None,
+        Some(path) => Some((path.clone(), sweep_picture(&report)?)),
+    };
+    let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
+    let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
+    Ok(Outcome {
+        text,
+        picture,
+        note,
+        verdict: Some(if incomplete == 0 { Verdict::Pass } else { Verdict::Fail }),
+    })
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &Report) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(not(feature = "plot"))]
+fn sweep_picture(_: &SweepReport) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(report: &Report) -> Result<String, Failure> {
+    lindstedt::export::simulation::figure::simulation(report).map_err(|error| Failure::refused(&error, None))
+}
+
+#[cfg(feature = "plot")]
+fn sweep_picture(report: &SweepReport) -> Result<String, Failure> {
+    lindstedt::export::simulation::figure::sweep(report).map_err(|error| Failure::refused(&error, None))
+}

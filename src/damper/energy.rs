@@ -1,0 +1,129 @@
+//! Where the energy goes: the work of each force that is not conservative, integrated along the motion.
+//!
+//! ```text
+//! W_viscous = -int 2 zeta x'^2 dt          W_friction   = -int alpha sgn(x') x' dt
+//! W_contact = -int mu d'^2 d^(3/2) dt      W_excitation =  int beta sin(Omega t/omega) cos x x' dt
+//! residual  = E(t) - E(0) - (W_viscous + W_friction + W_contact + W_excitation)
+//! ```
+//!
+//! The forces are those of the model, the motion is the one that was found, the integrals are quadratures: a motion
+//! that does not satisfy the equation shows as a residual. Where a barrier lets go because it would have to pull, the
+//! energy still in it is lost to its damping.
+
+use super::Simulation;
+use super::model::{Friction, Side};
+use super::path::{Node, State};
+
+/// Energies and works, in units of m g L.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EnergyBook {
+    /// At the start.
+    pub start: f64,
+    /// At the end.
+    pub end: f64,
+    /// Work of viscous damping, never positive.
+    pub viscous: f64,
+    /// Work of dry friction, never positive.
+    pub friction: f64,
+    /// Work of the damping in the contacts.
+    pub contact: f64,
+    /// Work of the moving pivot.
+    pub excitation: f64,
+    /// The largest |E(t) - E(0) - works| at any knot, relative to the largest energy met.
+    pub residual: f64,
+}
+
+impl EnergyBook {
+    fn works(&self) -> f64 {
+        self.viscous + self.friction + self.contact + self.excitation
+    }
+}
+
+/// Energy and works up to a knot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnergyPoint {
+    /// Time.
+    pub t: f64,
+    /// Energy then, units of m g L.
+    pub energy: f64,
+    /// Works until then; [`EnergyBook::residual`] is the signed difference in these.
+    pub book: EnergyBook,
+}
+
+impl Simulation {
+    /// Energy and the work of each force over the whole run.
+    pub fn energy(&self) -> EnergyBook {
+        let mut largest = 0.0_f64;
+        let mut worst = 0.0_f64;
+        let mut total = EnergyBook::default();
+        self.energy_points(|point| {
+            largest = largest.max(point.energy);
+            worst = worst.max(point.book.residual.abs());
+            total = point.book;
+        });
+        total.residual = if worst == 0.0 { 0.0 } else { worst / largest };
+        total
+    }
+
+    /// The same, knot by knot.
+    pub fn energy_points(&self, mut each: impl FnMut(EnergyPoint)) {
+        let model = &self.model;
+        let start = model.energy(self.start.x, self.start.velocity);
+        let mut book = EnergyBook {
+            start,
+            end: start,
+            ..EnergyBook::default()
+        };
+        each(EnergyPoint {
+            t: 0.0,
+            energy: start,
+            book,
+        });
+        for piece in self.path.pieces() {
+            let stored = |fraction: f64| {
+                let node = self.path.node(piece, fraction);
+                (model.elastic_energy(self.depth(piece.state, &node)), node)
+            };
+            for node in self.path.quadrature(piece) {
+                let v = node.velocity;
+                book.viscous -= node.weight * 2.0 * model.zeta * v * v;
+                let direction = if piece.state == State::Stuck { 0.0 } else { v.signum() };
+                let dry = match model.friction {
+                    Friction::Exact => model.alpha * direction * v,
+                    Friction::Arctangent => -(model.damping(v, 0.0) + 2.0 * model.zeta * v) * v,
+                };
+                book.friction -= node.weight * dry;
+                book.excitation += node.weight * (model.field(node.t, node.x) + node.x.sin()) * v;
+                if let State::Contact(_) = piece.state {
+                    let depth = node.depth;
+                    book.contact -= node.weight * model.mu * v * v * depth * depth.sqrt();
+                }
+            }
+            let (last, end) = stored(1.0);
+            if let State::Detached(_) = piece.state {
+                book.contact += last - stored(0.0).0;
+            }
+            book.end = model.swing_energy(end.x, end.velocity) + last;
+            book.residual = book.end - start - book.works();
+            each(EnergyPoint {
+                t: piece.end,
+                energy: book.end,
+                book,
+            });
+        }
+    }
+
+    fn depth(&self, state: State, node: &Node) -> f64 {
+        let inside = |side: Side| {
+            let barrier = self.model.barrier(side).unwrap_or(node.x);
+            (side.sign() * (node.x - barrier)).max(0.0)
+        };
+        match state {
+            State::Contact(side) if node.depth == 0.0 => inside(side),
+            State::Contact(_) => node.depth,
+            State::Detached(side) => inside(side),
+            State::Stuck => self.model.depth(node.x).map_or(0.0, |(_, depth)| depth),
+            State::Free => 0.0,
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Several runs side by side on one core: eight motions share each instruction of the series.
+//!
+//! Each run is in a phase of its own, so a pool of them is kept, and at every turn eight that want the same series get
+//! it together. The lanes never touch each other and no operation is fused or reordered: a run gives bit for bit what it
+//! gives alone, whatever runs beside it.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::run::{Equation, Runner};
+use super::taylor::{Coefficients, Ends, HIGHEST_ORDER, Moment, Terms, contact, flight};
+
+/// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
+const LANES: usize = 8;
+
+/// Runs under way at once: so many that eight of them nearly always want the same series.
+const POOL: usize = 48;
+
+/// The series of one group; always compiled into its caller, so that it gets the widest registers there are.
+struct Expansion<'a> {
+    moment: &'a Moment<LANES>,
+    order: usize,
+    terms: Terms,
+    series: &'a mut Coefficients<LANES>,
+    equation: Equation,
+}
+
+impl WithSimd for Expansion<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        match self.equation {
+            Equation::Flight => flight(self.moment, self.order, self.terms, self.series),
+            Equation::Contact => contact(self.moment, self.order, self.terms, self.series),
+        }
+    }
+}
+
+/// Its values at the ends of the steps.
+struct Evaluation<'a> {
+    series: &'a Coefficients<LANES>,
+    lengths: &'a [f64; LANES],
+    order: usize,
+}
+
+impl WithSimd for Evaluation<'_> {
+    type Output = Ends<LANES>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Ends<LANES> {
+        self.series.ends(self.lengths, self.order)
+    }
+}
+
+/// Follows every run to its end, and hands each over as it ends, with its number. All have the same tolerance.
+pub(super) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(usize, Runner)) {
+    let arch = Arch::new();
+    let mut waiting = runs.enumerate();
+    let mut pool: Vec<(usize, Runner)> = Vec::with_capacity(POOL);
+    let mut flights: Vec<usize> = Vec::with_capacity(POOL);
+    let mut contacts: Vec<usize> = Vec::with_capacity(POOL);
+    // Places of the pool that have no series to come yet.
+    let mut fresh: Vec<usize> = Vec::with_capacity(POOL);
+    let mut series = Box::new(Coefficients::<LANES>::new());
+    let mut moment = Moment::<LANES>::new();
+    for (number, runner) in waiting.by_ref().take(POOL) {
+        fresh.push(pool.len());
+        pool.push((number, runner));
+    }
+    loop {
+        while let Some(place) = fresh.pop() {
+            let Some(entry) = pool.get_mut(place) else {
+                continue;
+            };
+            match entry.1.wants() {
+                Some(Equation::Flight) => flights.push(place),
+                Some(Equation::Contact) => contacts.push(place),
+                None => {
+                    // Its place goes to the next run; without one it stays behind, ended.
+                    if let Some(next) = waiting.next() {
+                        let (number, runner) = std::mem::replace(entry, next);
+                        done(number, runner);
+                        fresh.push(place);
+                    }
+                }
+            }
+        }
+        let (queue, equation) = if flights.len() >= contacts.len() {
+            (&mut flights, Equation::Flight)
+        } else {
+            (&mut contacts, Equation::Contact)
+        };
+        let mut group = [0; LANES];
+        let mut count = 0;
+        while count < LANES
+            && let Some(place) = queue.pop()
+        {
+            group[count] = place;
+            count += 1;
+        }
+        let Some(last) = count.checked_sub(1) else {
+            break;
+        };
+        let mut terms = Terms::default();
+        let mut order = HIGHEST_ORDER;
+        for lane in 0..LANES {
+            // Lanes without a run repeat the last one.
+            if let Some((_, runner)) = pool.get(group[lane.min(last)]) {
+                runner.moment(lane, &mut moment);
+                terms = terms.or(runner.terms());
+                order = runner.order();
+            }
+        }
+        arch.dispatch(Expansion {
+            moment: &moment,
+            order,
+            terms,
+            series: &mut series,
+            equation,
+        });
+        let mut lengths = [0.0; LANES];
+        for (lane, &place) in group[..count].iter().enumerate() {
+            if let Some((_, runner)) = pool.get_mut(place) {
+                lengths[lane] = runner.reach(series.last(order, lane));
+            }
+        }
+        let ends = arch.dispatch(Evaluation {
+            series: &series,
+            lengths: &lengths,
+            order,
+        });
+        for (lane, &place) in group[..count].iter().enumerate() {
+            if let Some((_, runner)) = pool.get_mut(place) {
+                runner.advance(ends.lane(lane), || series.lane(order, lane));
+            }
+            fresh.push(place);
+        }
+    }
+    for (number, runner) in pool {
+        done(number, runner);
+    }
+}

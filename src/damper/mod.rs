@@ -1,0 +1,337 @@
+//! The damper in full: the paper's equation (7) with every term on, followed event by event.
+//!
+//! ```text
+//! x'' + 2 zeta x' + alpha sgn(x') - beta sin(Omega t/omega) cos x + sin x + F(x - x_c, x') = 0    equation (7)
+//! F(d, d') = max(0, gamma + mu d') d^(3/2) H(d)
+//! E(t) - E(0) = W_viscous + W_friction + W_contact + W_excitation
+//! ```
+//!
+//! In: a [`Model`], a [`Start`], [`Options`]. Out: a [`Simulation`]: the motion as a function of time, every impact,
+//! every turning point, where the energy went, when it came to rest.
+//!
+//! - `model`: the forces and what the parameters may be.
+//! - `taylor`, `run`, `polynomial`: the fast integrator, [`Integrator::Taylor`]: power series, in contact those of the
+//!   regularised equation, and the events as roots of polynomials.
+//! - `judge`: the same motion by the library's Runge-Kutta, [`Integrator::RungeKutta`], which shares nothing with it.
+//! - `path`: the motion as a function; `energy`: the work of each force; `rest`: the envelope and its 10 %.
+//! - [`sweep`]: many runs at once, the same to the last bit for any number of threads.
+//!
+//! ```
+//! use lindstedt::damper::{Integrator, Model, Options, Start, simulate};
+//!
+//! let model = Model { zeta: 0.01, mu: 1e4, ..Model::default() };
+//! let start = Start { x: -1.5, velocity: 0.0 };
+//! let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
+//!
+//! let first = &motion.impacts[0];
+//! assert!((first.entry_time - 2.0713).abs() < 1e-3 && first.restitution.is_some_and(|e| e < 1.0));
+//! assert!(motion.energy().residual.abs() < 1e-9);
+//! # Ok::<(), lindstedt::damper::SimulationError>(())
+//! ```
+
+mod energy;
+mod judge;
+mod lanes;
+mod model;
+mod path;
+mod polynomial;
+mod rest;
+mod run;
+pub mod sweep;
+mod taylor;
+
+use std::fmt;
+
+use thiserror::Error;
+
+pub use energy::{EnergyBook, EnergyPoint};
+pub use model::{Friction, Model, ModelError, STEEPNESS, Side, Start};
+pub use path::{Path, Piece, State};
+pub use rest::{NoRest, REST_FRACTION, Rest};
+
+use crate::decimal::significant;
+use crate::ode::IntegrationError;
+
+/// By which method a motion is followed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// Power series, the contact in its regularised variable: the fast one.
+    #[default]
+    Taylor,
+    /// The library's Runge-Kutta in phases: the judge.
+    RungeKutta,
+}
+
+/// How long and how closely to follow a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Time to follow it for, in units of 1/omega.
+    pub duration: f64,
+    /// Error allowed in one step, relative to the size of x and x'.
+    pub relative_tolerance: f64,
+    /// Error allowed in one step beside it, in rad.
+    pub absolute_tolerance: f64,
+    /// Steps after which the run gives up.
+    pub maximum_steps: usize,
+    /// Stop as soon as the energy (units of m g L) is no more than this.
+    pub rest_energy: Option<f64>,
+    /// Keep the motion as a function of time; without it there are impacts, turning points and the end.
+    pub keep_path: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            duration: 50.0,
+            relative_tolerance: 1e-10,
+            absolute_tolerance: 1e-12,
+            maximum_steps: 250_000,
+            rest_energy: None,
+            keep_path: true,
+        }
+    }
+}
+
+/// Why a simulation cannot begin.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum SimulationError {
+    /// The model or the start.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A duration that is no positive number.
+    #[error("the duration must be a positive number, not {0}")]
+    Duration(f64),
+    /// A tolerance no double-precision run can keep.
+    #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
+    Tolerance(f64),
+    /// Runge-Kutta cannot begin.
+    #[error("Runge-Kutta: {0}")]
+    RungeKutta(#[from] IntegrationError),
+}
+
+/// Why a run ended. Everything before is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stop {
+    /// At the end of the duration.
+    Duration,
+    /// The energy fell to [`Options::rest_energy`].
+    Calm,
+    /// The numbers grew beyond all bounds.
+    NotFinite {
+        /// The last time reached.
+        t: f64,
+    },
+    /// Too many steps.
+    Steps {
+        /// The last time reached.
+        t: f64,
+    },
+    /// The tolerance asks for steps that do not advance the clock.
+    StepTooSmall {
+        /// The last time reached.
+        t: f64,
+    },
+    /// Events follow each other without time going on.
+    Stalled {
+        /// The time at which it happened.
+        t: f64,
+    },
+}
+
+impl Stop {
+    /// Whether the run got where it was to get.
+    pub fn is_complete(self) -> bool {
+        matches!(self, Self::Duration | Self::Calm)
+    }
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = |t: &f64| significant(*t, 12);
+        match self {
+            Self::Duration => write!(formatter, "the end of the duration was reached"),
+            Self::Calm => write!(formatter, "the energy fell to the rest energy"),
+            Self::NotFinite { t } => {
+                write!(
+                    formatter,
+                    "no finite value after t = {}: the numbers of the problem are too large",
+                    time(t)
+                )
+            }
+            Self::Steps { t } => write!(
+                formatter,
+                "the allowed number of steps was used up at t = {}: shorten the duration or loosen the tolerance",
+                time(t)
+            ),
+            Self::StepTooSmall { t } => write!(
+                formatter,
+                "the tolerance could not be reached at t = {}: the steps became too small; loosen it",
+                time(t)
+            ),
+            Self::Stalled { t } => write!(
+                formatter,
+                "events follow each other without time going on at t = {}: change the barrier or the friction a little",
+                time(t)
+            ),
+        }
+    }
+}
+
+/// One contact with a barrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// Which barrier.
+    pub side: Side,
+    /// When it is touched.
+    pub entry_time: f64,
+    /// When it is left; nothing where the run ended before.
+    pub exit_time: Option<f64>,
+    /// Speed at the touch.
+    pub speed_in: f64,
+    /// Speed at the release.
+    pub speed_out: Option<f64>,
+    /// Greatest depth, rad.
+    pub penetration: f64,
+    /// Speed out over speed in.
+    pub restitution: Option<f64>,
+    /// Energy that the motion has lost between touch and release, units of m g L.
+    pub energy_lost: Option<f64>,
+}
+
+impl Impact {
+    /// The contact ends, at this time and with this speed.
+    fn released(&mut self, t: f64, speed: f64) {
+        self.exit_time = Some(t);
+        self.speed_out = Some(speed);
+        self.restitution = (self.speed_in > 0.0).then(|| speed / self.speed_in);
+        self.energy_lost = Some(0.5 * (self.speed_in - speed) * (self.speed_in + speed));
+    }
+}
+
+/// A moment of rest: x is largest or smallest there, or friction begins or ceases to hold it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// When.
+    pub t: f64,
+    /// Where, rad.
+    pub x: f64,
+}
+
+/// A motion that was followed.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    /// What was followed.
+    pub model: Model,
+    /// From where.
+    pub start: Start,
+    /// How.
+    pub options: Options,
+    /// By which method.
+    pub integrator: Integrator,
+    /// The motion as a function of time; empty without [`Options::keep_path`].
+    pub path: Path,
+    /// Every contact, in order.
+    pub impacts: Vec<Impact>,
+    /// Every turning point, in order; the start where it is one.
+    pub turns: Vec<Turn>,
+    /// Time at the end.
+    pub end_time: f64,
+    /// Displacement there, rad.
+    pub end_x: f64,
+    /// Velocity there.
+    pub end_velocity: f64,
+    /// Why it ended there.
+    pub stop: Stop,
+    /// Steps taken.
+    pub steps: usize,
+}
+
+/// The motion from this start.
+///
+/// # Errors
+/// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
+pub fn simulate(
+    model: &Model,
+    start: Start,
+    integrator: Integrator,
+    options: &Options,
+) -> Result<Simulation, SimulationError> {
+    check(model, start, options)?;
+    match integrator {
+        Integrator::Taylor => Ok(run::alone(*model, start, *options)),
+        Integrator::RungeKutta => judge::follow(model, start, options),
+    }
+}
+
+/// How two motions differ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// The largest difference in x, rad.
+    pub displacement: f64,
+    /// The largest difference in x'.
+    pub velocity: f64,
+    /// Until when they were compared.
+    pub until: f64,
+}
+
+impl Simulation {
+    /// Compares the paths at so many times, as far as both go.
+    pub fn difference(&self, other: &Self, count: usize) -> Difference {
+        let until = self.end_time.min(other.end_time);
+        let mut difference = Difference {
+            displacement: 0.0,
+            velocity: 0.0,
+            until,
+        };
+        for index in 0..count {
+            let t = until * (index as f64 / (count.max(2) - 1) as f64);
+            if let (Some((x, v)), Some((other_x, other_v))) = (self.path.at(t), other.path.at(t)) {
+                difference.displacement = difference.displacement.max((x - other_x).abs());
+                difference.velocity = difference.velocity.max((v - other_v).abs());
+            }
+        }
+        difference
+    }
+
+    /// Whether a barrier was touched at all.
+    pub fn touches(&self) -> bool {
+        !self.impacts.is_empty()
+    }
+}
+
+/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.
+///
+/// # Errors
+/// As [`simulate`], for the first that cannot begin, with its number.
+pub fn simulate_many(
+    motions: &[(Model, Start)],
+    options: &Options,
+) -> Result<Vec<Simulation>, (usize, SimulationError)> {
+    for (number, (model, start)) in motions.iter().enumerate() {
+        check(model, *start, options).map_err(|error| (number, error))?;
+    }
+    let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
+    let runs = motions
+        .iter()
+        .map(|(model, start)| run::Runner::new(*model, *start, *options));
+    lanes::follow(runs, |number, runner| {
+        if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
+            *place = Some(runner.finish(*start));
+        }
+    });
+    Ok(results.into_iter().flatten().collect())
+}
+
+fn check(model: &Model, start: Start, options: &Options) -> Result<(), SimulationError> {
+    model.check(start)?;
+    if !(options.duration.is_finite() && options.duration > 0.0) {
+        return Err(SimulationError::Duration(options.duration));
+    }
+    if !(1e-15..=0.01).contains(&options.relative_tolerance) {
+        return Err(SimulationError::Tolerance(options.relative_tolerance));
+    }
+    if !(f64::MIN_POSITIVE..=0.01).contains(&options.absolute_tolerance) {
+        return Err(SimulationError::Tolerance(options.absolute_tolerance));
+    }
+    Ok(())
+}

@@ -1,0 +1,261 @@
+//! The equation: the forces of the paper's equation (7), its parameters and what they may be.
+//!
+//! ```text
+//! x'' = -2 zeta x' - alpha sgn(x') - sin x + beta sin(Omega t/omega) cos x - F(x - x_r, x') + F(x_l - x, -x')
+//! F(d, d') = max(0, gamma + mu d') d^(3/2)  for d > 0, else 0                                equation (7)
+//! sgn(x') ~ (2/pi) atan(100 x')                                                              equation (6)
+//! E = x'^2/2 + 1 - cos x + (2/5) gamma d^(5/2)
+//! ```
+//!
+//! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440 for the damped contact.) Angles in radians, time
+//! in units of 1/omega with omega^2 = g/L, energy in units of m g L; everything else is dimensionless. The maximum
+//! says that the contact never pulls: left fast enough, the barrier lets go before it is back in place.
+
+use thiserror::Error;
+
+/// How dry friction depends on the velocity.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Friction {
+    /// Coulomb's: alpha against the motion, and at rest whatever up to alpha keeps it at rest.
+    #[default]
+    Exact,
+    /// The paper's equation (6), alpha (2/pi) atan(100 x'): it creeps and never sticks.
+    Arctangent,
+}
+
+/// The steepness of the arctangent in equation (6).
+pub const STEEPNESS: f64 = 100.0;
+
+/// A barrier on one side of the swing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// At negative angles, touched in falling motion.
+    Left,
+    /// At positive angles, touched in rising motion.
+    Right,
+}
+
+impl Side {
+    /// -1 on the left, 1 on the right: the coordinate `sign * x` runs into the barrier.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Left => -1.0,
+            Self::Right => 1.0,
+        }
+    }
+
+    /// `left` or `right`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+/// The parameters of equation (7), all dimensionless but the angles, in rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Model {
+    /// Viscous damping ratio zeta, not negative.
+    pub zeta: f64,
+    /// Coulomb friction alpha, not negative.
+    pub alpha: f64,
+    /// The law of that friction.
+    pub friction: Friction,
+    /// Excitation beta = (A_e/L)(Omega/omega)^2 of a pivot that moves as A_e sin(Omega t).
+    pub beta: f64,
+    /// Omega/omega, not negative.
+    pub frequency_ratio: f64,
+    /// Stiffness gamma of the contact, positive.
+    pub gamma: f64,
+    /// Damping mu of the contact, not negative.
+    pub mu: f64,
+    /// Position of the left barrier, rad.
+    pub left: Option<f64>,
+    /// Position of the right barrier x_c, rad.
+    pub right: Option<f64>,
+}
+
+impl Default for Model {
+    /// The paper's barrier at 0.323 with gamma = 1e6, and nothing that damps or drives.
+    fn default() -> Self {
+        Self {
+            zeta: 0.0,
+            alpha: 0.0,
+            friction: Friction::Exact,
+            beta: 0.0,
+            frequency_ratio: 0.0,
+            gamma: 1e6,
+            mu: 0.0,
+            left: None,
+            right: Some(0.323),
+        }
+    }
+}
+
+/// Where and how fast a motion begins, at t = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Angle, rad.
+    pub x: f64,
+    /// Velocity x', in units of omega.
+    pub velocity: f64,
+}
+
+/// Why there is nothing to simulate.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum ModelError {
+    /// A parameter that is no finite number.
+    #[error("{name} must be a finite number, not {value}")]
+    NotFinite {
+        /// The section and key of the problem file.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A parameter below zero.
+    #[error("{name} must not be negative, but is {value}")]
+    Negative {
+        /// The section and key of the problem file.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A stiffness that is not positive.
+    #[error("[contact] gamma must be a positive number, not {0}: for a pendulum without a barrier put it out of reach")]
+    Stiffness(f64),
+    /// Barriers in the wrong order.
+    #[error("the left barrier at {left} must lie below the right one at {right}: give [left, right]")]
+    Barriers {
+        /// Position of the left one, rad.
+        left: f64,
+        /// Position of the right one, rad.
+        right: f64,
+    },
+    /// The motion begins behind a barrier.
+    #[error(
+        "the motion starts at x = {start}, inside the {} barrier at {barrier}: move the barrier, or give `start` in \
+         [pendulum]", .side.name()
+    )]
+    Inside {
+        /// Which barrier.
+        side: Side,
+        /// Its position, rad.
+        barrier: f64,
+        /// The start, rad.
+        start: f64,
+    },
+}
+
+impl Model {
+    /// Whether the parameters and the start make an equation.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the first parameter that does not.
+    pub fn check(&self, start: Start) -> Result<(), ModelError> {
+        let numbers = [
+            ("[damping] zeta", self.zeta),
+            ("[damping] alpha", self.alpha),
+            ("[contact] mu", self.mu),
+            ("[excitation] frequency_ratio", self.frequency_ratio),
+            ("[excitation] beta", self.beta),
+            ("[pendulum] barrier", self.left.unwrap_or(0.0)),
+            ("[pendulum] barrier", self.right.unwrap_or(0.0)),
+            ("[pendulum] start", start.x),
+            ("[pendulum] speed", start.velocity),
+        ];
+        if let Some(&(name, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
+            return Err(ModelError::NotFinite { name, value });
+        }
+        if let Some(&(name, value)) = numbers[..4].iter().find(|(_, value)| *value < 0.0) {
+            return Err(ModelError::Negative { name, value });
+        }
+        if !(self.gamma.is_finite() && self.gamma > 0.0) {
+            return Err(ModelError::Stiffness(self.gamma));
+        }
+        if let (Some(left), Some(right)) = (self.left, self.right)
+            && left >= right
+        {
+            return Err(ModelError::Barriers { left, right });
+        }
+        for side in [Side::Left, Side::Right] {
+            if let Some(barrier) = self.barrier(side)
+                && side.sign() * (start.x - barrier) > 0.0
+            {
+                return Err(ModelError::Inside {
+                    side,
+                    barrier,
+                    start: start.x,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The position of a barrier, rad.
+    pub fn barrier(&self, side: Side) -> Option<f64> {
+        match side {
+            Side::Left => self.left,
+            Side::Right => self.right,
+        }
+    }
+
+    /// Whether dry friction is Coulomb's and there is some: then the motion is followed one direction at a time.
+    pub fn sticks(&self) -> bool {
+        self.friction == Friction::Exact && self.alpha > 0.0
+    }
+
+    /// Acceleration by all that does not depend on the velocity and is no contact: gravity and excitation.
+    pub fn field(&self, t: f64, x: f64) -> f64 {
+        if self.beta == 0.0 {
+            return -x.sin();
+        }
+        self.beta * (self.frequency_ratio * t).sin() * x.cos() - x.sin()
+    }
+
+    /// Acceleration by damping: viscous, and dry by equation (6) or, for Coulomb's law, in motion of this direction
+    /// (1, -1, or 0 for none).
+    pub fn damping(&self, velocity: f64, direction: f64) -> f64 {
+        let dry = match self.friction {
+            Friction::Exact => self.alpha * direction,
+            Friction::Arctangent => self.alpha * std::f64::consts::FRAC_2_PI * (STEEPNESS * velocity).atan(),
+        };
+        -2.0 * self.zeta * velocity - dry
+    }
+
+    /// Force of a barrier entered to this depth and at this speed, per mass; away from the barrier it is zero.
+    pub fn contact(&self, depth: f64, speed: f64) -> f64 {
+        if depth <= 0.0 {
+            return 0.0;
+        }
+        (self.gamma + self.mu * speed).max(0.0) * depth * depth.sqrt()
+    }
+
+    /// Energy of a motion without contact, in units of m g L: zero at rest in the lowest place.
+    pub fn swing_energy(&self, x: f64, velocity: f64) -> f64 {
+        let half = (0.5 * x).sin();
+        0.5 * velocity * velocity + 2.0 * half * half
+    }
+
+    /// Energy stored in a barrier entered to this depth.
+    pub fn elastic_energy(&self, depth: f64) -> f64 {
+        if depth <= 0.0 {
+            return 0.0;
+        }
+        0.4 * self.gamma * depth * depth * depth.sqrt()
+    }
+
+    /// How deep this place lies inside a barrier, and which; nothing between the barriers.
+    pub fn depth(&self, x: f64) -> Option<(Side, f64)> {
+        [Side::Left, Side::Right].into_iter().find_map(|side| {
+            let depth = side.sign() * (x - self.barrier(side)?);
+            (depth > 0.0).then_some((side, depth))
+        })
+    }
+
+    /// Energy of swing and contact, in units of m g L.
+    pub fn energy(&self, x: f64, velocity: f64) -> f64 {
+        let depth = self.depth(x).map_or(0.0, |(_, depth)| depth);
+        self.swing_energy(x, velocity) + self.elastic_energy(depth)
+    }
+}

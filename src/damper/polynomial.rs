@@ -1,0 +1,318 @@
+//! Polynomials on an interval that begins at 0: value, slope, and every place where the sign changes.
+//!
+//! ```text
+//! p(u) = c_0 + c_1 u + ... + c_n u^n,  0 <= u <= h
+//! |p(u) - p(m) - p'(m)(u - m)| <= r^2/2 max|p''|   for |u - m| <= r
+//! max|p''| <= sum k (k - 1) |c_k| h^(k-2)
+//! ```
+//!
+//! An interval on which the line through the middle stays further from zero than the second bound holds no root; one
+//! on which the slope stays further from zero than the first bound on p'' holds at most one; any other is halved. So no
+//! root is missed, however close two of them lie, down to the rounding of the polynomial itself.
+
+use crate::ode::root::find_root;
+
+/// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series never has more.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Roots {
+    values: [f64; Roots::LIMIT],
+    count: usize,
+}
+
+impl Roots {
+    pub(super) const LIMIT: usize = 16;
+
+    pub(super) const fn new() -> Self {
+        Self {
+            values: [0.0; Self::LIMIT],
+            count: 0,
+        }
+    }
+
+    pub(super) fn push(&mut self, value: f64) {
+        if let Some(place) = self.values.get_mut(self.count) {
+            *place = value;
+            self.count += 1;
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+
+    fn is_full(&self) -> bool {
+        self.count == Self::LIMIT
+    }
+}
+
+/// p(u), as even part + u odd part: two short chains of operations instead of a long one.
+pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
+    let square = u * u;
+    let pairs = coefficients.chunks_exact(2);
+    let mut even = pairs.remainder().first().copied().unwrap_or(0.0);
+    let mut odd = 0.0;
+    for pair in pairs.rev() {
+        even = even * square + pair[0];
+        odd = odd * square + pair[1];
+    }
+    even + u * odd
+}
+
+/// p(u) and p'(u), likewise.
+pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
+    let square = u * u;
+    let pairs = coefficients.chunks_exact(2);
+    let mut even = pairs.remainder().first().copied().unwrap_or(0.0);
+    let (mut odd, mut even_slope, mut odd_slope) = (0.0, 0.0, 0.0);
+    for pair in pairs.rev() {
+        even_slope = even_slope * square + even;
+        odd_slope = odd_slope * square + odd;
+        even = even * square + pair[0];
+        odd = odd * square + pair[1];
+    }
+    // The slopes so far are those by u^2.
+    (even + u * odd, 2.0 * u * (even_slope + u * odd_slope) + odd)
+}
+
+/// A bound on |p(u) - p(0)| for 0 <= u <= h.
+pub(super) fn variation(coefficients: &[f64], h: f64) -> f64 {
+    let mut sum = 0.0;
+    for coefficient in coefficients.iter().skip(1).rev() {
+        sum = (sum + coefficient.abs()) * h;
+    }
+    sum
+}
+
+/// A bound on |p'(u) - p'(0)| for 0 <= u <= h.
+fn slope_variation(coefficients: &[f64], h: f64) -> f64 {
+    let mut sum = 0.0;
+    for (k, coefficient) in coefficients.iter().enumerate().skip(2).rev() {
+        sum = (sum + k as f64 * coefficient.abs()) * h;
+    }
+    sum
+}
+
+/// A bound on |p''(u)| for 0 <= u <= h.
+fn curvature(coefficients: &[f64], h: f64) -> f64 {
+    let mut sum = 0.0;
+    for (k, coefficient) in coefficients.iter().enumerate().skip(2).rev() {
+        sum = sum * h + (k * (k - 1)) as f64 * coefficient.abs();
+    }
+    sum
+}
+
+/// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does not count: it was
+/// the end of the step before.
+pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
+    if coefficients
+        .first()
+        .is_some_and(|first| first.abs() > variation(coefficients, h))
+    {
+        return Roots::new();
+    }
+    near_sign_changes(coefficients, h, value(coefficients, h))
+}
+
+/// The same where it is known that p may vanish, and what it is at h.
+pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots {
+    let mut found = Roots::new();
+    // Leaving zero is no change of sign: p(u)/u^k has the same sign for u > 0.
+    let zeros = coefficients
+        .iter()
+        .take_while(|coefficient| **coefficient == 0.0)
+        .count();
+    let coefficients = &coefficients[zeros..];
+    let Some(&first) = coefficients.first() else {
+        return found;
+    };
+    // One that only rises or only falls has at most one root.
+    if let [_, slope, ..] = coefficients
+        && slope.abs() > slope_variation(coefficients, h)
+    {
+        // The sign at the end is that of p/u^k too.
+        if end == 0.0 {
+            found.push(h);
+        } else if end.signum() != first.signum() {
+            let end = if zeros == 0 { end } else { value(coefficients, h) };
+            found.push(bracketed(coefficients, 0.0, (0.0, first), (h, end)));
+        }
+        return found;
+    }
+    let end = if zeros == 0 { end } else { value(coefficients, h) };
+    let mut search = Search {
+        coefficients,
+        curvature: curvature(coefficients, h),
+        sign: first.signum(),
+        found,
+    };
+    search.look((0.0, first), (h, end), DEEPEST);
+    search.found
+}
+
+/// Halvings after which an interval is called a point.
+const DEEPEST: usize = 56;
+
+/// A search from left to right.
+struct Search<'a> {
+    coefficients: &'a [f64],
+    /// A bound on |p''|.
+    curvature: f64,
+    /// The sign of p just before the place that is looked at.
+    sign: f64,
+    found: Roots,
+}
+
+impl Search<'_> {
+    /// Looks at the interval between two places with their values.
+    fn look(&mut self, left: (f64, f64), right: (f64, f64), halvings: usize) {
+        if self.found.is_full() {
+            return;
+        }
+        let (from, to) = (left.0, right.0);
+        let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
+        let (height, slope) = value_and_slope(self.coefficients, middle);
+        if height.abs() > slope.abs() * radius + 0.5 * self.curvature * radius * radius {
+            // The sign is the same all over the interval; a change since the last one lies at its very beginning.
+            if height.signum() != self.sign {
+                self.add(from);
+            }
+            return;
+        }
+        let narrow = halvings == 0 || radius <= 4.0 * f64::EPSILON * to;
+        if !narrow && slope.abs() <= self.curvature * radius {
+            self.look(left, (middle, height), halvings - 1);
+            self.look((middle, height), right, halvings - 1);
+        } else if right.1 == 0.0 {
+            self.add(to);
+        } else if right.1.signum() != self.sign {
+            let clear = !narrow && left.1 != 0.0 && left.1.signum() == self.sign;
+            self.add(if clear {
+                bracketed(self.coefficients, 0.0, left, right)
+            } else {
+                middle
+            });
+        }
+    }
+
+    fn add(&mut self, root: f64) {
+        self.found.push(root);
+        self.sign = -self.sign;
+    }
+}
+
+/// The place between `from` and `to` where p - level changes sign once; the nearer end where it does not: Newton's
+/// method, halving the interval where that would leave it.
+pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f64) -> f64 {
+    let start = value(coefficients, from) - level;
+    let end = value(coefficients, to) - level;
+    if start == 0.0 || end == 0.0 || (start > 0.0) == (end > 0.0) {
+        return if start.abs() < end.abs() { from } else { to };
+    }
+    bracketed(coefficients, level, (from, start), (to, end))
+}
+
+/// The same where the values of p - level at both ends are known, and of opposite sign.
+pub(super) fn bracketed(coefficients: &[f64], level: f64, (from, start): (f64, f64), (to, end): (f64, f64)) -> f64 {
+    let (mut left, mut right) = (from, to);
+    let mut u = from + (to - from) * (start / (start - end));
+    // From the beginning of the series: the parabola with the slope there is a better guess than the chord.
+    if from == 0.0
+        && let [_, slope, ..] = *coefficients
+    {
+        let bend = (end - start - slope * to) / (to * to);
+        let root = (slope * slope - 4.0 * bend * start).sqrt();
+        let guess = -2.0 * start / (slope + root.copysign(slope));
+        if guess > left && guess < right {
+            u = guess;
+        }
+    }
+    // Newton's steps converge in a few, halvings in 60.
+    for _ in 0..100 {
+        let (sum, slope) = value_and_slope(coefficients, u);
+        let height = sum - level;
+        if height == 0.0 {
+            return u;
+        }
+        if (height > 0.0) == (start > 0.0) {
+            left = u;
+        } else {
+            right = u;
+        }
+        let newton = u - height / slope;
+        let next = if newton > left && newton < right {
+            newton
+        } else {
+            0.5 * (left + right)
+        };
+        // The error of a step of Newton's is about the square of the one before.
+        let settled = next == newton && (next - u).abs() <= 1e-8 * (to - from);
+        if settled || next <= left || next >= right {
+            return next;
+        }
+        u = next;
+    }
+    u
+}
+
+/// The same for any function with one change of sign.
+pub(super) fn crossing_of(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    match find_root(&function, from, to) {
+        Ok(root) => root,
+        // Rounding took the change of sign away: it happens where the function is closest to zero.
+        Err(_) if function(from).abs() < function(to).abs() => from,
+        Err(_) => to,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The product of (u - root) over the roots, lowest power first.
+    fn with_roots(roots: &[f64]) -> Vec<f64> {
+        let mut coefficients = vec![1.0];
+        for root in roots {
+            let mut next = vec![0.0; coefficients.len() + 1];
+            for (power, coefficient) in coefficients.iter().enumerate() {
+                next[power + 1] += coefficient;
+                next[power] -= root * coefficient;
+            }
+            coefficients = next;
+        }
+        coefficients
+    }
+
+    #[test]
+    fn value_slope_and_bounds_of_a_cubic() {
+        let cubic = [1.0, -2.0, 0.5, 3.0];
+        assert_eq!(
+            value_and_slope(&cubic, 2.0),
+            (1.0 - 4.0 + 2.0 + 24.0, -2.0 + 2.0 + 36.0)
+        );
+        assert_eq!(variation(&cubic, 2.0), 4.0 + 2.0 + 24.0);
+        assert_eq!(curvature(&cubic, 2.0), 1.0 + 36.0);
+    }
+
+    #[test]
+    fn every_change_of_sign_is_found_and_none_invented() {
+        for (roots, expected) in [
+            (vec![0.3], vec![0.3]),
+            (vec![0.3, 0.7], vec![0.3, 0.7]),
+            (vec![0.5, 0.5 + 1e-6], vec![0.5, 0.5 + 1e-6]),
+            (vec![0.1, 0.2, 0.9, 1.5], vec![0.1, 0.2, 0.9]),
+            (vec![-0.1, 1.01], vec![]),
+            (vec![0.0, 0.4], vec![0.4]),
+            (vec![0.0, 0.0, 0.4], vec![0.4]),
+            (vec![1.0], vec![1.0]),
+        ] {
+            let found = sign_changes(&with_roots(&roots), 1.0);
+            assert_eq!(found.as_slice().len(), expected.len(), "{roots:?}: {found:?}");
+            for (found, expected) in found.as_slice().iter().zip(&expected) {
+                assert!((found - expected).abs() < 1e-9, "{found} against {expected}");
+            }
+        }
+        // Two complex roots next to the interval: no real one.
+        assert!(sign_changes(&[0.25 + 1e-12, -1.0, 1.0], 1.0).as_slice().is_empty());
+        assert!(sign_changes(&[0.0, 0.0], 1.0).as_slice().is_empty());
+    }
+}

@@ -1,0 +1,209 @@
+//! Many motions: one or two parameters over a range, all cores, and what an engineer asks of each.
+//!
+//! In: motions, in the order of their numbers. Out: a [`Summary`] each, in that order. Every motion is followed by the
+//! same operations wherever it runs, so the result does not depend on the number of threads.
+//!
+//! ```
+//! use lindstedt::damper::{Model, Options, Start, sweep::{Axis, sweep}};
+//!
+//! let axis: Axis = "gamma=1e4:1e6:3".parse()?;
+//! assert_eq!(axis.values(), [1e4, 505_000.0, 1e6]);
+//! let start = Start { x: -1.5, velocity: 0.0 };
+//! let motions: Vec<_> = axis.values().into_iter().map(|gamma| (Model { gamma, ..Model::default() }, start)).collect();
+//! let found = sweep(&motions, &Options::default(), |_| ()).map_err(|(_, error)| error)?;
+//! assert!(found[0].deepest > found[2].deepest);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::str::FromStr;
+
+use rayon::prelude::*;
+use thiserror::Error;
+
+use super::{Model, NoRest, Options, Simulation, SimulationError, Start, Stop, simulate_many};
+
+/// The most motions of one sweep.
+pub const MOST_MOTIONS: usize = 1_000_000;
+
+/// Motions that one thread follows together.
+const CHUNK: usize = 96;
+
+/// A parameter and the values it takes: `NAME=from:to:count`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The key of the problem file.
+    pub name: String,
+    /// The first value.
+    pub from: f64,
+    /// The last value.
+    pub to: f64,
+    /// How many values, equally spaced, both ends included.
+    pub count: usize,
+}
+
+/// Why a text names no range.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum AxisError {
+    /// Not of the form NAME=from:to:count.
+    #[error("`{0}` should be NAME=from:to:count, such as zeta=0.01:0.05:9")]
+    Form(String),
+    /// An end that is no finite number.
+    #[error("`{0}` is no finite number")]
+    Number(String),
+    /// A count that cannot be.
+    #[error("the count `{0}` should be a whole number from 2 to {MOST_MOTIONS}")]
+    Count(String),
+}
+
+impl FromStr for Axis {
+    type Err = AxisError;
+
+    fn from_str(text: &str) -> Result<Self, AxisError> {
+        let form = || AxisError::Form(text.to_owned());
+        let (name, range) = text.split_once('=').ok_or_else(form)?;
+        let parts: Vec<&str> = range.split(':').map(str::trim).collect();
+        let [from, to, count] = parts[..] else {
+            return Err(form());
+        };
+        let number = |text: &str| match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(AxisError::Number(text.to_owned())),
+        };
+        let count_of = |text: &str| match text.parse::<usize>() {
+            Ok(value) if (2..=MOST_MOTIONS).contains(&value) => Ok(value),
+            _ => Err(AxisError::Count(text.to_owned())),
+        };
+        if name.trim().is_empty() {
+            return Err(form());
+        }
+        Ok(Self {
+            name: name.trim().to_owned(),
+            from: number(from)?,
+            to: number(to)?,
+            count: count_of(count)?,
+        })
+    }
+}
+
+impl Axis {
+    /// The values, in order.
+    pub fn values(&self) -> Vec<f64> {
+        let last = self.count.saturating_sub(1).max(1) as f64;
+        (0..self.count)
+            .map(|index| match index {
+                _ if index + 1 == self.count => self.to,
+                _ => self.from + (self.to - self.from) * (index as f64 / last),
+            })
+            .collect()
+    }
+}
+
+/// What came of one motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Number of contacts.
+    pub impacts: usize,
+    /// When the envelope fell to a tenth of the start.
+    pub rest_time: Result<f64, NoRest>,
+    /// The greatest depth in a barrier, rad; 0 without contact.
+    pub deepest: f64,
+    /// The greatest speed at a touch; 0 without contact.
+    pub fastest: f64,
+    /// Energy lost in contacts, units of m g L.
+    pub energy_lost: f64,
+    /// Time at the end.
+    pub end_time: f64,
+    /// Displacement there, rad.
+    pub end_x: f64,
+    /// Velocity there.
+    pub end_velocity: f64,
+    /// Why it ended.
+    pub stop: Stop,
+}
+
+impl Summary {
+    fn of(motion: &Simulation) -> Self {
+        let largest = |value: fn(&super::Impact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
+        Self {
+            impacts: motion.impacts.len(),
+            rest_time: motion.rest().time,
+            deepest: largest(|impact| impact.penetration),
+            fastest: largest(|impact| impact.speed_in),
+            energy_lost: motion.impacts.iter().filter_map(|impact| impact.energy_lost).sum(),
+            end_time: motion.end_time,
+            end_x: motion.end_x,
+            end_velocity: motion.end_velocity,
+            stop: motion.stop,
+        }
+    }
+}
+
+/// Follows every motion by Taylor series, on all threads of the current pool; `progress` hears how many more are done.
+///
+/// # Errors
+/// [`SimulationError`] and the number of the first motion that cannot begin.
+pub fn sweep(
+    motions: &[(Model, Start)],
+    options: &Options,
+    progress: impl Fn(usize) + Sync,
+) -> Result<Vec<Summary>, (usize, SimulationError)> {
+    let options = Options {
+        keep_path: false,
+        ..*options
+    };
+    let parts: Vec<Result<Vec<Summary>, (usize, SimulationError)>> = motions
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, motions)| {
+            let runs = simulate_many(motions, &options).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
+            progress(motions.len());
+            Ok(runs.iter().map(Summary::of).collect())
+        })
+        .collect();
+    let mut summaries = Vec::with_capacity(motions.len());
+    for part in parts {
+        summaries.extend(part?);
+    }
+    Ok(summaries)
+}
+
+/// The same on so many threads.
+///
+/// # Errors
+/// As [`sweep`].
+pub fn sweep_on(
+    threads: usize,
+    motions: &[(Model, Start)],
+    options: &Options,
+    progress: impl Fn(usize) + Sync + Send,
+) -> Result<Vec<Summary>, (usize, SimulationError)> {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(|| sweep(motions, options, progress)),
+        // Without threads of its own it runs on those there are.
+        Err(_) => sweep(motions, options, progress),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_read_and_ends_where_it_says() {
+        let axis: Axis = "zeta=0.01:0.07:4".parse().unwrap();
+        assert_eq!(axis.values().len(), 4);
+        assert_eq!((axis.values()[0], axis.values()[3]), (0.01, 0.07));
+        for wrong in [
+            "zeta",
+            "zeta=1:2",
+            "zeta=1:2:3:4",
+            "=1:2:3",
+            "zeta=a:2:3",
+            "zeta=1:inf:3",
+            "zeta=1:2:1",
+            "zeta=1:2:2.5",
+        ] {
+            assert!(wrong.parse::<Axis>().is_err(), "{wrong}");
+        }
+    }
+}

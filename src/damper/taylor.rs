@@ -1,0 +1,416 @@
+//! The motion as a power series about the present moment: free flight in time, contact in a variable of its own.
+//!
+//! ```text
+//! flight:   x' = v,  v' = -2 zeta v - sin x - friction + beta sin(eta t) cos x,       derivatives by t
+//! contact:  x = x_r + w^2,  dt = w ds:                                               derivatives by s
+//!           w' = v/2,  t' = w,
+//!           v' = -w (sin x + friction - beta sin(eta t) cos x) - 2 zeta w v - (gamma + mu v) w^4
+//! products: (a b)_n = sum_k a_k b_(n-k);   u = sin x, c = cos x:  n u_n = sum_k k x_k c_(n-k)
+//!           y = 1 + k^2 v^2, p = atan(k v):  n p_n y_0 = k n v_n - sum_(0<j<n) j p_j y_(n-j)
+//! ```
+//!
+//! In time the contact force (x - x_r)^(3/2) is not analytic at the touch; in s it is a polynomial in w, and touch and
+//! release are simple zeros of w, however slow the touch. (The recurrences: A. Jorba and M. Zou, *Experimental Math.*
+//! 14 (2005) 99; the change of variable is that of Levi-Civita and Sundman for collisions.) A left barrier is a right
+//! one seen in a mirror: x, v, beta and the direction of friction change sign.
+//!
+//! Times are counted in a unit of choice, so that no coefficient over- or underflows. `L` motions go through the same
+//! operations side by side; each gets bit for bit what it would get alone.
+
+use super::model::STEEPNESS;
+
+/// Highest order of a series.
+pub(super) const HIGHEST_ORDER: usize = 30;
+
+/// How many of the last coefficients decide on the length of a step: a series may have gaps. At touch v is a series in
+/// s^5, for v' = -gamma w^4 and w' = v/2.
+pub(super) const LAST: usize = 5;
+
+/// Coefficients of a series, those of `L` motions side by side.
+pub(super) type Series<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
+
+/// Which terms of equation (7) are on in at least one of the motions.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Terms {
+    pub(super) arctangent: bool,
+    pub(super) excited: bool,
+    pub(super) damped_contact: bool,
+}
+
+impl Terms {
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            arctangent: self.arctangent || other.arctangent,
+            excited: self.excited || other.excited,
+            damped_contact: self.damped_contact || other.damped_contact,
+        }
+    }
+}
+
+/// The present moment of `L` motions and their parameters. In contact everything is seen in the mirror of its side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment<const L: usize> {
+    /// x in flight, w = sqrt(x - x_r) in contact.
+    pub(super) place: [f64; L],
+    pub(super) velocity: [f64; L],
+    pub(super) sine: [f64; L],
+    pub(super) cosine: [f64; L],
+    /// sin and cos of eta t.
+    pub(super) drive: [[f64; L]; 2],
+    /// The unit of t, or of s.
+    pub(super) unit: [f64; L],
+    /// Coulomb's friction, alpha times the direction of motion.
+    pub(super) dry: [f64; L],
+    /// (2/pi) alpha in equation (6).
+    pub(super) arctangent: [f64; L],
+    pub(super) viscous: [f64; L],
+    pub(super) beta: [f64; L],
+    pub(super) eta: [f64; L],
+    pub(super) gamma: [f64; L],
+    pub(super) mu: [f64; L],
+}
+
+impl<const L: usize> Moment<L> {
+    pub(super) fn new() -> Self {
+        let zero = [0.0; L];
+        Self {
+            place: zero,
+            velocity: zero,
+            sine: zero,
+            cosine: zero,
+            drive: [zero; 2],
+            unit: zero,
+            dry: zero,
+            arctangent: zero,
+            viscous: zero,
+            beta: zero,
+            eta: zero,
+            gamma: zero,
+            mu: zero,
+        }
+    }
+}
+
+/// What a step is made of: two or three series, all but the first two scratch outside contact.
+pub(super) struct Coefficients<const L: usize> {
+    /// x in flight, w in contact.
+    pub(super) place: Series<L>,
+    pub(super) velocity: Series<L>,
+    /// Time since the start of the step, in contact.
+    pub(super) time: Series<L>,
+    sine: Series<L>,
+    cosine: Series<L>,
+    drive: [Series<L>; 2],
+    square: Series<L>,
+    angle: Series<L>,
+    rate: Series<L>,
+    depth: Series<L>,
+    fourth: Series<L>,
+    slow: Series<L>,
+}
+
+impl<const L: usize> Coefficients<L> {
+    pub(super) fn new() -> Self {
+        let zero = [[0.0; L]; HIGHEST_ORDER + 1];
+        Self {
+            place: zero,
+            velocity: zero,
+            time: zero,
+            sine: zero,
+            cosine: zero,
+            drive: [zero; 2],
+            square: zero,
+            angle: zero,
+            rate: zero,
+            depth: zero,
+            fourth: zero,
+            slow: zero,
+        }
+    }
+}
+
+/// The values of the series at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ends<const L: usize> {
+    place: [f64; L],
+    velocity: [f64; L],
+    time: [f64; L],
+    variation: [f64; L],
+}
+
+/// Those of one motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    pub(super) place: f64,
+    pub(super) velocity: f64,
+    /// In contact: the time that the step takes.
+    pub(super) time: f64,
+    /// A bound on the change of the velocity within the step.
+    pub(super) variation: f64,
+}
+
+impl<const L: usize> Ends<L> {
+    pub(super) fn lane(&self, lane: usize) -> End {
+        End {
+            place: self.place[lane],
+            velocity: self.velocity[lane],
+            time: self.time[lane],
+            variation: self.variation[lane],
+        }
+    }
+}
+
+impl<const L: usize> Coefficients<L> {
+    /// The last coefficients of v, the very last first.
+    #[inline(always)]
+    pub(super) fn last(&self, order: usize, lane: usize) -> [f64; LAST] {
+        let mut last = [0.0; LAST];
+        for (back, coefficient) in last.iter_mut().enumerate() {
+            *coefficient = self.velocity[order - back][lane];
+        }
+        last
+    }
+
+    /// The series of one motion: x or w, v, t.
+    pub(super) fn lane(&self, order: usize, lane: usize) -> [[f64; HIGHEST_ORDER + 1]; 3] {
+        let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
+        for (own, all) in own.iter_mut().zip([&self.place, &self.velocity, &self.time]) {
+            for (coefficient, lanes) in own.iter_mut().zip(all).take(order + 1) {
+                *coefficient = lanes[lane];
+            }
+        }
+        own
+    }
+
+    /// The values of the series where the steps end, all four at once, in the order of operations of
+    /// [`value`](super::polynomial::value).
+    #[inline(always)]
+    pub(super) fn ends(&self, lengths: &[f64; L], order: usize) -> Ends<L> {
+        let order = order.min(HIGHEST_ORDER);
+        let zero = [0.0; L];
+        let (mut even, mut odd, mut variation) = ([zero; 3], [zero; 3], zero);
+        let square: [f64; L] = each(|lane| lengths[lane] * lengths[lane]);
+        let all = [&self.place, &self.velocity, &self.time];
+        if order.is_multiple_of(2) {
+            even = all.map(|series| series[order]);
+            variation = each(|lane| self.velocity[order][lane].abs() * lengths[lane]);
+        }
+        for pair in (0..order.div_ceil(2)).rev() {
+            for (series, (even, odd)) in all.iter().zip(even.iter_mut().zip(&mut odd)) {
+                for lane in 0..L {
+                    even[lane] = even[lane] * square[lane] + series[2 * pair][lane];
+                    odd[lane] = odd[lane] * square[lane] + series[2 * pair + 1][lane];
+                }
+            }
+            for lane in 0..L {
+                let outer = (variation[lane] + self.velocity[2 * pair + 1][lane].abs()) * lengths[lane];
+                variation[lane] = if pair == 0 {
+                    outer
+                } else {
+                    (outer + self.velocity[2 * pair][lane].abs()) * lengths[lane]
+                };
+            }
+        }
+        let [place, velocity, time] =
+            [0, 1, 2].map(|part| each(|lane| even[part][lane] + lengths[lane] * odd[part][lane]));
+        Ends {
+            place,
+            velocity,
+            time,
+            variation,
+        }
+    }
+}
+
+/// (a b)_n. Two sums, of even and of odd k: half the waiting of one on the other.
+#[inline(always)]
+fn product<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize) -> [f64; L] {
+    let (mut even, mut odd) = ([0.0; L], [0.0; L]);
+    let (a, b) = (&a[..=n], &b[..=n]);
+    let mut k = 0;
+    while k < n {
+        for lane in 0..L {
+            even[lane] += a[k][lane] * b[n - k][lane];
+            odd[lane] += a[k + 1][lane] * b[n - k - 1][lane];
+        }
+        k += 2;
+    }
+    if k == n {
+        for lane in 0..L {
+            even[lane] += a[n][lane] * b[0][lane];
+        }
+    }
+    each(|lane| even[lane] + odd[lane])
+}
+
+/// (a a)_n.
+#[inline(always)]
+fn square<const L: usize>(a: &Series<L>, n: usize) -> [f64; L] {
+    let mut sum = [0.0; L];
+    let a = &a[..=n];
+    for k in 0..n.div_ceil(2) {
+        for lane in 0..L {
+            sum[lane] += a[k][lane] * a[n - k][lane];
+        }
+    }
+    if n.is_multiple_of(2) {
+        each(|lane| 2.0 * sum[lane] + a[n / 2][lane] * a[n / 2][lane])
+    } else {
+        each(|lane| 2.0 * sum[lane])
+    }
+}
+
+#[inline(always)]
+fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
+    let mut result = [0.0; L];
+    for (lane, entry) in result.iter_mut().enumerate() {
+        *entry = value(lane);
+    }
+    result
+}
+
+/// 1/n.
+pub(super) const INVERSE: [f64; HIGHEST_ORDER + 2] = {
+    let mut table = [0.0; HIGHEST_ORDER + 2];
+    let mut n = 1;
+    while n < table.len() {
+        table[n] = 1.0 / n as f64;
+        n += 1;
+    }
+    table
+};
+
+/// The next coefficients of sine and cosine of an angle with this rate: n s_n = unit (rate c)_(n-1).
+#[inline(always)]
+fn sine_and_cosine<const L: usize>(
+    sine: &mut Series<L>,
+    cosine: &mut Series<L>,
+    rate: &Series<L>,
+    factor: &[f64; L],
+    n: usize,
+) {
+    let (up, down) = (product(rate, cosine, n - 1), product(rate, sine, n - 1));
+    for lane in 0..L {
+        sine[n][lane] = factor[lane] * INVERSE[n] * up[lane];
+        cosine[n][lane] = -factor[lane] * INVERSE[n] * down[lane];
+    }
+}
+
+/// The next coefficient of atan(k v).
+#[inline(always)]
+fn arctangent<const L: usize>(angle: &mut Series<L>, squares: &mut Series<L>, velocity: &Series<L>, n: usize) {
+    let steepness_squared = STEEPNESS * STEEPNESS;
+    let squared = square(velocity, n);
+    if n == 0 {
+        squares[0] = each(|lane| 1.0 + steepness_squared * squared[lane]);
+        angle[0] = each(|lane| (STEEPNESS * velocity[0][lane]).atan());
+        return;
+    }
+    squares[n] = each(|lane| steepness_squared * squared[lane]);
+    let mut sum = [0.0; L];
+    for j in 1..n {
+        for lane in 0..L {
+            sum[lane] += j as f64 * angle[j][lane] * squares[n - j][lane];
+        }
+    }
+    angle[n] = each(|lane| (STEEPNESS * velocity[n][lane] - INVERSE[n] * sum[lane]) / squares[0][lane]);
+}
+
+/// The series of free motion to this order.
+#[inline(always)]
+pub(super) fn flight<const L: usize>(moment: &Moment<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+    let order = order.min(HIGHEST_ORDER);
+    series.place[0] = moment.place;
+    series.velocity[0] = moment.velocity;
+    series.sine[0] = moment.sine;
+    series.cosine[0] = moment.cosine;
+    if terms.excited {
+        for part in 0..2 {
+            series.drive[part][0] = moment.drive[part];
+        }
+    }
+    for n in 0..order {
+        if n > 0 {
+            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.velocity, &moment.unit, n);
+        }
+        let mut force: [f64; L] = each(|lane| -moment.viscous[lane] * series.velocity[n][lane] - series.sine[n][lane]);
+        if n == 0 {
+            force = each(|lane| force[lane] - moment.dry[lane]);
+        }
+        if terms.arctangent {
+            arctangent(&mut series.angle, &mut series.square, &series.velocity, n);
+            force = each(|lane| force[lane] - moment.arctangent[lane] * series.angle[n][lane]);
+        }
+        if terms.excited {
+            if n > 0 {
+                // sin(eta t) and cos(eta t), each the derivative of the other.
+                let [sine, cosine] = [series.drive[0][n - 1], series.drive[1][n - 1]];
+                let factor: [f64; L] = each(|lane| moment.unit[lane] * moment.eta[lane] * INVERSE[n]);
+                series.drive[0][n] = each(|lane| factor[lane] * cosine[lane]);
+                series.drive[1][n] = each(|lane| -factor[lane] * sine[lane]);
+            }
+            let push = product(&series.drive[0], &series.cosine, n);
+            force = each(|lane| force[lane] + moment.beta[lane] * push[lane]);
+        }
+        let factor: [f64; L] = each(|lane| moment.unit[lane] * INVERSE[n + 1]);
+        series.place[n + 1] = each(|lane| factor[lane] * series.velocity[n][lane]);
+        series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
+    }
+}
+
+/// The series of motion in contact to this order, in s.
+#[inline(always)]
+pub(super) fn contact<const L: usize>(moment: &Moment<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+    let order = order.min(HIGHEST_ORDER);
+    series.place[0] = moment.place;
+    series.velocity[0] = moment.velocity;
+    series.time[0] = [0.0; L];
+    series.sine[0] = moment.sine;
+    series.cosine[0] = moment.cosine;
+    series.depth[0] = each(|lane| moment.place[lane] * moment.place[lane]);
+    if terms.excited {
+        for part in 0..2 {
+            series.drive[part][0] = moment.drive[part];
+        }
+    }
+    for n in 0..order {
+        // dx/ds = w v, and the depth w^2 has the same derivative.
+        series.rate[n] = product(&series.place, &series.velocity, n);
+        if n > 0 {
+            let rate = series.rate[n - 1];
+            series.depth[n] = each(|lane| moment.unit[lane] * INVERSE[n] * rate[lane]);
+            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.rate, &moment.unit, n);
+        }
+        series.fourth[n] = square(&series.depth, n);
+        let mut slow = series.sine[n];
+        if n == 0 {
+            slow = each(|lane| slow[lane] + moment.dry[lane]);
+        }
+        if terms.arctangent {
+            arctangent(&mut series.angle, &mut series.square, &series.velocity, n);
+            slow = each(|lane| slow[lane] + moment.arctangent[lane] * series.angle[n][lane]);
+        }
+        if terms.excited {
+            if n > 0 {
+                let factor = each(|lane| moment.unit[lane] * moment.eta[lane]);
+                let [sine, cosine] = &mut series.drive;
+                sine_and_cosine(sine, cosine, &series.place, &factor, n);
+            }
+            let push = product(&series.drive[0], &series.cosine, n);
+            slow = each(|lane| slow[lane] - moment.beta[lane] * push[lane]);
+        }
+        series.slow[n] = slow;
+        let carried = product(&series.place, &series.slow, n);
+        let mut force: [f64; L] = each(|lane| {
+            -carried[lane] - moment.viscous[lane] * series.rate[n][lane] - moment.gamma[lane] * series.fourth[n][lane]
+        });
+        if terms.damped_contact {
+            let damped = product(&series.velocity, &series.fourth, n);
+            force = each(|lane| force[lane] - moment.mu[lane] * damped[lane]);
+        }
+        let factor: [f64; L] = each(|lane| moment.unit[lane] * INVERSE[n + 1]);
+        series.time[n + 1] = each(|lane| factor[lane] * series.place[n][lane]);
+        series.place[n + 1] = each(|lane| 0.5 * factor[lane] * series.velocity[n][lane]);
+        series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
+    }
+}

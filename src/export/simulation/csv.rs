@@ -1,0 +1,64 @@
+//! Comma-separated values: one line per point, every number to its last digit.
+
+use std::fmt::Write as _;
+
+use super::{Report, SweepReport};
+
+/// Points inside each step of the integrator.
+const BETWEEN: usize = 3;
+
+/// The trajectory: the steps of the integrator and a few points inside each, so that a contact of a millisecond is as
+/// well drawn as a swing.
+pub fn simulation(report: &Report) -> String {
+    let motion = report.motion;
+    let mut text = String::from("t,x,velocity,state,energy\n");
+    let mut line = |t: f64, x: f64, velocity: f64| {
+        let state = motion.path.state_at(t).map_or("free", |state| state.name());
+        let energy = motion.model.energy(x, velocity);
+        let _ = writeln!(text, "{t},{x},{velocity},{state},{energy}");
+    };
+    if report.samples.is_empty() {
+        let mut last = f64::NEG_INFINITY;
+        for (t, x, velocity) in motion.path.points(BETWEEN) {
+            if t > last {
+                line(t, x, velocity);
+                last = t;
+            }
+        }
+    } else {
+        for &t in report.samples {
+            if let Some((x, velocity)) = motion.path.at(t) {
+                line(t, x, velocity);
+            }
+        }
+    }
+    text
+}
+
+/// The sweep: the parameters, then what came of them.
+pub fn sweep(report: &SweepReport) -> String {
+    let mut text = String::new();
+    for axis in report.axes {
+        let _ = write!(text, "{},", axis.name);
+    }
+    text.push_str("impacts,rest_time,penetration,speed_in,energy_lost,t,x,velocity,complete\n");
+    for (row, summary) in report.rows.iter().enumerate() {
+        for value in report.values(row) {
+            let _ = write!(text, "{value},");
+        }
+        let rest = summary.rest_time.map_or(String::new(), |time| time.to_string());
+        let _ = writeln!(
+            text,
+            "{},{rest},{},{},{},{},{},{},{}",
+            summary.impacts,
+            summary.deepest,
+            summary.fastest,
+            summary.energy_lost,
+            summary.end_time,
+            summary.end_x,
+            summary.end_velocity,
+            summary.stop.is_complete()
+        );
+    }
+    text
+}

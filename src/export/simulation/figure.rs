@@ -1,0 +1,273 @@
+//! Pictures: x(t), the phase plane and the energy of one run; curves or a heat map of a sweep.
+
+use std::sync::Arc;
+
+use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, SvgBackend, TickFormat};
+use kuva::render::render::render_multiple;
+
+use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
+use super::{Report, SweepReport};
+use crate::damper::Simulation;
+use crate::damper::sweep::Summary;
+use crate::decimal::decimal;
+
+/// Points of a curve, equally spaced in time; the turning points come on top.
+const POINTS: usize = 1600;
+
+/// The motion at equal distances of time and at its turning points, so that no peak is cut.
+fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
+    let mut times: Vec<f64> = (0..=POINTS)
+        .map(|index| motion.end_time * (index as f64 / POINTS as f64))
+        .collect();
+    times.extend(motion.turns.iter().map(|turn| turn.t));
+    times.extend(
+        motion
+            .impacts
+            .iter()
+            .flat_map(|impact| [Some(impact.entry_time), impact.exit_time])
+            .flatten(),
+    );
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+        .into_iter()
+        .filter_map(|t| motion.path.at(t).map(|(x, velocity)| (t, x, velocity)))
+        .collect()
+}
+
+/// The motion in time, the phase plane, and where the energy goes.
+///
+/// # Errors
+/// As [`figure`].
+pub fn simulation(report: &Report) -> Result<String, FigureError> {
+    let motion = report.motion;
+    let points = points(motion);
+    let time: Vec<(f64, f64)> = points.iter().map(|&(t, x, _)| (t, x)).collect();
+    let phase: Vec<(f64, f64)> = points.iter().map(|&(_, x, v)| (x, v)).collect();
+    let (mut energy, mut viscous, mut friction, mut contact, mut excitation) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    motion.energy_points(|point| {
+        energy.push((point.t, point.energy));
+        viscous.push((point.t, point.book.viscous));
+        friction.push((point.t, point.book.friction));
+        contact.push((point.t, point.book.contact));
+        excitation.push((point.t, point.book.excitation));
+    });
+    let judge = report.judge.map(|judge| {
+        let points = self::points(judge);
+        let time: Vec<(f64, f64)> = points.iter().map(|&(t, x, _)| (t, x)).collect();
+        let phase: Vec<(f64, f64)> = points.iter().map(|&(_, x, v)| (x, v)).collect();
+        (time, phase)
+    });
+    let mut motions = Vec::new();
+    let mut orbits = Vec::new();
+    if let Some((time, phase)) = &judge {
+        motions.push(curve("Runge-Kutta", time, CurveStyle::RUNGE_KUTTA));
+        orbits.push(curve("Runge-Kutta", phase, CurveStyle::RUNGE_KUTTA));
+    }
+    let style = if judge.is_some() {
+        CurveStyle::FORMULA
+    } else {
+        CurveStyle::DIFFERENCE
+    };
+    motions.push(curve("motion", &time, style));
+    orbits.push(curve("motion", &phase, style));
+    let model = &motion.model;
+    let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
+        let left = model.left.map(|at| guide(at, "left barrier"));
+        let right = model.right.map(|at| guide(at, "barrier x_c"));
+        // A barrier out of reach would leave no room for the motion.
+        if motion.touches() {
+            left.into_iter().chain(right).collect()
+        } else {
+            Vec::new()
+        }
+    };
+    let mut energies = vec![curve("energy", &energy, CurveStyle::FORMULA)];
+    for (label, points, style, shown) in [
+        (
+            "work of viscous damping",
+            &viscous,
+            CurveStyle::DIFFERENCE,
+            model.zeta != 0.0,
+        ),
+        (
+            "work of dry friction",
+            &friction,
+            CurveStyle::SECOND_DIFFERENCE,
+            model.alpha != 0.0,
+        ),
+        (
+            "work of contact damping",
+            &contact,
+            CurveStyle::THIRD_DIFFERENCE,
+            model.mu != 0.0,
+        ),
+        (
+            "work of the excitation",
+            &excitation,
+            CurveStyle::SECOND_FORMULA,
+            model.beta != 0.0,
+        ),
+    ] {
+        if shown {
+            energies.push(curve(label, points, style));
+        }
+    }
+    let panel = |title, x_label, y_label, curves, guides| Panel {
+        title,
+        x_label,
+        y_label,
+        curves,
+        guides,
+        ..Panel::default()
+    };
+    let panels = [
+        panel(
+            "Motion in time",
+            TIME,
+            "displacement x (rad)",
+            motions,
+            guides(Guide::Y),
+        ),
+        panel(
+            "Phase plane",
+            "displacement x (rad)",
+            "velocity x′",
+            orbits,
+            guides(Guide::X),
+        ),
+        panel("Energy", TIME, "energy (units of m g L)", energies, Vec::new()),
+    ];
+    let caption = format!(
+        "Equation (7): gamma = {}, mu = {}, zeta = {}, alpha = {}, beta = {}; {} impacts until t = {}.",
+        decimal(model.gamma),
+        decimal(model.mu),
+        decimal(model.zeta),
+        decimal(model.alpha),
+        decimal(model.beta),
+        motion.impacts.len(),
+        decimal(motion.end_time)
+    );
+    figure(&panels, &caption)
+}
+
+const TIME: &str = "time t (units of 1/ω)";
+
+fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
+    Curve { label, points, style }
+}
+
+/// A quantity of a sweep.
+struct Quantity {
+    title: &'static str,
+    label: &'static str,
+    value: fn(&Summary) -> Option<f64>,
+}
+
+const QUANTITIES: [Quantity; 4] = [
+    Quantity {
+        title: "Rest time",
+        label: "rest time (units of 1/ω)",
+        value: |summary| summary.rest_time.ok(),
+    },
+    Quantity {
+        title: "Impacts",
+        label: "number of impacts",
+        value: |summary| Some(summary.impacts as f64),
+    },
+    Quantity {
+        title: "Deepest penetration",
+        label: "penetration (rad)",
+        value: |summary| Some(summary.deepest),
+    },
+    Quantity {
+        title: "Energy lost in contact",
+        label: "energy (units of m g L)",
+        value: |summary| Some(summary.energy_lost),
+    },
+];
+
+/// Curves over one parameter, or a heat map over two: of the rest time where every motion has one, otherwise of the
+/// number of impacts.
+///
+/// # Errors
+/// As [`figure`].
+pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
+    match report.axes {
+        [one] => {
+            let values = one.values();
+            let drawn: Vec<(&Quantity, Vec<(f64, f64)>)> = QUANTITIES
+                .iter()
+                .map(|quantity| {
+                    let points = values.iter().zip(report.rows);
+                    let points = points.filter_map(|(at, row)| Some((*at, (quantity.value)(row)?)));
+                    (quantity, points.collect::<Vec<_>>())
+                })
+                .filter(|(_, points)| points.len() > 1)
+                .collect();
+            let panels: Vec<Panel> = drawn
+                .iter()
+                .map(|(quantity, points)| Panel {
+                    title: quantity.title,
+                    x_label: &one.name,
+                    y_label: quantity.label,
+                    curves: vec![curve("", points, CurveStyle::DIFFERENCE)],
+                    ..Panel::default()
+                })
+                .collect();
+            let caption = format!(
+                "{} motions, {} from {} to {}.",
+                report.rows.len(),
+                one.name,
+                decimal(one.from),
+                decimal(one.to)
+            );
+            figure(&panels, &caption)
+        }
+        [down, across] => {
+            let [rest, impacts, ..] = &QUANTITIES;
+            let all_rest = report.rows.iter().all(|row| row.rest_time.is_ok());
+            let quantity = if all_rest { rest } else { impacts };
+            let grid: Vec<Vec<f64>> = report
+                .rows
+                .chunks(across.count.max(1))
+                .rev()
+                .map(|row| {
+                    row.iter()
+                        .map(|summary| (quantity.value)(summary).unwrap_or(0.0))
+                        .collect()
+                })
+                .collect();
+            Ok(heat_map(&grid, [down, across], quantity))
+        }
+        _ => Err(FigureError::Empty("the sweep".to_owned())),
+    }
+}
+
+fn heat_map(grid: &[Vec<f64>], [down, across]: [&crate::damper::sweep::Axis; 2], quantity: &Quantity) -> String {
+    let half = |axis: &crate::damper::sweep::Axis| 0.5 * (axis.to - axis.from) / (axis.count.max(2) - 1) as f64;
+    let range = |axis: &crate::damper::sweep::Axis| {
+        let (from, to) = (axis.from - half(axis), axis.to + half(axis));
+        (from.min(to), from.max(to))
+    };
+    let (x, y) = (range(across), range(down));
+    let map = Heatmap::new()
+        .with_data(grid.to_vec())
+        .with_color_map(ColorMap::Viridis)
+        .with_legend(quantity.label)
+        .with_x_range(x.0, x.1)
+        .with_y_range(y.0, y.1);
+    let ticks = TickFormat::Custom(Arc::new(|value: f64| decimal((value * 1e12).round() / 1e12)));
+    let mut layout = Layout::new(x, y)
+        .with_title(quantity.title)
+        .with_x_label(across.name.as_str())
+        .with_y_label(down.name.as_str())
+        .with_tick_format(ticks);
+    (layout.x_axis_min, layout.x_axis_max) = (Some(x.0), Some(x.1));
+    (layout.y_axis_min, layout.y_axis_max) = (Some(y.0), Some(y.1));
+    layout.show_colorbar = true;
+    let scene = render_multiple(vec![Plot::Heatmap(map)], layout.with_width(700.0).with_height(480.0));
+    let svg = SvgBackend::new().with_pretty(true).render_scene(&scene);
+    svg.replacen(&format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION), "", 1)
+}

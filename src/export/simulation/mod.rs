@@ -1,0 +1,88 @@
+//! A simulated motion, and a sweep of many: as text, JSON, table of comma-separated values, and pictures.
+
+mod csv;
+#[cfg(feature = "plot")]
+pub mod figure;
+mod json;
+mod text;
+
+pub use csv::{simulation as csv, sweep as sweep_csv};
+pub use json::{simulation as json, sweep as sweep_json};
+pub use text::{simulation as text, sweep as sweep_text};
+
+use crate::damper::sweep::{Axis, Summary};
+use crate::damper::{Friction, Simulation};
+
+/// What is handed on of one run.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// The motion.
+    pub motion: &'a Simulation,
+    /// The same by the other integrator, where both were asked for.
+    pub judge: Option<&'a Simulation>,
+    /// Where gamma and mu come from.
+    pub sources: [&'a str; 2],
+    /// The tolerance that was asked for; the steps of the integrator get a part of it.
+    pub tolerance: f64,
+    /// Times at which the state is wanted, all within the duration.
+    pub samples: &'a [f64],
+}
+
+/// What is handed on of a sweep.
+#[derive(Debug, Clone, Copy)]
+pub struct SweepReport<'a> {
+    /// One or two parameters; the last varies fastest.
+    pub axes: &'a [Axis],
+    /// A row for each motion.
+    pub rows: &'a [Summary],
+}
+
+impl SweepReport<'_> {
+    /// The values of the parameters of a row.
+    fn values(&self, row: usize) -> Vec<f64> {
+        let mut rest = row;
+        let mut values: Vec<f64> = self
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| {
+                let index = rest % axis.count.max(1);
+                rest /= axis.count.max(1);
+                axis.values().get(index).copied().unwrap_or(axis.to)
+            })
+            .collect();
+        values.reverse();
+        values
+    }
+}
+
+/// Points of the comparison of two integrators.
+const COMPARED: usize = 4001;
+
+fn friction(friction: Friction) -> &'static str {
+    match friction {
+        Friction::Exact => "exact",
+        Friction::Arctangent => "arctangent",
+    }
+}
+
+/// What should be said beside the numbers.
+fn notes(report: &Report) -> Vec<String> {
+    let motion = report.motion;
+    let mut notes = Vec::new();
+    if !motion.touches() {
+        let barriers: Vec<String> = [motion.model.left, motion.model.right]
+            .into_iter()
+            .flatten()
+            .map(|barrier| barrier.to_string())
+            .collect();
+        notes.push(format!(
+            "no contact: the motion never reaches the barrier at {}; it is that of the plain pendulum",
+            barriers.join(" or ")
+        ));
+    }
+    if motion.impacts.last().is_some_and(|impact| impact.exit_time.is_none()) {
+        notes.push("the run ends in contact: the last impact has no exit".to_owned());
+    }
+    notes
+}

@@ -1,0 +1,268 @@
+//! To read in a terminal.
+
+use std::fmt::Write as _;
+
+use super::{COMPARED, Report, SweepReport, friction, notes};
+use crate::damper::{Integrator, Model, Simulation};
+use crate::decimal::{decimal, significant};
+
+/// Impacts that are listed; a long run has thousands.
+const LISTED: usize = 24;
+
+/// One run.
+pub fn simulation(report: &Report) -> String {
+    let motion = report.motion;
+    let mut text = header(report);
+    impacts(&mut text, motion);
+    rest(&mut text, motion);
+    energy(&mut text, motion);
+    if !report.samples.is_empty() {
+        let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
+        for &t in report.samples {
+            let state = match motion.path.at(t) {
+                Some((x, velocity)) => format!("{:>16}  {:>16}", significant(x, 10), significant(velocity, 10)),
+                None => format!("{:>16}", "not reached"),
+            };
+            let _ = writeln!(text, "  {:>12}  {state}", decimal(t));
+        }
+    }
+    let _ = writeln!(
+        text,
+        "\nAt t = {}: x = {}, x' = {}",
+        decimal(motion.end_time),
+        significant(motion.end_x, 10),
+        significant(motion.end_velocity, 10)
+    );
+    let _ = writeln!(text, "  {} in {} steps; {}", method(motion), motion.steps, motion.stop);
+    if let Some(judge) = report.judge {
+        let difference = motion.difference(judge, COMPARED);
+        let _ = writeln!(
+            text,
+            "\nBeside {}, {} steps\n  largest difference in x {}, in x' {}, until t = {}",
+            method(judge),
+            judge.steps,
+            size(difference.displacement),
+            size(difference.velocity),
+            decimal(difference.until)
+        );
+        let _ = writeln!(
+            text,
+            "  impacts {}, energy residual {}; {}",
+            judge.impacts.len(),
+            size(judge.energy().residual),
+            judge.stop
+        );
+    }
+    for note in notes(report) {
+        let _ = writeln!(text, "\nnote: {note}");
+    }
+    text
+}
+
+fn method(motion: &Simulation) -> &'static str {
+    match motion.integrator {
+        Integrator::Taylor => "Taylor series, contact regularised",
+        Integrator::RungeKutta => "Runge-Kutta in phases",
+    }
+}
+
+/// A number as it was typed: every digit, unless there are very many zeros.
+fn typed(value: f64) -> String {
+    if (1e-6..1e9).contains(&value.abs()) || value == 0.0 {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// An order of magnitude is enough, and below rounding none is left.
+fn size(value: f64) -> String {
+    if value < 1e-15 {
+        "< 1e-15".to_owned()
+    } else {
+        format!("{value:.0e}")
+    }
+}
+
+fn header(report: &Report) -> String {
+    let motion = report.motion;
+    let Model {
+        zeta,
+        alpha,
+        friction: law,
+        beta,
+        frequency_ratio,
+        gamma,
+        mu,
+        left,
+        right,
+    } = motion.model;
+    let dry = match law {
+        _ if alpha == 0.0 => "",
+        crate::damper::Friction::Exact => " + alpha*sgn(x')",
+        crate::damper::Friction::Arctangent => " + (2/pi)*alpha*atan(100*x')",
+    };
+    let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
+    let drive = if beta == 0.0 { "" } else { " - beta*sin(eta*t)*cos(x)" };
+    let contact = if mu == 0.0 { "gamma" } else { "(gamma + mu*x')" };
+    let mut text = format!("x''{viscous}{dry}{drive} + sin(x) + {contact}*(x - xc)^(3/2)*H(x - xc) = 0\n");
+    if left.is_some() {
+        text.push_str("and the mirror image of the contact on the left\n");
+    }
+    let [gamma_source, mu_source] = report.sources;
+    let mut entry = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<8} = {value}");
+    };
+    entry(
+        "x(0)",
+        format!(
+            "{}, x'(0) = {}",
+            decimal(motion.start.x),
+            decimal(motion.start.velocity)
+        ),
+    );
+    match (left, right) {
+        (Some(left), Some(right)) => entry("xc", format!("{} and {}", typed(left), typed(right))),
+        (Some(only), None) | (None, Some(only)) => entry("xc", typed(only)),
+        (None, None) => {}
+    }
+    entry("gamma", format!("{}   ({gamma_source})", decimal(gamma)));
+    if mu != 0.0 {
+        entry("mu", format!("{}   ({mu_source})", decimal(mu)));
+    }
+    if zeta != 0.0 {
+        entry("zeta", decimal(zeta));
+    }
+    if alpha != 0.0 {
+        entry("alpha", format!("{}   ({})", decimal(alpha), friction(law)));
+    }
+    if beta != 0.0 {
+        entry(
+            "beta",
+            format!("{}, eta = Omega/omega = {}", decimal(beta), decimal(frequency_ratio)),
+        );
+    }
+    text
+}
+
+fn impacts(text: &mut String, motion: &Simulation) {
+    let count = motion.impacts.len();
+    let _ = writeln!(text, "\nImpacts: {count}");
+    if count == 0 {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
+        "", "side", "entry", "duration", "speed in", "speed out", "penetration", "restitution", "energy lost"
+    );
+    let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
+    for (index, impact) in motion.impacts.iter().enumerate() {
+        if count > LISTED && index == LISTED - 1 && index + 1 < count {
+            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - LISTED);
+        }
+        if count > LISTED && index >= LISTED - 1 && index + 1 < count {
+            continue;
+        }
+        let duration = impact.exit_time.map(|exit| exit - impact.entry_time);
+        // What is lost in an elastic contact is rounding.
+        let lost = impact.energy_lost.map(|lost| {
+            if lost.abs() < 1e-9 * impact.speed_in * impact.speed_in {
+                0.0
+            } else {
+                lost
+            }
+        });
+        let restitution = impact.restitution.map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
+        let _ = writeln!(
+            text,
+            "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
+            index + 1,
+            impact.side.name(),
+            significant(impact.entry_time, 8),
+            optional(duration),
+            decimal(impact.speed_in),
+            optional(impact.speed_out),
+            decimal(impact.penetration),
+            optional(restitution),
+            optional(lost)
+        );
+    }
+}
+
+fn rest(text: &mut String, motion: &Simulation) {
+    let rest = motion.rest();
+    let _ = match rest.amplitude {
+        0.0 => writeln!(text, "\nRest"),
+        amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}", decimal(amplitude)),
+    };
+    let _ = match rest.time {
+        Ok(time) => writeln!(
+            text,
+            "  rest time      {}   (envelope of the turning points)",
+            decimal(time)
+        ),
+        Err(reason) => writeln!(text, "  rest time      none: {reason}"),
+    };
+    if let Some(last) = rest.last_crossing {
+        let _ = writeln!(text, "  last crossing  {}", decimal(last));
+    }
+}
+
+fn energy(text: &mut String, motion: &Simulation) {
+    let book = motion.energy();
+    let model = &motion.model;
+    let _ = writeln!(text, "\nEnergy, in units of m g L");
+    let mut entry = |name: &str, value: f64, shown: bool| {
+        if shown {
+            let _ = writeln!(text, "  {name:<14} {:>13}", decimal(value));
+        }
+    };
+    entry("at the start", book.start, true);
+    entry("viscous", book.viscous, model.zeta != 0.0);
+    entry("friction", book.friction, model.alpha != 0.0);
+    entry("contact", book.contact, model.mu != 0.0);
+    entry("excitation", book.excitation, model.beta != 0.0);
+    entry("at the end", book.end, true);
+    let _ = writeln!(
+        text,
+        "  {:<14} {:>13}   of the largest energy",
+        "residual",
+        size(book.residual)
+    );
+}
+
+/// A sweep.
+pub fn sweep(report: &SweepReport) -> String {
+    let mut text = String::new();
+    for axis in report.axes {
+        let _ = write!(text, "{:>14}", axis.name);
+    }
+    let _ = writeln!(
+        text,
+        "{:>9}{:>13}{:>13}{:>11}{:>13}{:>13}",
+        "impacts", "rest time", "penetration", "speed in", "energy lost", "stopped at"
+    );
+    for (row, summary) in report.rows.iter().enumerate() {
+        for value in report.values(row) {
+            let _ = write!(text, "{:>14}", decimal(value));
+        }
+        let rest = summary.rest_time.map_or("-".to_owned(), decimal);
+        let warning = if summary.stop.is_complete() { "" } else { "  incomplete" };
+        let lost = if summary.energy_lost.abs() < 1e-9 {
+            0.0
+        } else {
+            summary.energy_lost
+        };
+        let _ = writeln!(
+            text,
+            "{:>9}{rest:>13}{:>13}{:>11}{:>13}{:>13}{warning}",
+            summary.impacts,
+            decimal(summary.deepest),
+            decimal(summary.fastest),
+            decimal(lost),
+            decimal(summary.end_time)
+        );
+    }
+    text
+}

@@ -1,0 +1,309 @@
+//! `lindstedt simulate` as a user meets it: one file in `examples/simulate/`, one snapshot in text and one in JSON; one
+//! file in `tests/errors/simulate/`, one message.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate");
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .arg("simulate")
+        .args(arguments)
+        .args(["--timeout", "60"])
+        .output()
+        .expect("the program starts")
+}
+
+fn output(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success() && message.is_empty(),
+        "{arguments:?}: {message}"
+    );
+    String::from_utf8(output.stdout).expect("the output is text")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&output(&[arguments, &["--format", "json"]].concat())).expect("the output is JSON")
+}
+
+fn example(name: &str) -> String {
+    format!("{EXAMPLES}/{name}.toml")
+}
+
+fn settings() -> insta::Settings {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.add_filter(concat!(env!("CARGO_MANIFEST_DIR"), "/"), "");
+    // Rounding noise by nature.
+    settings.add_filter(r"residual +(< )?\S+", "residual noise");
+    settings.add_filter(r"in \d+ steps", "in some steps");
+    settings.add_filter(r#""steps": \d+"#, r#""steps": "some""#);
+    settings
+}
+
+/// Numbers to seven digits: the last ones depend on the machine's sine.
+fn rounded(value: &mut Value) {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap_or_default();
+            *value = match number {
+                _ if number.abs() < 1e-9 => "noise".into(),
+                _ => format!("{number:.6e}").parse::<f64>().map_or(Value::Null, Value::from),
+            };
+        }
+        Value::Array(list) => list.iter_mut().for_each(rounded),
+        Value::Object(map) => map.values_mut().for_each(rounded),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_example_prints_what_it_printed() {
+    settings().bind(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("simulate-text", output(&[path, "--sample", "12.5", "--sample", "40"]));
+                let mut document = json(&[path, "--sample", "12.5"]);
+                rounded(&mut document);
+                insta::assert_json_snapshot!("simulate-json", document);
+            }
+        );
+    });
+}
+
+#[test]
+fn every_example_agrees_with_the_judge() {
+    for file in std::fs::read_dir(EXAMPLES)
+        .expect("examples/simulate")
+        .filter_map(Result::ok)
+    {
+        let path = file.path();
+        let document = json(&[path.to_str().expect("a path in text"), "--integrator", "both"]);
+        let judge = &document["judge"];
+        let difference = judge["max_difference"]["x"].as_f64().expect("a number");
+        assert!(difference < 1e-6, "{}: {difference}", path.display());
+        assert_eq!(
+            judge["impacts"].as_u64(),
+            document["impacts"].as_array().map(|list| list.len() as u64)
+        );
+        assert!(
+            document["energy_residual"]
+                .as_f64()
+                .is_some_and(|residual| residual < 1e-9)
+        );
+    }
+}
+
+#[test]
+fn every_wrong_input_gets_its_message() {
+    settings().bind(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/tests/errors/simulate"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("simulate-error", refusal(&[path]));
+            }
+        );
+    });
+}
+
+/// Message and exit code of a run that must be refused.
+fn refusal(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let text = String::from_utf8(output.stderr).expect("messages are text");
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{arguments:?}: {text}");
+    assert!(output.stdout.is_empty() && text.starts_with("error: "), "{text}");
+    for word in ["panicked", "internal error", "stopped after"] {
+        assert!(!text.contains(word), "{text}");
+    }
+    format!("{text}exit code {}\n", output.status.code().unwrap_or_default())
+}
+
+#[test]
+fn wrong_arguments_get_theirs() {
+    let file = example("damper");
+    for (arguments, words) in [
+        (vec!["--sweep", "zetta=0:1:3"], "did you mean `zeta`?"),
+        (vec!["--sweep", "zeta=0:1"], "NAME=from:to:count"),
+        (vec!["--sweep", "zeta=0:1:1"], "whole number from 2"),
+        (vec!["--sweep", "zeta=nan:1:3"], "no finite number"),
+        (vec!["--sweep", "zeta=-1:1:3"], "zeta must not be negative"),
+        (vec!["--sweep", "barrier=-2:0.3:3"], "inside the right barrier"),
+        (vec!["--sweep", "duration=1:2:3"], "the same for all motions"),
+        (vec!["--sweep", "zeta=0:1:3", "--sweep", "zeta=0:1:3"], "swept twice"),
+        (
+            vec!["--sweep", "zeta=0:1:2000", "--sweep", "mu=0:1:2000"],
+            "more than 1000000 motions",
+        ),
+        (vec!["--sweep", "zeta=0:1:3", "--sample", "1"], "leave out"),
+        (vec!["--sample", "1e9"], "lies beyond the duration"),
+        (vec!["--sample", "-1"], "sample"),
+        (vec!["--format", "latex"], "no LaTeX form"),
+        (vec!["--integrator", "euler"], "taylor"),
+    ] {
+        let text = refusal(&[&[file.as_str()], arguments.as_slice()].concat());
+        assert!(text.contains(words), "{arguments:?}: {text}");
+    }
+}
+
+#[test]
+fn a_barrier_out_of_reach_leaves_the_plain_pendulum_and_says_so() {
+    let path = std::env::temp_dir().join(format!("lindstedt-out-of-reach-{}.toml", std::process::id()));
+    std::fs::write(&path, "[pendulum]\nbarrier = 2.0\n").expect("a file");
+    let file = path.to_str().expect("a path in text");
+    assert!(output(&[file]).contains("no contact: the motion never reaches the barrier at 2"));
+    let document = json(&[file]);
+    assert_eq!(document["impacts"].as_array().map(Vec::len), Some(0));
+    assert!(
+        document["notes"][0]
+            .as_str()
+            .is_some_and(|note| note.contains("plain pendulum"))
+    );
+    // A quarter of the period after half a period: cn(K) = 0.
+    let quarter = ellip::ellipk(0.75_f64.sin().powi(2)).expect("m < 1");
+    let sample = format!("{}", 3.0 * quarter);
+    let document = json(&[file, "--sample", &sample]);
+    assert!(document["samples"][0]["x"].as_f64().is_some_and(|x| x.abs() < 1e-9));
+    std::fs::remove_file(path).expect("the file goes");
+}
+
+#[test]
+fn a_run_that_cannot_go_on_says_where_and_keeps_what_it_has() {
+    let path = std::env::temp_dir().join(format!("lindstedt-too-fast-{}.toml", std::process::id()));
+    std::fs::write(&path, "[pendulum]\nstart = 0\nspeed = 1e300\n").expect("a file");
+    let file = path.to_str().expect("a path in text");
+    let output = run(&[file, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("stopped early"));
+    let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(document["complete"], false);
+    assert!(
+        document["stopped"]
+            .as_str()
+            .is_some_and(|text| text.contains("no finite value after t = "))
+    );
+    assert_eq!(run(&[file, "--tolerance", "0.1"]).status.code(), Some(3));
+    std::fs::remove_file(path).expect("the file goes");
+}
+
+#[test]
+fn the_table_of_the_trajectory() {
+    let file = example("damper");
+    let table = output(&[&file, "--format", "csv"]);
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("t,x,velocity,state,energy"));
+    let mut last = -1.0;
+    let mut contacts = 0;
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |index: usize| fields[index].parse::<f64>().expect("a number");
+        assert!(fields.len() == 5 && number(0) > last, "{line}");
+        last = number(0);
+        contacts += usize::from(fields[3] == "contact");
+        assert!(number(1) > 0.323 - 1e-12 || fields[3] == "free", "{line}");
+    }
+    assert!(last == 200.0 && contacts > 100);
+    assert_eq!(output(&[&file, "--format", "csv", "--sample", "3"]).lines().count(), 2);
+}
+
+#[test]
+fn samples_and_final_state_agree_whatever_the_format() {
+    let file = example("everything");
+    let document = json(&[&file, "--sample", "40", "--sample", "0"]);
+    assert_eq!(document["samples"][0]["x"], document["final_state"]["x"]);
+    assert_eq!(document["samples"][1]["x"], 0.1);
+    assert_eq!(document["samples"][1]["velocity"], 1.2);
+}
+
+#[test]
+fn a_sweep_prints_the_same_on_any_number_of_threads() {
+    let file = example("damper");
+    let axes = ["--sweep", "zeta=0.01:0.05:9", "--sweep", "barrier=0.1:0.6:31"];
+    for format in ["text", "csv", "json"] {
+        let on = |jobs: &str| {
+            let arguments = [&[file.as_str(), "--format", format, "--jobs", jobs], &axes[..]].concat();
+            output(&arguments)
+        };
+        let one = on("1");
+        assert_eq!(one, on("2"));
+        assert_eq!(one, on("7"));
+    }
+    let table = output(&[&[file.as_str(), "--format", "csv"], &axes[..]].concat());
+    assert_eq!(table.lines().count(), 1 + 9 * 31);
+    // A row is the motion that its parameters give.
+    let row = table.lines().nth(1).expect("a row");
+    let single = output(&[&file, "--format", "csv", "--sweep", "barrier=0.1:0.6:31"]);
+    assert_eq!(row.split_once(',').map(|fields| fields.1), single.lines().nth(1));
+}
+
+#[test]
+fn exit_codes_follow_the_verdict() {
+    let file = example("paper");
+    for (arguments, code) in [(vec!["--tolerance", "1e-8"], 0), (vec!["--tolerance", "1e-14"], 3)] {
+        let output = run(&[&[file.as_str()], arguments.as_slice()].concat());
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(!output.stdout.is_empty());
+    }
+}
+
+#[cfg(feature = "plot")]
+#[test]
+fn pictures_are_drawn_and_the_same_on_every_run() {
+    let folder = std::env::temp_dir().join(format!("lindstedt-simulations-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for pictures");
+    let file = example("everything");
+    for (arguments, words) in [
+        (vec![], "Phase plane"),
+        (vec!["--integrator", "both"], "Runge-Kutta"),
+        (vec!["--sweep", "zeta=0:0.1:8"], "Impacts"),
+        (vec!["--sweep", "zeta=0:0.1:5", "--sweep", "alpha=0:0.1:6"], "Impacts"),
+    ] {
+        let draw = |name: &str| {
+            let path = folder.join(name);
+            let plot = ["--plot", path.to_str().expect("a path in text")];
+            output(&[&[file.as_str()], arguments.as_slice(), &plot].concat());
+            std::fs::read_to_string(path).expect("the picture was written")
+        };
+        let picture = draw("first.svg");
+        assert!(picture.contains("<svg") && picture.contains(words), "{arguments:?}");
+        assert_eq!(picture, draw("second.svg"));
+    }
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn help_says_what_there_is() {
+    settings().bind(|| insta::assert_snapshot!("help-simulate", output_of_help()));
+}
+
+fn output_of_help() -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["simulate", "--help"])
+        .output()
+        .expect("the program starts");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+#[test]
+fn the_examples_are_the_ones_the_readme_names() {
+    let readme = include_str!("../README.md");
+    let named: Vec<&str> = readme
+        .split_whitespace()
+        .filter(|word| word.starts_with("examples/simulate/"))
+        .collect();
+    assert!(!named.is_empty());
+    for name in named {
+        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(), "{name}");
+    }
+}

@@ -198,6 +198,28 @@ fn a_run_that_cannot_go_on_says_where_and_keeps_what_it_has() {
 }
 
 #[test]
+fn extreme_numbers_end_in_time() {
+    // Excitation beyond all scales, a creeping motion that underflows, friction and damping without measure.
+    for (number, text) in [
+        "[excitation]\nbeta = -0.2\nfrequency_ratio = 1.7e308",
+        "[damping]\nalpha = 0.2\nfriction = \"arctangent\"\n[run]\nduration = 1e5",
+        "[pendulum]\nstart = -1e300\n[damping]\nalpha = 1.1\nfriction = \"arctangent\"",
+        "[damping]\nzeta = 1e30\nalpha = 1e8",
+        "[contact]\ngamma = 1e300\nmu = 1e300",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let path = std::env::temp_dir().join(format!("lindstedt-extreme-{}-{number}.toml", std::process::id()));
+        std::fs::write(&path, text).expect("a file");
+        let output = run(&[path.to_str().expect("a path in text"), "--quiet"]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{text}: {message}");
+        std::fs::remove_file(path).expect("the file goes");
+    }
+}
+
+#[test]
 fn the_table_of_the_trajectory() {
     let file = example("damper");
     let table = output(&[&file, "--format", "csv"]);

@@ -143,6 +143,7 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
         coefficients,
         curvature: curvature(coefficients, h),
         sign: first.signum(),
+        looks: 0,
         found,
     };
     search.look((0.0, first), (h, end), DEEPEST);
@@ -152,6 +153,10 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
 /// Halvings after which an interval is called a point.
 const DEEPEST: usize = 56;
 
+/// Intervals that a search looks at: a close pair of roots takes some hundred. Where rounding or underflow is all there
+/// is, no interval is ever clear, and what is left is called a point.
+const MOST_LOOKS: usize = 400;
+
 /// A search from left to right.
 struct Search<'a> {
     coefficients: &'a [f64],
@@ -159,6 +164,7 @@ struct Search<'a> {
     curvature: f64,
     /// The sign of p just before the place that is looked at.
     sign: f64,
+    looks: usize,
     found: Roots,
 }
 
@@ -178,7 +184,8 @@ impl Search<'_> {
             }
             return;
         }
-        let narrow = halvings == 0 || radius <= 4.0 * f64::EPSILON * to;
+        self.looks += 1;
+        let narrow = halvings == 0 || self.looks > MOST_LOOKS || radius <= 4.0 * f64::EPSILON * to;
         if !narrow && slope.abs() <= self.curvature * radius {
             self.look(left, (middle, height), halvings - 1);
             self.look((middle, height), right, halvings - 1);
@@ -291,6 +298,15 @@ mod tests {
         );
         assert_eq!(variation(&cubic, 2.0), 4.0 + 2.0 + 24.0);
         assert_eq!(curvature(&cubic, 2.0), 1.0 + 36.0);
+    }
+
+    #[test]
+    fn a_search_ends_where_there_is_nothing_but_rounding() {
+        // Underflow and overflow: nothing can be told, and it says so at once.
+        for scale in [5e-324, 1e-310, f64::MAX, f64::INFINITY, f64::NAN] {
+            let noise: Vec<f64> = (0..24).map(|k| if k % 3 == 0 { scale } else { -scale }).collect();
+            assert!(sign_changes(&noise, 1.0).as_slice().len() <= Roots::LIMIT);
+        }
     }
 
     #[test]

@@ -31,6 +31,9 @@ const SAFETY: f64 = 0.5;
 /// The longest step in contact, in units of its own scale.
 const LONGEST_CONTACT_STEP: f64 = 64.0;
 
+/// A speed that is none.
+const VANISHING: f64 = 1e-280;
+
 /// Events in a row without progress of time after which a run is called stalled.
 const MOST_IDLE: usize = 100;
 
@@ -782,7 +785,8 @@ impl Runner {
 
 /// Where the velocity changes sign.
 fn turning_points(v: &[f64], h: f64, end: End) -> Roots {
-    if v[0].abs() > end.variation {
+    // A motion at the edge of underflow has come to rest.
+    if v[0].abs() > end.variation || end.variation < VANISHING {
         return Roots::new();
     }
     near_sign_changes(v, h, end.velocity)

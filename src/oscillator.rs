@@ -8,7 +8,7 @@
 //! and, for perturbation methods, the force as a sum of terms `delta^order * coefficient * x^p x'^q` beside the linear
 //! `omega0^2 x`, where `delta` is a parameter of the equation or the amplitude itself.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::{Signed, Zero};
 
@@ -222,6 +222,18 @@ impl Oscillator {
             force,
             parameters: names.into_iter().collect(),
         })
+    }
+
+    /// The same equation with exact values for some of its parameters.
+    ///
+    /// # Errors
+    /// A value at which a term has none.
+    pub fn with_values(&self, values: &BTreeMap<Symbol, Expr>) -> Result<Self, OscillatorError> {
+        let mut oscillator = self.clone();
+        oscillator.force = self.force.substitute_all(values)?;
+        oscillator.residual = self.residual.substitute_all(values)?;
+        oscillator.parameters.retain(|name| !values.contains_key(name));
+        Ok(oscillator)
     }
 
     /// The velocity `x'`.

@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
 use crate::exact::Polynomial;
 use crate::exact::rational::{Rational, to_f64};
@@ -318,7 +318,6 @@ impl Solution {
             step.right_side = step.right_side.map(|coefficient, _| rounded(coefficient));
             step.displacement = step.displacement.map(|coefficient, _| rounded(coefficient));
         }
-        self.closed_form = None;
         self.numerical = true;
         self.validity
             .push("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction".to_owned());
@@ -354,12 +353,14 @@ impl Solution {
     pub fn formula(&self) -> String {
         let law = if let Some(law) = &self.frequency_squared {
             format!("omega^2 = {}", self.lowest_first(law))
-        } else if let Some(form) = &self.closed_form {
+        } else if let Some(form) = self.closed_form.as_ref().filter(|_| !self.numerical) {
             form.to_string()
+        } else if let Some(form) = &self.closed_form {
+            format!("{} in closed form, with rounded coefficients", form.name())
         } else if let Some(law) = &self.frequency {
             format!("omega = {}", self.lowest_first(law))
         } else if let Some(relation) = &self.relation {
-            format!("0 = {relation}")
+            format!("0 = {}", self.lowest_first(relation))
         } else if self.method == Method::HarmonicBalance {
             let harmonics = self.displacement.harmonics();
             let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
@@ -383,7 +384,14 @@ impl Solution {
         terms.sort_by_key(|(monomial, _)| monomial.exponent(self.small_parameter));
         let mut text = String::new();
         for (monomial, number) in terms {
-            let term = Polynomial::term(monomial.clone(), number.clone()).to_string();
+            let term = match (self.numerical && !number.is_integer(), monomial.factors().is_empty()) {
+                (false, _) => Polynomial::term(monomial.clone(), number.clone()).to_string(),
+                (true, true) => crate::decimal::decimal(to_f64(number)),
+                (true, false) => {
+                    let rest = Polynomial::term(monomial.clone(), One::one());
+                    format!("{}*{rest}", crate::decimal::decimal(to_f64(number)))
+                }
+            };
             match (text.is_empty(), term.strip_prefix('-')) {
                 (true, _) => text.push_str(&term),
                 (false, Some(rest)) => text.extend([" - ", rest]),

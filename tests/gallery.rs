@@ -190,7 +190,16 @@ fn exit_codes_are_those_of_the_manual() {
         (vec!["compare", "pendulum", "--at", "A=1.5", "--tolerance", "0.01"], 3),
         (vec!["compare", "pendulum", "--at", "A=1", "--tolerance", "0.01"], 0),
         (vec!["compare", "pendulum", "--at", "A=4"], 1),
-        (vec!["compare", "duffing", "--at", "A=1"], 2),
+        (vec!["compare", "duffing", "--at", "A=1"], 1),
+        (vec!["compare", "duffing", "--at", "B=1"], 2),
+        (
+            vec!["compare", "magnetic-wire", "--at", "A=0.1", "--at", "lambda=0.1"],
+            0,
+        ),
+        (
+            vec!["derive", "magnetic-wire", "--at", "A=0.1", "--at", "lambda=0.1"],
+            0,
+        ),
         (vec!["compare", "damped-pendulum", "--at", "A=1", "--at", "zeta=0.1"], 1),
         (vec!["derive", "duffing", "--method", "pade", "--order", "3,2"], 0),
         (vec!["derive", "duffing", "--method", "pade", "--order", "3"], 2),

@@ -6,7 +6,7 @@ use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
-use super::derive::{exact_values, problem};
+use super::derive::{exact_values, problem, with_known_equilibrium};
 use super::{Common, Failure, Format, Outcome, json_text, tolerance};
 
 #[derive(Args)]
@@ -31,14 +31,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     };
     let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
-    let values = exact_values(&arguments.at, &problem)?.unwrap_or_default();
+    let (oscillator, values) = with_known_equilibrium(oscillator, exact_values(&arguments.at, &problem)?)?;
+    let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(problem.small.as_deref());
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(|error| match &error {
         comparison::ComparisonError::NoMethod(reason) => Failure::refused(&error, reason.help()),
         comparison::ComparisonError::Verification(verify::VerificationError::Missing(names)) => {
             let example: Vec<String> = names.iter().map(|name| format!("--at {name}=...")).collect();
-            Failure::Usage(format!("{error}\n  help: add {}", example.join(" ")))
+            Failure::refused(&error, Some(format!("add {}", example.join(" "))))
         }
         comparison::ComparisonError::Verification(verify::VerificationError::Unknown { .. }) => {
             Failure::Usage(error.to_string())

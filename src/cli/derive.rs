@@ -4,9 +4,11 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use lindstedt::catalog;
+use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{self, Options};
+use lindstedt::oscillator::OscillatorError;
 use lindstedt::problem::Problem;
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::spelling::nearest;
@@ -85,6 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
     let options = options(arguments, &problem)?;
     let values = exact_values(&arguments.at, &problem)?;
+    let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let solution =
         method::solve(&oscillator, &options).map_err(|refusal| Failure::refused(&refusal, refusal.help()))?;
     let tolerance = tolerance(&arguments.common);
@@ -136,6 +139,27 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         note: None,
         verdict: verification.map(|verification| verification.verdict),
     })
+}
+
+/// Where the equilibrium depends on parameters and all of them are given, the equation with those numbers in it.
+pub(super) fn with_known_equilibrium(
+    oscillator: Oscillator,
+    values: Option<Values>,
+) -> Result<(Oscillator, Option<Values>), Failure> {
+    let symbolic = matches!(
+        equilibrium::centred(&oscillator, 1),
+        Err(OscillatorError::SymbolicEquilibrium(_))
+    );
+    match values {
+        Some(values) if symbolic => {
+            let (known, rest) = values.split(&oscillator.parameters);
+            let oscillator = oscillator
+                .with_values(&known)
+                .map_err(|error| Failure::refused(&error, error.help()))?;
+            Ok((oscillator, Some(rest)))
+        }
+        values => Ok((oscillator, values)),
+    }
 }
 
 /// An equation, or what a file says. A name that ends in `.toml`, or a file that exists, is a file.

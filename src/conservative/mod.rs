@@ -24,6 +24,27 @@ pub fn is_odd(force: &Expr, coordinate: Symbol) -> Result<bool, ExprError> {
     Ok((&mirrored + force).expand()?.is_zero())
 }
 
+/// Whether a force has no corners: neither `abs`, `sgn`, `max`, `min` or `H`, nor a root of something linear in the coordinate.
+/// Quadrature converges fast then, and only then.
+pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
+    use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
+    use crate::expr::Node;
+    let corners = [Absolute, Maximum, Minimum, Sign, Step];
+    if corners.into_iter().any(|function| force.contains_function(function)) {
+        return false;
+    }
+    let has_root = force.fold(|expr, children: &[bool]| {
+        let root = match expr.node() {
+            Node::Power(base, exponent) => {
+                exponent.as_number().is_some_and(|number| !number.is_integer()) && linear_in(base, coordinate).is_some()
+            }
+            _ => false,
+        };
+        Ok::<bool, std::convert::Infallible>(root || children.contains(&true))
+    });
+    has_root == Ok(false)
+}
+
 /// Slope and constant of an argument `slope*x + constant`; `None` where it is not linear in `x`, or constant.
 pub(crate) fn linear_in(argument: &Expr, coordinate: Symbol) -> Option<(Expr, Expr)> {
     let slope = argument.differentiate(coordinate).ok()?.expand().ok()?;

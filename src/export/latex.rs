@@ -435,22 +435,33 @@ pub fn comparison(comparison: &Comparison) -> String {
 
 /// The law in one line, with the definitions it needs.
 fn formula(solution: &Solution) -> String {
-    let text = solution.formula();
-    if solution.by_quadrature.is_some() || solution.system.is_some() {
+    let (text, used) = if let Some(squared) = &solution.frequency_squared {
+        (format!("\\omega^{{2}} = {}", law(squared, solution)), squared.symbols())
+    } else if let Some(form) = &solution.closed_form {
+        if solution.numerical {
+            return "closed form, rounded coefficients".to_owned();
+        }
+        let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
+        (format!("{name} = {}", expression(&form.value)), form.value.symbols())
+    } else if let Some(frequency) = &solution.frequency {
+        (format!("\\omega = {}", law(frequency, solution)), frequency.symbols())
+    } else if let Some(relation) = &solution.relation {
+        (format!("0 = {}", law(relation, solution)), relation.symbols())
+    } else {
         return "by numbers".to_owned();
-    }
-    let parts: Vec<String> = text
-        .split(", ")
-        .map(|part| match part.split_once(" = ") {
-            Some((left, right)) => {
-                let side =
-                    |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
-                format!("{} = {}", side(left), side(right))
-            }
-            None => part.to_owned(),
-        })
-        .collect();
-    format!("${}$", parts.join(", \\; "))
+    };
+    let used = solution
+        .definitions
+        .iter()
+        .filter(|definition| used.contains(&definition.symbol));
+    let definitions = used.map(|definition| {
+        format!(
+            ", \\; {} = {}",
+            symbol(definition.symbol),
+            expression(&definition.meaning)
+        )
+    });
+    format!("${text}{}$", definitions.collect::<String>())
 }
 
 /// The derivation, order by order.

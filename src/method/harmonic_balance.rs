@@ -219,7 +219,7 @@ pub fn balance(
     let mut solution = continued(force, slope, &harmonics, points, amplitude)?;
     if exact.is_none() {
         /// Points beyond which a force with corners is taken as it is.
-        const MOST_POINTS: usize = 1 << 14;
+        const MOST_POINTS: usize = 1 << 13;
         loop {
             points *= 2;
             let finer = newton(force, slope, &Grid::new(&harmonics, points), amplitude, &solution)?;

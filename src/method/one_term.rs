@@ -195,7 +195,7 @@ pub(super) fn integral_text(force: &Expr, coordinate: Symbol, weight: &str) -> S
 /// rule in theta, which converges geometrically for smooth forces and like a power at corners.
 pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f64, k: usize) -> (f64, f64) {
     const FEWEST: usize = 64;
-    const MOST: usize = 1 << 16;
+    const MOST: usize = 1 << 14;
     let with_points = |points: usize| {
         let value = |i: usize| {
             let theta = PI * (i as f64 + 0.5) / points as f64;

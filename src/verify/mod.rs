@@ -17,6 +17,7 @@ pub mod validity;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use crate::conservative::is_smooth;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::numbers::{evaluate, frequency_squared_of};
@@ -101,6 +102,12 @@ impl Values {
             .as_number()
             .map(to_f64)
             .or_else(|| value.evaluate(&BTreeMap::new()).ok())
+    }
+
+    /// The values of `names`, and the others.
+    pub fn split(&self, names: &[Symbol]) -> (BTreeMap<Symbol, Expr>, Self) {
+        let (those, others) = self.0.clone().into_iter().partition(|(name, _)| names.contains(name));
+        (those, Self(others))
     }
 
     /// Whether nothing is given.
@@ -334,7 +341,7 @@ impl TrueMotion {
         let physics = Physics::new(oscillator, solution, numbers)?;
         let start = physics.start(solution, numbers)?;
         // The energy knows first whether there is an orbit at all, and says why not.
-        let by_energy = match physics.conservative {
+        let by_energy = match physics.by_energy {
             true => Some(period::conservative_period(
                 &physics.force(),
                 physics.equilibrium,
@@ -390,7 +397,8 @@ impl TrueMotion {
 struct Physics {
     force: CompiledFunction,
     equilibrium: f64,
-    conservative: bool,
+    /// Whether the period follows from the energy, by a quadrature that converges fast.
+    by_energy: bool,
     longest: f64,
 }
 
@@ -406,12 +414,16 @@ impl Physics {
             .all(|part| part.is_zero());
         let force = compiled_force(oscillator, numbers)?;
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
-        let guess = formula_frequency(oscillator, solution, numbers).unwrap_or(1.0);
+        let by_energy = conservative && is_smooth(&oscillator.force, oscillator.coordinate);
+        let guess = match by_energy {
+            true => 1.0,
+            false => formula_frequency(oscillator, solution, numbers).unwrap_or(1.0),
+        };
         // A thousand periods of the formula: a motion that has not turned by then is not swinging.
         Ok(Self {
             force,
             equilibrium,
-            conservative,
+            by_energy,
             longest: 1000.0 * TAU / guess,
         })
     }
@@ -512,7 +524,8 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         .parts()
         .ok()
         .is_some_and(|parts| parts.inertia.is_zero() && parts.damping.is_zero());
-    let floor = if conservative { 2e-13 } else { 1e-8 };
+    let by_energy = conservative && is_smooth(&oscillator.force, oscillator.coordinate);
+    let floor = if by_energy { 2e-13 } else { 1e-8 };
     let formula_at = |factor: f64| {
         let mut numbers = numbers.clone();
         *numbers.get_mut(&solution.small_parameter)? *= factor;
@@ -551,7 +564,7 @@ fn true_frequency(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, VerificationError> {
     let physics = Physics::new(oscillator, solution, numbers)?;
-    if physics.conservative && solution.amplitude == AmplitudeConvention::Initial {
+    if physics.by_energy && solution.amplitude == AmplitudeConvention::Initial {
         let start = physics.start(solution, numbers)?;
         return Ok(TAU / period::conservative_period(&physics.force(), physics.equilibrium, start)?);
     }

@@ -370,9 +370,10 @@ fn convergence(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<
         ),
     };
     let value = numbers.get(&small).copied()?;
+    let exact = if series.numerical { "" } else { "exact " };
     Some(Range {
         text: format!(
-            "the series converges for |{small}| < about {}: from {highest} exact coefficients the nearest singularity is at {place}",
+            "the series converges for |{small}| < about {}: from {highest} {exact}coefficients the nearest singularity is at {place}",
             significant(radius, 3)
         ),
         outside: value.abs() >= radius,
@@ -387,10 +388,7 @@ fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: S
         Some((*name, Expr::number(value)))
     };
     let values = names.map(exact).collect::<Option<_>>()?;
-    let mut numerical = oscillator.clone();
-    numerical.force = oscillator.force.substitute_all(&values).ok()?;
-    numerical.residual = oscillator.residual.substitute_all(&values).ok()?;
-    numerical.parameters.retain(|&name| name == but);
+    let numerical = oscillator.with_values(&values).ok()?;
     let small = numerical.small_parameter(Some(but.name())).ok()?;
     (small == SmallParameter::Amplitude || !numerical.force.is_zero()).then_some(numerical)
 }
@@ -509,6 +507,9 @@ pub(super) fn reach(oscillator: &Oscillator, solution: &Solution, truth: &Truth,
         Some(frequency.is_some_and(|frequency| (frequency / true_frequency - 1.0).abs() <= tolerance))
     };
     let amplitudes = truth.amplitudes(POINTS);
+    if solution.method == Method::Exact {
+        return amplitudes.last().copied().map(Reach::Everywhere);
+    }
     let (mut inside, mut searched) = (0.0, 0.0);
     for amplitude in amplitudes {
         match good(amplitude) {

@@ -24,7 +24,8 @@
 //! let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
 //!
 //! let first = &motion.impacts[0];
-//! assert!((first.entry_time - 2.0713).abs() < 1e-3 && first.restitution.is_some_and(|e| e < 1.0));
+//! // Without damping the pendulum needs 2.0644 to the barrier; with it a little longer.
+//! assert!(first.entry_time > 2.0644 && first.entry_time < 2.1 && first.restitution.is_some_and(|e| e < 1.0));
 //! assert!(motion.energy().residual.abs() < 1e-9);
 //! # Ok::<(), lindstedt::damper::SimulationError>(())
 //! ```

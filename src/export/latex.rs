@@ -389,7 +389,8 @@ pub fn comparison(comparison: &Comparison) -> String {
         .collect();
     let mut text = format!(
         "% {}; true omega = {}\n\\begin{{tabular}}{{lrrrl}}\n\\hline\n",
-        comparison.equation, comparison.true_frequency
+        comparison.equation,
+        decimal(comparison.true_frequency)
     );
     let place = if at.is_empty() {
         String::new()

@@ -15,6 +15,8 @@ fn conservative() -> (Vec<(Model, Start)>, Options) {
     };
     let motions = (0..10).map(|index| (Model::default(), start(index))).collect();
     let options = Options {
+        relative_tolerance: 1e-10,
+        absolute_tolerance: 1e-12,
         keep_path: false,
         ..Options::default()
     };

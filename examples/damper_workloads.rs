@@ -15,6 +15,8 @@ fn main() {
         })
         .collect();
     let options = Options {
+        relative_tolerance: 1e-10,
+        absolute_tolerance: 1e-12,
         keep_path: false,
         ..Options::default()
     };

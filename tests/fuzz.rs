@@ -9,6 +9,8 @@ use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
 use lindstedt::problem::Problem;
 use lindstedt::solution::{AmplitudeConvention, Method};
+use lindstedt::verify::Values;
+use lindstedt::verify::comparison::compare;
 use proptest::prelude::*;
 
 fn cases() -> u32 {
@@ -69,9 +71,6 @@ fn answer(equation: &str) {
                 amplitude: Some(amplitude),
                 ..Options::default()
             };
-            if std::env::var_os("LINDSTEDT_FUZZ_TRACE").is_some() {
-                eprintln!("{} {equation}", method.name());
-            }
             match solve(&oscillator, &options) {
                 Err(refusal) => assert!(!refusal.to_string().is_empty()),
                 Ok(solution) => {
@@ -83,6 +82,27 @@ fn answer(equation: &str) {
                 }
             }
         }
+    }
+}
+
+/// Every method judged, with one for each parameter.
+fn compared(equation: &str, amplitude: &str) {
+    let Ok(oscillator) = Oscillator::parse(equation) else {
+        return;
+    };
+    let mut values = Values::default();
+    for name in &oscillator.parameters {
+        values.insert(*name, "1".parse().expect("a number")).expect("a value");
+    }
+    values
+        .insert("A".into(), amplitude.parse().expect("a number"))
+        .expect("a value");
+    if std::env::var_os("LINDSTEDT_FUZZ_TRACE").is_some() {
+        eprintln!("{amplitude} {equation}");
+    }
+    if let Ok(table) = compare(&oscillator, &values, None, 0.01) {
+        assert!(!text::comparison(&table).is_empty() && !latex::comparison(&table).is_empty());
+        assert!(json::comparison(&table).is_object());
     }
 }
 
@@ -98,6 +118,11 @@ proptest! {
     #[test]
     fn equations_with_any_force_never_panic(text in equations()) {
         answer(&text);
+    }
+
+    #[test]
+    fn comparisons_never_panic(text in equations(), amplitude in prop::sample::select(vec!["1/2", "-2", "1e6", "1e-6"])) {
+        compared(&text, amplitude);
     }
 
     #[test]

@@ -84,8 +84,8 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             duration: 50.0,
-            relative_tolerance: 1e-10,
-            absolute_tolerance: 1e-12,
+            relative_tolerance: 1e-12,
+            absolute_tolerance: 1e-14,
             maximum_steps: 250_000,
             rest_energy: None,
             keep_path: true,

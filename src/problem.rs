@@ -30,7 +30,7 @@ pub struct Problem {
     /// The name of a method.
     pub method: Option<String>,
     /// The order of the expansion; for an impact, that of the frequency law of the approach.
-    pub order: Option<u32>,
+    pub order: Option<Order>,
     /// The name of the small parameter.
     pub small: Option<String>,
     /// The amplitude convention: `initial` or `first-harmonic`.
@@ -49,6 +49,16 @@ pub struct Problem {
     pub design: DesignSection,
     /// Duration and accuracy of integrations.
     pub run: Run,
+}
+
+/// A whole number, or the two degrees of a Pade approximant: `order = 4`, `order = [2, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(untagged, expecting = "expected a whole number, or two: [numerator, denominator]")]
+pub enum Order {
+    /// The highest power kept, or what the method counts.
+    Power(u32),
+    /// Degrees of numerator and denominator.
+    Degrees([u32; 2]),
 }
 
 /// `[pendulum]`: released from rest at `x = -amplitude`.

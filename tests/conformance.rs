@@ -829,3 +829,41 @@ fn the_table_of_the_pendulum() {
         assert!(table.refused.is_empty(), "{:?}", table.refused);
     }
 }
+
+/// What is said of the stability of a limit cycle is what one swing of Runge-Kutta does beside it.
+#[test]
+fn limit_cycles_attract_or_repel_as_said() {
+    for (equation, parameter, amplitude) in [
+        ("x'' - mu*(1 - x^2)*x' + x = 0", "mu", 2.0),
+        ("x'' - mu*(1 - x'^2/3)*x' + x = 0", "mu", 2.0),
+        ("x'' + 4*x + eps*(x' - x'*x^2/3) = 0", "eps", 12f64.sqrt()),
+    ] {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let solution = by(equation, Method::LindstedtPoincare).unwrap();
+        for value in [0.05, -0.05] {
+            let said = solution
+                .validity
+                .iter()
+                .find(|line| line.contains("limit cycle"))
+                .expect(equation);
+            let attracts = said.contains(&format!(
+                "attracts for {parameter} {} 0",
+                if value > 0.0 { '>' } else { '<' }
+            ));
+            let acceleration = |_: f64, x: f64, v: f64| {
+                let values = numbers(&[("x", x), ("x'", v), (parameter, value)]);
+                -oscillator.force.evaluate(&values).unwrap()
+            };
+            let drift = |start: f64| {
+                lindstedt::period::swing(&acceleration, 0.0, start, 20.0)
+                    .unwrap()
+                    .end()
+                    .x
+                    - start
+            };
+            let (inside, outside) = (drift(0.9 * amplitude), drift(1.1 * amplitude));
+            assert!(inside * outside < 0.0, "{equation} {value}: {inside} {outside}");
+            assert_eq!(attracts, inside > 0.0, "{equation} {value}: {said}");
+        }
+    }
+}

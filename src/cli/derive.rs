@@ -9,7 +9,7 @@ use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{self, Options};
 use lindstedt::oscillator::OscillatorError;
-use lindstedt::problem::Problem;
+use lindstedt::problem::{self, Problem};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::spelling::nearest;
 use lindstedt::verify::{self, Values, VerificationError};
@@ -63,6 +63,15 @@ enum Order {
     Power(u32),
     /// `2,1`: numerator and denominator.
     Degrees(u32, u32),
+}
+
+impl From<problem::Order> for Order {
+    fn from(order: problem::Order) -> Self {
+        match order {
+            problem::Order::Power(order) => Self::Power(order),
+            problem::Order::Degrees([numerator, denominator]) => Self::Degrees(numerator, denominator),
+        }
+    }
 }
 
 impl std::str::FromStr for Order {
@@ -236,7 +245,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             }
         },
     };
-    let (order, pade) = match arguments.order.or(problem.order.map(Order::Power)) {
+    let (order, pade) = match arguments.order.or(problem.order.map(Order::from)) {
         Some(Order::Degrees(..)) if method != Some(Method::Pade) => {
             return usage("degrees L,M are those of --method pade".to_owned());
         }

@@ -6,7 +6,7 @@ use clap::Args;
 use lindstedt::contact::phases::Column;
 use lindstedt::export::{json, latex, text};
 use lindstedt::impact::{Impact, Setup, solve};
-use lindstedt::problem::{Barrier, Problem};
+use lindstedt::problem::{Barrier, Order, Problem};
 
 use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
 
@@ -85,6 +85,11 @@ fn setup(problem: &Problem) -> Result<Setup, Failure> {
     if problem.pendulum.start.is_some() || problem.pendulum.speed.is_some() {
         return refuse("the three phases begin at rest at x = -amplitude: leave out `start` and `speed`");
     }
+    let order = match problem.order {
+        None => ORDER,
+        Some(Order::Power(order)) => order,
+        Some(Order::Degrees(_)) => return refuse("the order of the law is one whole number"),
+    };
     if problem.equation.is_some() {
         return refuse("the swing of an impact is x'' + sin(x) = 0: leave out `equation`, or use `lindstedt derive`");
     }
@@ -113,7 +118,7 @@ fn setup(problem: &Problem) -> Result<Setup, Failure> {
         barrier,
         stiffness,
         stiffness_source: source.to_owned(),
-        order: problem.order.unwrap_or(ORDER),
+        order,
         rule: problem.linearisation().map_err(refused)?,
         integrator_tolerance: problem.run.integrator_tolerance,
     })

@@ -128,6 +128,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mut validity = vec![format!(
         "truncated after {delta}^{order}; an expansion for small {delta}"
     )];
+    if cycle.is_some() {
+        validity.extend(stability(&force, &linear_frequency, delta));
+    }
     validity.extend(next_terms(&definitions));
     Ok(Solution {
         equation: oscillator.equation(),
@@ -152,6 +155,25 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         steps: series.steps,
         derivation: vec![],
     })
+}
+
+/// For which sign of the small parameter the limit cycle attracts: where `g' < 0` at the root of `g_k + g_(k+1) z`.
+fn stability(force: &PerturbedForce, linear_frequency: &Polynomial, delta: Symbol) -> Option<String> {
+    let equation = amplitude_equation(force, linear_frequency);
+    let mut terms = equation.iter().filter(|coefficient| !coefficient.is_zero());
+    let (_, high, None) = (terms.next()?, terms.next()?, terms.next()) else {
+        return None;
+    };
+    let (monomial, number) = high.single_term()?;
+    // omega0 is positive.
+    let scale = monomial
+        .without(Symbol::new("omega0"))
+        .product(&Monomial::power_of(delta, 1));
+    let scale = Polynomial::term(scale, One::one());
+    let (stable, unstable) = if number.is_negative() { ('>', '<') } else { ('<', '>') };
+    Some(format!(
+        "the limit cycle attracts for {scale} {stable} 0 and repels for {scale} {unstable} 0"
+    ))
 }
 
 fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {
@@ -179,32 +201,7 @@ fn limit_cycle_amplitude(
     linear_frequency: &Polynomial,
     parts: &Parts,
 ) -> Result<Option<Polynomial>, Refusal> {
-    // g_k, the coefficient of z^k in the secular sine over the amplitude, z = amplitude^2.
-    let mut equation: Vec<Polynomial> = vec![];
-    for term in force
-        .terms
-        .iter()
-        .filter(|term| term.order == 1 && term.velocity % 2 == 1)
-    {
-        let sine = FourierSeries::<Rational>::cos(1)
-            .power(term.position)
-            .product(&FourierSeries::sin(1).times(-1).power(term.velocity))
-            .sine(1);
-        let (weight, _) = sine.mean();
-        let power = ((term.position + term.velocity).saturating_sub(1) / 2) as usize;
-        if weight.is_zero() {
-            continue;
-        }
-        if equation.len() <= power {
-            equation.resize(power + 1, Polynomial::zero());
-        }
-        let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
-        let weighted = term
-            .coefficient
-            .product(&frequency)
-            .product(&Polynomial::constant(weight));
-        equation[power].accumulate(&weighted);
-    }
+    let equation = amplitude_equation(force, linear_frequency);
     let powers: Vec<usize> = (0..equation.len()).filter(|&k| !equation[k].is_zero()).collect();
     let z = Symbol::new("z");
     let text = || {
@@ -246,6 +243,37 @@ fn limit_cycle_amplitude(
                 reason: "whose stable positive root is no fraction",
             }),
     }
+}
+
+/// `g_k`, the coefficients of `z^k` in the secular sine over the amplitude, `z = amplitude^2`: slowly varying, the amplitude
+/// follows `a' = delta a g(a^2)/2` in units of the linear frequency.
+fn amplitude_equation(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Polynomial> {
+    let mut equation: Vec<Polynomial> = vec![];
+    for term in force
+        .terms
+        .iter()
+        .filter(|term| term.order == 1 && term.velocity % 2 == 1)
+    {
+        let sine = FourierSeries::<Rational>::cos(1)
+            .power(term.position)
+            .product(&FourierSeries::sin(1).times(-1).power(term.velocity))
+            .sine(1);
+        let (weight, _) = sine.mean();
+        let power = ((term.position + term.velocity).saturating_sub(1) / 2) as usize;
+        if weight.is_zero() {
+            continue;
+        }
+        if equation.len() <= power {
+            equation.resize(power + 1, Polynomial::zero());
+        }
+        let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
+        let weighted = term
+            .coefficient
+            .product(&frequency)
+            .product(&Polynomial::constant(weight));
+        equation[power].accumulate(&weighted);
+    }
+    equation
 }
 
 /// The smallest positive rational root `z` of `sum g_k z^k` at which the limit cycle is stable, for numerical `g_k`.

@@ -11,6 +11,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
 use crate::impact::Impact;
+use crate::method::homotopy_analysis::HBAR;
 use crate::series::FourierSeries;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -257,10 +258,12 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
             .map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}")),
     );
     for (name, value) in &verification.chosen {
-        line(
-            name.name(),
-            format!("{} (least squared residual)", significant(*value, 6)),
-        );
+        let how = if name.name() == HBAR {
+            " (least squared residual)"
+        } else {
+            ""
+        };
+        line(name.name(), format!("{}{how}", significant(*value, 6)));
     }
     for range in &verification.ranges {
         let mark = if range.outside { "  <- outside" } else { "" };

@@ -9,7 +9,7 @@ use num_traits::One;
 
 use super::{energy_balance, harmonic_balance, homotopy_analysis, one_term};
 use crate::conservative::is_odd;
-use crate::exact::Integer;
+use crate::exact::{Integer, Polynomial};
 use crate::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
 use crate::period;
@@ -24,7 +24,7 @@ pub struct Numbers {
     pub frequency_squared: f64,
     /// The motion in theta; `None` where the frequency is not real.
     pub motion: Option<FourierSeries<f64>>,
-    /// Values that were chosen: hbar.
+    /// Values that were chosen or solved for: hbar, the coefficients of a balance.
     pub chosen: Vec<(Symbol, f64)>,
 }
 
@@ -41,8 +41,8 @@ pub fn evaluate(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap
     }
     let solved = |(frequency_squared, motion): (f64, FourierSeries<f64>)| Numbers {
         frequency_squared,
+        chosen: balanced(solution, &motion),
         motion: (frequency_squared > 0.0).then_some(motion),
-        chosen: chosen.clone(),
     };
     if solution.system.is_some() || solution.by_quadrature.is_some() {
         return solve(oscillator, solution, &numbers).map(solved);
@@ -65,6 +65,25 @@ pub fn evaluate(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap
         motion,
         chosen,
     })
+}
+
+/// The coefficients of a balance, by their names; the equilibrium is no part of the mean.
+fn balanced(solution: &Solution, motion: &FourierSeries<f64>) -> Vec<(Symbol, f64)> {
+    if solution.method != Method::HarmonicBalance {
+        return vec![];
+    }
+    let equilibrium = solution.equilibrium.evaluate(&BTreeMap::new()).unwrap_or(0.0);
+    let named = |(k, cosine, _): (usize, Polynomial, Polynomial)| {
+        let name = cosine.symbols().into_iter().next()?;
+        let value = motion.cosine(k).mean().0;
+        Some((name, if k == 0 { value - equilibrium } else { value }))
+    };
+    solution
+        .displacement
+        .harmonics()
+        .into_iter()
+        .filter_map(named)
+        .collect()
 }
 
 /// omega^2 alone, without the motion where that costs more.

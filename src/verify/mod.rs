@@ -150,7 +150,7 @@ pub struct Verification {
     pub slope: Option<f64>,
     /// Where the formula holds, in words and numbers; what lies outside is marked.
     pub ranges: Vec<validity::Range>,
-    /// Values that the method left open and that were chosen: hbar.
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
     pub chosen: Vec<(Symbol, f64)>,
     /// The verdict on the frequency.
     pub verdict: Verdict,

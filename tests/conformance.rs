@@ -99,7 +99,9 @@ fn every_method_on_every_entry_it_claims() {
                 "{context}: {verdict:?}"
             );
             judged += 1;
-            if let Some(expected) = expected_slope(&oscillator, &solution)
+            // Irrational equilibria have rounded coefficients: their series agree only to rounding.
+            if !solution.numerical
+                && let Some(expected) = expected_slope(&oscillator, &solution)
                 && let Some(slope) = verdict.slope
             {
                 assert!(
@@ -110,14 +112,13 @@ fn every_method_on_every_entry_it_claims() {
             }
         }
     }
-    assert!(judged > 120 && slopes > 40, "{judged} answers judged, {slopes} slopes");
+    assert!(judged > 180 && slopes > 70, "{judged} answers judged, {slopes} slopes");
 }
 
-/// The exponent of the first term in which a law differs from the exact series, both by the method's own law at numbers
-/// in the ring of fractions: only for laws that are polynomials in the small parameter.
+/// The exponent of the first term in which a law differs from the exact series: of a polynomial by subtraction, of a closed
+/// form after its own Taylor expansion, of a relation R(omega^2) = 0 by putting the exact series into it.
 fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
     const HIGHEST: u32 = 10;
-    let law = solution.frequency_squared.as_ref()?;
     let small = solution.small_parameter;
     let options = Options {
         method: Some(Method::LindstedtPoincare),
@@ -126,12 +127,42 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
         amplitude: Some(solution.amplitude),
         ..Options::default()
     };
-    let exact = solve(oscillator, &options).ok()?.frequency_squared?;
-    let mut difference = exact;
-    for (monomial, number) in law.terms() {
-        difference.add_term(monomial.clone(), -number.clone());
-    }
-    difference.exponent_range(small).map(|range| f64::from(range.0))
+    let series = solve(oscillator, &options).ok()?;
+    let exact = series.frequency_squared?;
+    // Symbols that either answer introduced, and one half for the parameters of the shape, as in `at`.
+    let half = |name: &Symbol| (*name, Expr::number(ratio(1, 2)));
+    let values: BTreeMap<Symbol, Expr> = oscillator
+        .parameters
+        .iter()
+        .filter(|&&name| name != small)
+        .map(half)
+        .collect();
+    let definitions = series.definitions.iter().chain(&solution.definitions);
+    let meanings = definitions
+        .map(|definition| (definition.symbol, definition.meaning.clone()))
+        .collect();
+    let difference = if let Some(law) = &solution.frequency_squared {
+        Expr::from(law) - Expr::from(&exact)
+    } else if let Some(relation) = &solution.relation {
+        let root = Expr::from(&exact).sqrt().ok()?;
+        Expr::from(relation).substitute("omega".into(), &root).ok()?
+    } else {
+        // Powers of A below the line are multiplied away first: 2*J1(A)/A, (cos(..) - cos(A))/A^2.
+        let form = solution.closed_form.as_ref().filter(|form| form.squared)?;
+        let scale = Expr::symbol("A").integer_power(2).ok()?;
+        let numerator = (&form.value * &scale).expand().ok()?;
+        let zero = Rational::from_integer(0.into());
+        let parts = lindstedt::series::taylor::taylor(&numerator, &[(small, zero)], HIGHEST + 2).ok()?;
+        Expr::divide(&Expr::sum(parts), &scale).ok()? - Expr::from(&exact)
+    };
+    let difference = difference
+        .substitute_all(&meanings)
+        .ok()?
+        .substitute_all(&values)
+        .ok()?;
+    let difference = difference.expand().ok()?.to_polynomial(&mut |_| None).ok()??;
+    let lowest = f64::from(difference.exponent_range(small)?.0);
+    (lowest <= f64::from(HIGHEST)).then_some(lowest)
 }
 
 /// mathematics.md 1.4: one formula behind many names. Exactly: the laws are equal as expressions.

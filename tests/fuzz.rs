@@ -17,7 +17,7 @@ fn cases() -> u32 {
     std::env::var("LINDSTEDT_FUZZ_CASES")
         .ok()
         .and_then(|number| number.parse().ok())
-        .unwrap_or(150)
+        .unwrap_or(300)
 }
 
 /// Pieces of equations, right and wrong, in any order.

@@ -6,7 +6,7 @@ use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
-use super::derive::{exact_values, problem, with_known_equilibrium};
+use super::derive::{exact_values, oscillator, problem, with_known_equilibrium};
 use super::{Common, Failure, Format, Outcome, json_text, tolerance};
 
 #[derive(Args)]
@@ -25,12 +25,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let Some(equation) = &problem.equation else {
-        return Err(Failure::Refused(
-            "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
-        ));
-    };
-    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
+    let oscillator = oscillator(&problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, exact_values(&arguments.at, &problem)?)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(problem.small.as_deref());

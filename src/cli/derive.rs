@@ -88,12 +88,7 @@ impl std::str::FromStr for Order {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let Some(equation) = &problem.equation else {
-        return Err(Failure::Refused(
-            "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
-        ));
-    };
-    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
+    let oscillator = oscillator(&problem)?;
     let options = options(arguments, &problem)?;
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
@@ -148,6 +143,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         note: None,
         verdict: verification.map(|verification| verification.verdict),
     })
+}
+
+/// The oscillator of a problem that has an equation.
+pub(super) fn oscillator(problem: &Problem) -> Result<Oscillator, Failure> {
+    let Some(equation) = &problem.equation else {
+        return Err(Failure::Refused(
+            "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
+        ));
+    };
+    Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))
 }
 
 /// Where the equilibrium depends on parameters and all of them are given, the equation with those numbers in it.

@@ -221,15 +221,13 @@ pub(crate) fn compiled(
     force: &Expr,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<impl Fn(f64) -> f64 + use<>> {
-    let parameters: Vec<(Symbol, f64)> = numbers.iter().map(|(name, value)| (*name, *value)).collect();
     let names: Vec<Symbol> = std::iter::once(oscillator.coordinate)
-        .chain(parameters.iter().map(|entry| entry.0))
+        .chain(numbers.keys().copied())
         .collect();
     let function = CompiledFunction::new(force, &names).ok()?;
-    let mut arguments: Vec<f64> = std::iter::once(0.0)
-        .chain(parameters.iter().map(|entry| entry.1))
-        .collect();
-    let arguments = std::cell::RefCell::new(std::mem::take(&mut arguments));
+    let arguments: Vec<f64> = std::iter::once(0.0).chain(numbers.values().copied()).collect();
+    // One row of arguments for all calls: only its first entry, the position, changes.
+    let arguments = std::cell::RefCell::new(arguments);
     Some(move |x: f64| {
         let mut arguments = arguments.borrow_mut();
         arguments[0] = x;

@@ -88,13 +88,13 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         (
             "work of viscous damping",
             &viscous,
-            CurveStyle::DIFFERENCE,
+            CurveStyle::SECOND_DIFFERENCE,
             model.zeta != 0.0,
         ),
         (
             "work of dry friction",
             &friction,
-            CurveStyle::SECOND_DIFFERENCE,
+            CurveStyle::SERIES[5],
             model.alpha != 0.0,
         ),
         (

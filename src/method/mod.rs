@@ -133,7 +133,7 @@ pub enum Refusal {
         force: String,
     },
     /// `f(x)/x` has no finite bounds.
-    #[error("max-min needs bounds of f(x)/x, but `{quotient}` has no finite value at rest")]
+    #[error("max-min needs bounds of f(x)/x, but none was found at rest for `{quotient}`")]
     Unbounded {
         /// f(x)/x.
         quotient: String,

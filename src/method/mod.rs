@@ -13,6 +13,7 @@ pub mod harmonic_balance;
 pub mod homotopy_analysis;
 pub mod homotopy_perturbation;
 pub mod iteration_perturbation;
+pub mod limit_cycle;
 pub mod lindstedt_poincare;
 pub mod max_min;
 pub mod numbers;

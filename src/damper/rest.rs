@@ -1,18 +1,26 @@
-//! When it comes to rest: the envelope of the amplitude and the time at which it falls to a tenth of the start.
+//! When it comes to rest: the envelope of the amplitude and the time at which it falls to a tenth of the first swing.
 //!
 //! ```text
-//! envelope: the turning points (t_i, |x_i|) that no later one exceeds, joined by straight lines of log|x|
-//! rest:     envelope = |x(0)|/10;    last crossing: the last time |x| = |x(0)|/10
+//! first swing:  A_0 of the energy at the start, E = 1 - cos A_0
+//! envelope:     (0, A_0) and the turning points (t_i, |x_i|) on the side without a barrier, joined by straight lines of
+//!               log|x|; without a barrier, or with two, the larger of every two successive ones
+//! rest:         envelope = A_0/10, the last time it falls there
+//! last crossing: the last time |x| = A_0/10
 //! ```
 //!
-//! A barrier turns the motion early on its side, so only turning points that bound all that follows make an envelope.
-//! The rest time is a smooth function of the parameters; the last crossing is a staircase, because it jumps by half a
-//! swing when one more crest stays below the level.
+//! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the
+//! swing. On the other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the
+//! parameters wherever the motion is. The last crossing is a staircase: it jumps by half a swing when one more crest
+//! stays below the level. A crossing counts only once the turning point after it has been reached; a run that ends
+//! before knows of no rest.
+
+use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
+use super::model::{Side, Start};
 use super::polynomial::crossing_of;
-use super::{Simulation, Turn};
+use super::{Simulation, Stop, Turn};
 
 /// The part of the first amplitude that counts as rest.
 pub const REST_FRACTION: f64 = 0.1;
@@ -20,7 +28,7 @@ pub const REST_FRACTION: f64 = 0.1;
 /// Rest, and what it was measured by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
-    /// The amplitude at the start, rad.
+    /// The amplitude of the first swing, rad.
     pub amplitude: f64,
     /// The time at which the envelope falls to a tenth of it.
     pub time: Result<f64, NoRest>,
@@ -32,8 +40,11 @@ pub struct Rest {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum NoRest {
     /// The motion has not become small enough.
-    #[error("the amplitude stays above 10 % of the start until the end of the run")]
+    #[error("the amplitude stays above 10 % of the first swing until the end of the run")]
     StaysAbove,
+    /// It has become small enough in the last swing, but when is not known before the next turning point.
+    #[error("the run ends before the turning point that would show it: a longer duration will")]
+    NotYetSeen,
     /// There is no amplitude to begin with.
     #[error("the motion starts at x = 0 without speed: it has no amplitude that could decay")]
     NoAmplitude,
@@ -42,10 +53,19 @@ pub enum NoRest {
     BrokeOff,
 }
 
+/// The turning points that make the envelope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Measure {
+    /// Those where the motion turns back from this side: the other one has a barrier.
+    One(Side),
+    /// The larger of every two.
+    Both,
+}
+
 impl Simulation {
     /// When it came to rest.
     pub fn rest(&self) -> Rest {
-        let amplitude = self.first_amplitude();
+        let amplitude = self.first_swing();
         let level = REST_FRACTION * amplitude;
         if amplitude == 0.0 {
             return Rest {
@@ -54,52 +74,118 @@ impl Simulation {
                 last_crossing: None,
             };
         }
-        let time = match self.envelope_crossing(level) {
-            Some(time) => Ok(time),
-            None if self.stop.is_complete() => Err(NoRest::StaysAbove),
-            None => Err(NoRest::BrokeOff),
+        let last_crossing = self.last_crossing(level);
+        let time = match self.envelope_crossing(amplitude) {
+            Err(_) if !self.stop.is_complete() => Err(NoRest::BrokeOff),
+            time => time,
         };
         Rest {
             amplitude,
             time,
-            last_crossing: self.last_crossing(level),
+            last_crossing,
         }
     }
 
-    /// |x| at the start; where it starts with speed, that of the first turning point if it is larger.
-    fn first_amplitude(&self) -> f64 {
-        let start = self.start.x.abs();
-        match self.turns.first() {
-            Some(turn) if self.start.velocity != 0.0 => start.max(turn.x.abs()),
-            None if self.start.velocity != 0.0 => start.max(self.end_x.abs()),
-            _ => start,
+    /// The amplitude of a swing with the energy of the start, so that a motion has the same wherever in its first swing
+    /// it is taken up.
+    fn first_swing(&self) -> f64 {
+        let Start { x, velocity } = self.start;
+        match velocity == 0.0 && self.model.depth(x).is_none() {
+            true => x.abs(),
+            false => swing_of(self.model.energy(x, velocity)).unwrap_or(PI.max(x.abs())),
         }
     }
 
-    fn envelope_crossing(&self, level: f64) -> Option<f64> {
-        // Where the motion still was beyond the level, the envelope was too: the last such turning point and the next
-        // that nothing later exceeds hold the crossing.
-        let last = self.turns.iter().rposition(|turn| turn.x.abs() > level);
-        let above = match last {
-            Some(index) => self.turns[index],
-            None => Turn {
-                t: 0.0,
-                x: self.start.x,
-            },
+    fn measure(&self) -> Measure {
+        match (self.model.left, self.model.right) {
+            (None, Some(_)) => Measure::One(Side::Left),
+            (Some(_), None) => Measure::One(Side::Right),
+            _ => Measure::Both,
+        }
+    }
+
+    /// The points of the envelope in order, the first swing at the start; only those that are known to belong to it.
+    fn envelope(&self, amplitude: f64) -> Vec<Turn> {
+        let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
+        // From where it came tells on which side a turning point lies; a moment of rest without motion before it, as
+        // under friction, lies where the last one did.
+        let mut before = self.start.x;
+        let mut side = None;
+        let mut turns: Vec<(Turn, Option<Side>)> = Vec::with_capacity(self.turns.len());
+        for &turn in &self.turns {
+            match turn.x - before {
+                rise if rise > 0.0 => side = Some(Side::Right),
+                rise if rise < 0.0 => side = Some(Side::Left),
+                _ => {}
+            }
+            before = turn.x;
+            if turn.t > 0.0 {
+                turns.push((turn, side));
+            }
+        }
+        match self.measure() {
+            Measure::One(free) => envelope.extend(
+                turns
+                    .iter()
+                    .filter(|(_, side)| *side == Some(free))
+                    .map(|(turn, _)| *turn),
+            ),
+            Measure::Both => {
+                let larger = |pair: &[(Turn, Option<Side>)]| match pair {
+                    [(first, _), (second, _)] if second.x.abs() > first.x.abs() => *second,
+                    [(first, _), ..] => *first,
+                    [] => Turn { t: 0.0, x: amplitude },
+                };
+                envelope.extend(turns.windows(2).map(larger));
+                envelope.dedup();
+            }
+        }
+        // Held by friction to the end, or calm: it will not be larger any more.
+        let held = self.model.sticks()
+            && self.end_velocity == 0.0
+            && self.turns.last().is_some_and(|turn| turn.t == self.end_time);
+        if held || self.stop == Stop::Calm {
+            let x = match held {
+                true => self.end_x,
+                false => self.last_swing(),
+            };
+            envelope.push(Turn { t: self.end_time, x });
+        }
+        envelope
+    }
+
+    /// The amplitude of a swing with the energy of the end.
+    fn last_swing(&self) -> f64 {
+        swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY)
+    }
+
+    fn envelope_crossing(&self, amplitude: f64) -> Result<f64, NoRest> {
+        let level = REST_FRACTION * amplitude;
+        let envelope = self.envelope(amplitude);
+        let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
+            return Err(NoRest::StaysAbove);
         };
-        let later = &self.turns[last.map_or(0, |index| index + 1)..];
-        let below = later.iter().rev().fold(None, |best: Option<&Turn>, turn| match best {
-            Some(best) if best.x.abs() > turn.x.abs() => Some(best),
-            _ => Some(turn),
-        })?;
-        if above.x.abs() <= level {
-            return Some(above.t);
+        let above = envelope[index];
+        let Some(below) = envelope.get(index + 1) else {
+            return self.creeping(above, level);
+        };
+        Ok(between(above, *below, level))
+    }
+
+    /// Where no turning point of the envelope follows `above`: a motion that has not turned for a whole period of the
+    /// linear swing creeps, and is its own envelope; any other has to be followed further.
+    fn creeping(&self, above: Turn, level: f64) -> Result<f64, NoRest> {
+        if self.model.beta != 0.0 || self.last_swing() > level {
+            return Err(NoRest::StaysAbove);
         }
-        // Friction may hold it at zero, whose logarithm is not to be had.
-        let floor = 1e-12 * level;
-        let height = |turn: &Turn| turn.x.abs().max(floor).ln();
-        let fraction = (level.ln() - height(&above)) / (height(below) - height(&above));
-        Some(above.t + fraction * (below.t - above.t))
+        let last = self.turns.last().copied().unwrap_or(above);
+        if self.end_time - last.t <= TAU {
+            return Err(NoRest::NotYetSeen);
+        }
+        match last.x.abs() > level {
+            true => self.last_crossing(level).ok_or(NoRest::NotYetSeen),
+            false => Ok(between(above, last, level)),
+        }
     }
 
     /// Between turning points x only rises or only falls: the last stretch that begins beyond the level holds the
@@ -130,4 +216,17 @@ impl Simulation {
         let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
         Some(crossing_of(excess, from.t, to.t))
     }
+}
+
+/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; nothing where it turns over.
+fn swing_of(energy: f64) -> Option<f64> {
+    (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
+}
+
+/// The time at which the straight line of log|x| from one turning point to a later one passes the level between them.
+fn between(above: Turn, below: Turn, level: f64) -> f64 {
+    // Friction may hold it at zero, whose logarithm is not to be had.
+    let height = |turn: Turn| turn.x.abs().max(1e-12 * level).ln();
+    let fraction = (level.ln() - height(above)) / (height(below) - height(above));
+    above.t + fraction * (below.t - above.t)
 }

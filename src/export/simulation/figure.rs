@@ -197,32 +197,46 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
     match report.axes {
         [one] => {
             let values = one.values();
-            let drawn: Vec<(&Quantity, Vec<(f64, f64)>)> = QUANTITIES
+            // A motion without the quantity interrupts the curve: nothing is drawn across what is not there, and one point
+            // alone is no curve.
+            let runs = |quantity: &Quantity| -> Vec<Vec<(f64, f64)>> {
+                let found: Vec<Option<(f64, f64)>> = values
+                    .iter()
+                    .zip(report.rows)
+                    .map(|(at, row)| Some((*at, (quantity.value)(row)?)))
+                    .collect();
+                let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
+                unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
+            };
+            let drawn: Vec<(&Quantity, Vec<Vec<(f64, f64)>>)> = QUANTITIES
                 .iter()
-                .map(|quantity| {
-                    let points = values.iter().zip(report.rows);
-                    let points = points.filter_map(|(at, row)| Some((*at, (quantity.value)(row)?)));
-                    (quantity, points.collect::<Vec<_>>())
-                })
-                .filter(|(_, points)| points.len() > 1)
+                .map(|quantity| (quantity, runs(quantity)))
+                .filter(|(_, runs)| !runs.is_empty())
                 .collect();
             let panels: Vec<Panel> = drawn
                 .iter()
-                .map(|(quantity, points)| Panel {
+                .map(|(quantity, runs)| Panel {
                     title: quantity.title,
                     x_label: &one.name,
                     y_label: quantity.label,
-                    curves: vec![curve("", points, CurveStyle::DIFFERENCE)],
+                    curves: runs
+                        .iter()
+                        .map(|points| curve("", points, CurveStyle::DIFFERENCE))
+                        .collect(),
                     ..Panel::default()
                 })
                 .collect();
-            let caption = format!(
+            let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
+            let mut caption = format!(
                 "{} motions, {} from {} to {}.",
                 report.rows.len(),
                 one.name,
                 decimal(one.from),
                 decimal(one.to)
             );
+            if restless > 0 {
+                caption.push_str(&format!(" No rest time in {restless} of them."));
+            }
             figure(&panels, &caption)
         }
         [down, across] => {

@@ -158,6 +158,9 @@ fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Cur
     Curve { label, points, style }
 }
 
+/// Points of one curve.
+type Points = Vec<(f64, f64)>;
+
 /// A quantity of a sweep.
 struct Quantity {
     title: &'static str,
@@ -199,7 +202,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
             let values = one.values();
             // A motion without the quantity interrupts the curve: nothing is drawn across what is not there, and one point
             // alone is no curve.
-            let runs = |quantity: &Quantity| -> Vec<Vec<(f64, f64)>> {
+            let runs = |quantity: &Quantity| -> Vec<Points> {
                 let found: Vec<Option<(f64, f64)>> = values
                     .iter()
                     .zip(report.rows)
@@ -208,7 +211,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
                 unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
             };
-            let drawn: Vec<(&Quantity, Vec<Vec<(f64, f64)>>)> = QUANTITIES
+            let drawn: Vec<(&Quantity, Vec<Points>)> = QUANTITIES
                 .iter()
                 .map(|quantity| (quantity, runs(quantity)))
                 .filter(|(_, runs)| !runs.is_empty())

@@ -26,7 +26,7 @@
 //! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
 //! | series | [`series`] | Taylor, Fourier, running convolutions |
 //! | answer and question | [`solution`], [`oscillator`] | what a method returns, and what it is given |
-//! | numbers alone | [`ode`], [`period`] | Runge-Kutta, quadrature, roots; the true period |
+//! | numbers alone | [`ode`], [`period`], [`return_map`] | Runge-Kutta, quadrature, roots; the true period; limit cycles |
 //! | forces of position alone | [`conservative`] | potential and projections in closed form |
 //! | equilibrium | [`equilibrium`] | where the motion swings about |
 //! | method | [`method`] | one file each |
@@ -55,6 +55,7 @@ pub mod conservative;
 
 pub mod ode;
 pub mod period;
+pub mod return_map;
 
 pub mod equilibrium;
 

@@ -56,14 +56,6 @@ pub enum PeriodError {
     /// The integration failed.
     #[error(transparent)]
     Integration(#[from] IntegrationError),
-    /// No isolated limit cycle near the amplitude of the formula.
-    #[error("no limit cycle with a turning point between x = {from} and x = {to}")]
-    NoLimitCycle {
-        /// Lower end of the search.
-        from: f64,
-        /// Upper end of the search.
-        to: f64,
-    },
 }
 
 /// The period of `x'' + force(x) = 0` released at rest from `start`, swinging about `equilibrium`.
@@ -282,35 +274,6 @@ pub fn swing(
     }
 }
 
-/// The limit cycle near a turning point at `guess`: its swing from the fixed point of the return map.
-///
-/// # Errors
-/// See [`PeriodError`].
-pub fn limit_cycle(
-    acceleration: &dyn Fn(f64, f64, f64) -> f64,
-    equilibrium: f64,
-    guess: f64,
-    longest: f64,
-) -> Result<Trajectory, PeriodError> {
-    let growth = |start: f64| swing(acceleration, equilibrium, start, longest).map(|path| path.end().x - start);
-    let at = |factor: f64| equilibrium + factor * (guess - equilibrium);
-    // Widen the bracket around the guess until the return map grows on one side and shrinks on the other.
-    for spread in [0.05, 0.2, 0.5, 0.8] {
-        let (low, high) = (at(1.0 - spread), at(1.0 + spread));
-        let (Ok(below), Ok(above)) = (growth(low), growth(high)) else {
-            continue;
-        };
-        if below * above <= 0.0 {
-            let fixed = find_root(|start| growth(start).unwrap_or(f64::NAN), low, high)?;
-            return swing(acceleration, equilibrium, fixed, longest);
-        }
-    }
-    Err(PeriodError::NoLimitCycle {
-        from: at(0.2),
-        to: at(1.8),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -367,13 +330,5 @@ mod tests {
             conservative_period(&|x: f64| x + x * x, 0.0, 0.75),
             Err(PeriodError::Escapes { .. })
         ));
-    }
-
-    #[test]
-    fn van_der_pol_settles_on_its_cycle() {
-        // mu = 1: period and amplitude as tabulated by M. Urabe, Funkcialaj Ekvacioj 3 (1960), to the digits given there.
-        let path = limit_cycle(&|_, x, v| (1.0 - x * x) * v - x, 0.0, 2.0, 100.0).unwrap();
-        assert!((path.end().t - 6.663_286_86).abs() < 1e-7, "{}", path.end().t);
-        assert!((path.end().x - 2.008_619_86).abs() < 1e-7, "{}", path.end().x);
     }
 }

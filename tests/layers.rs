@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only and uses nothing at all.
 const LAYERS: [&[&str]; 17] = [
     &["symbol", "spelling", "ode"],
-    &["exact", "period"],
+    &["exact", "period", "return_map"],
     &["decimal"],
     &["expr"],
     &["series"],

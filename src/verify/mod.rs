@@ -25,6 +25,7 @@ use crate::ode::Trajectory;
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::period::{self, PeriodError};
+use crate::return_map::{Equation, LimitCycle, NoLimitCycle, nearest_limit_cycle};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
@@ -173,6 +174,9 @@ pub enum VerificationError {
     /// The equation has no motion to compare with at these values.
     #[error(transparent)]
     Period(#[from] PeriodError),
+    /// The equation has no limit cycle to compare with at these values.
+    #[error(transparent)]
+    LimitCycle(#[from] NoLimitCycle),
     /// The equation could not be taken apart.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
@@ -292,7 +296,7 @@ pub fn motions(
         return Ok(None);
     };
     let velocity = motion.derivative();
-    let times = (0..=SAMPLES).map(|k| truth.path.end().t * k as f64 / SAMPLES as f64);
+    let times = (0..=SAMPLES).map(|k| truth.orbit.period() * k as f64 / SAMPLES as f64);
     let formula = |t: f64| {
         (
             t,
@@ -322,11 +326,33 @@ fn formula_motion(
     Some((found.frequency_squared.sqrt(), found.motion?))
 }
 
+/// One period of a true motion, from a turning point.
+enum Orbit {
+    Swing(Trajectory),
+    LimitCycle(LimitCycle),
+}
+
+impl Orbit {
+    fn period(&self) -> f64 {
+        match self {
+            Self::Swing(path) => path.end().t,
+            Self::LimitCycle(cycle) => cycle.period(),
+        }
+    }
+
+    /// Displacement and velocity, `t` between zero and the period.
+    fn at(&self, t: f64) -> (f64, f64) {
+        match self {
+            Self::Swing(path) => path.at(t).unwrap_or((f64::NAN, f64::NAN)),
+            Self::LimitCycle(cycle) => cycle.at(t),
+        }
+    }
+}
+
 /// The true periodic motion that a formula is meant for.
 struct TrueMotion {
     frequency: f64,
-    /// One period from a turning point.
-    path: Trajectory,
+    orbit: Orbit,
     /// The instant of the path that is `t = 0` of the formula.
     shift: f64,
     amplitude: f64,
@@ -339,6 +365,17 @@ impl TrueMotion {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let physics = Physics::new(oscillator, solution, numbers)?;
+        if solution.limit_cycle.is_some() {
+            let cycle = physics.limit_cycle(solution, numbers)?;
+            let frequency = TAU / cycle.period();
+            return Ok(Self::from_orbit(
+                solution,
+                numbers,
+                Orbit::LimitCycle(cycle),
+                frequency,
+                physics.equilibrium,
+            ));
+        }
         let start = physics.start(solution, numbers)?;
         // The energy knows first whether there is an orbit at all, and says why not.
         let by_energy = match physics.by_energy {
@@ -349,44 +386,54 @@ impl TrueMotion {
             )?),
             false => None,
         };
-        let path = match solution.limit_cycle {
-            Some(_) => period::limit_cycle(&physics.acceleration(), physics.equilibrium, start, physics.longest)?,
-            None => {
-                let longest = by_energy.map_or(physics.longest, |period| 2.0 * period);
-                period::swing(&physics.acceleration(), physics.equilibrium, start, longest)?
-            }
-        };
+        let longest = by_energy.map_or(physics.longest, |period| 2.0 * period);
+        let path = period::swing(&physics.acceleration(), physics.equilibrium, start, longest)?;
         let frequency = TAU / by_energy.unwrap_or(path.end().t);
+        Ok(Self::from_orbit(
+            solution,
+            numbers,
+            Orbit::Swing(path),
+            frequency,
+            physics.equilibrium,
+        ))
+    }
+
+    fn from_orbit(
+        solution: &Solution,
+        numbers: &BTreeMap<Symbol, f64>,
+        orbit: Orbit,
+        frequency: f64,
+        equilibrium: f64,
+    ) -> Self {
         let shift = match solution.amplitude {
             AmplitudeConvention::Initial => 0.0,
             AmplitudeConvention::FirstHarmonic => {
-                let (cosine, sine) = first_harmonic(&path);
-                sine.atan2(cosine) / TAU * path.end().t
+                let (cosine, sine) = first_harmonic(&orbit);
+                sine.atan2(cosine) / TAU * orbit.period()
             }
         };
         let amplitude = match (solution.amplitude, &solution.limit_cycle) {
             (AmplitudeConvention::FirstHarmonic, None) => numbers[&solution.amplitude.symbol()].abs(),
-            _ => (path.at(0.0).map_or(start, |(x, _)| x) - physics.equilibrium).abs(),
+            _ => (orbit.at(0.0).0 - equilibrium).abs(),
         };
-        Ok(Self {
+        Self {
             frequency,
-            path,
+            orbit,
             shift,
             amplitude,
-        })
+        }
     }
 
     /// The true motion at the time `t` of the formula.
     fn sample(&self, t: f64) -> Sample {
-        let place = (t + self.shift).rem_euclid(self.path.end().t);
-        let (x, v) = self.path.at(place).unwrap_or((f64::NAN, f64::NAN));
+        let (x, v) = self.orbit.at((t + self.shift).rem_euclid(self.orbit.period()));
         (t, x, v)
     }
 
     /// Largest `|x_true - x_formula|` over one true period, over the amplitude.
     fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<f64>) -> f64 {
         let deviation = |index: usize| {
-            let t = self.path.end().t * index as f64 / SAMPLES as f64;
+            let t = self.orbit.period() * index as f64 / SAMPLES as f64;
             (self.sample(t).1 - motion.evaluate(frequency * t)).abs()
         };
         (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / self.amplitude
@@ -436,25 +483,40 @@ impl Physics {
         |_, x, v| -self.force.call(&[x, v])
     }
 
-    /// The turning point to start from: given, guessed for a limit cycle, or found so that the first harmonic of the
+    /// The true limit cycle nearest to the amplitude that the formula has where the small parameter vanishes.
+    fn limit_cycle(
+        &self,
+        solution: &Solution,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<LimitCycle, VerificationError> {
+        let at_rest = solution
+            .limit_cycle
+            .as_ref()
+            .map(|law| law.truncated(solution.small_parameter, 0));
+        let amplitude = at_rest.and_then(|law| solution.evaluate(&law, &|symbol| numbers.get(&symbol).copied()).ok());
+        let amplitude = amplitude.map(f64::abs).filter(|size| size.is_normal()).unwrap_or(1.0);
+        let force = |x: f64| self.force.call(&[self.equilibrium + x, 0.0]);
+        let step = 1e-3 * amplitude;
+        let slope = (force(step) - force(-step)) / (2.0 * step);
+        let equation = Equation {
+            acceleration: &|x, v| -self.force.call(&[x, v]),
+            equilibrium: self.equilibrium,
+            amplitude,
+            frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
+        };
+        Ok(nearest_limit_cycle(&equation, None)?)
+    }
+
+    /// The turning point to start from: given, or found so that the first harmonic of the
     /// true motion has the amplitude asked for.
     fn start(&self, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Result<f64, VerificationError> {
-        if solution.limit_cycle.is_some() {
-            let motion = solution.motion(&|symbol| numbers.get(&symbol).copied());
-            let highest = |motion: FourierSeries<f64>| {
-                (0..SAMPLES)
-                    .map(|k| motion.evaluate(TAU * k as f64 / SAMPLES as f64))
-                    .fold(f64::MIN, f64::max)
-            };
-            return Ok(motion.map(highest).unwrap_or(self.equilibrium + 1.0));
-        }
         let amplitude = numbers[&solution.amplitude.symbol()];
         if solution.amplitude == AmplitudeConvention::Initial {
             return Ok(self.equilibrium + amplitude);
         }
         let excess = |start: f64| {
             let path = period::swing(&self.acceleration(), self.equilibrium, start, self.longest);
-            path.map_or(f64::NAN, |path| first_harmonic(&path).0 - amplitude)
+            path.map_or(f64::NAN, |path| first_harmonic(&Orbit::Swing(path)).0 - amplitude)
         };
         let at = |factor: f64| self.equilibrium + factor * amplitude;
         for spread in [0.05, 0.2, 0.5] {
@@ -481,11 +543,11 @@ fn compiled_force(
 }
 
 /// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to rounding here.
-fn first_harmonic(path: &Trajectory) -> (f64, f64) {
-    let period = path.end().t;
+fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
+    let period = orbit.period();
     let sample = |k: usize| {
         let phase = k as f64 / SAMPLES as f64;
-        let x = path.at(period * phase).map_or(f64::NAN, |(x, _)| x);
+        let x = orbit.at(period * phase).0;
         (x * (TAU * phase).cos(), x * (TAU * phase).sin())
     };
     let sum = (0..SAMPLES)

@@ -1,0 +1,381 @@
+//! True limit cycles: fixed points of the return map, in the direction of time in which they attract.
+//!
+//! Reference: A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*, Pergamon 1966, chapter V.
+//!
+//! A motion released at rest at `x`, right of the equilibrium, comes to its next turning point on that side at `P(x)`.
+//!
+//! ```text
+//! P(x) = x             a cycle;    P(x) - x falls there: it attracts, and rises: it repels
+//! t -> -t, x' -> -x'   turns what repels into what attracts
+//! ```
+//!
+//! A cycle that attracts is found forward in time, one that repels backward, so that errors shrink along the way however
+//! strongly it does either. Lengths are measured in an amplitude and times in the linear frequency: units do not matter.
+
+use crate::ode::root::find_root;
+use crate::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+
+/// Tolerance per step.
+const STEP_TOLERANCE: f64 = 1e-13;
+
+/// What a return may miss its start by, relative to it, where it is the accuracy of the steps that decides.
+const ROUNDING: f64 = 1e-11;
+
+/// Steps of one return while the neighbourhood is searched, and where a relaxation oscillation may be stiff.
+const STEPS_OF_SEARCH: usize = 20_000;
+const STEPS_OF_RELAXATION: usize = 200_000;
+
+/// How long a return may take, in radians of the linear frequency.
+const LONGEST: f64 = 1e4;
+
+/// Starts of the search: `RATIO^k` amplitudes for `|k| <= RINGS`, a sixtieth to sixty of them.
+const RATIO: f64 = 1.15;
+const RINGS: i32 = 30;
+
+/// `x'' = acceleration(x, x')`, and what to measure it with.
+pub struct Equation<'a> {
+    /// The acceleration.
+    pub acceleration: &'a dyn Fn(f64, f64) -> f64,
+    /// Where the motion swings about.
+    pub equilibrium: f64,
+    /// About the amplitude of the cycle looked for: the one nearest to it, by ratio, is found. Positive.
+    pub amplitude: f64,
+    /// About the linear frequency. Positive.
+    pub frequency: f64,
+}
+
+/// Why no cycle was found.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoLimitCycle {
+    /// There seems to be none.
+    #[error("no limit cycle with a turning point between x = {from} and x = {to}, forward or backward in time")]
+    NoneBetween {
+        /// Lower end of the search.
+        from: f64,
+        /// Upper end of the search.
+        to: f64,
+    },
+    /// A relaxation oscillation with parts of too different speed.
+    #[error("the true motion is too stiff: one return takes more than {STEPS_OF_RELAXATION} steps of Runge-Kutta")]
+    TooStiff,
+}
+
+/// A true limit cycle, from its turning point right of the equilibrium.
+pub struct LimitCycle {
+    path: Trajectory,
+    attracts: bool,
+    equilibrium: f64,
+    amplitude: f64,
+    frequency: f64,
+}
+
+impl LimitCycle {
+    /// The period.
+    pub fn period(&self) -> f64 {
+        self.path.end().t / self.frequency
+    }
+
+    /// Whether motions near it come closer as time goes on.
+    pub fn attracts(&self) -> bool {
+        self.attracts
+    }
+
+    /// Displacement and velocity; `t = 0` is the turning point, and times repeat with the period.
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        let place = (t / self.period()).rem_euclid(1.0) * self.path.end().t;
+        let (place, sign) = match self.attracts {
+            true => (place, 1.0),
+            false => (self.path.end().t - place, -1.0),
+        };
+        let (x, v) = self.path.at(place).unwrap_or((f64::NAN, f64::NAN));
+        let x = self.equilibrium + self.amplitude * x;
+        (x, sign * self.amplitude * self.frequency * v)
+    }
+}
+
+/// The limit cycle nearest to the amplitude of `equation`; one that attracts, or that repels, where `attracts` says so and
+/// there is one.
+///
+/// # Errors
+/// None within a factor of sixty.
+pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Result<LimitCycle, NoLimitCycle> {
+    let directions: &[&[bool]] = match attracts {
+        Some(true) => &[&[true], &[false]],
+        Some(false) => &[&[false], &[true]],
+        None => &[&[true, false]],
+    };
+    let mut too_stiff = false;
+    for directions in directions {
+        let mut searched = Vec::new();
+        for &attracts in *directions {
+            match at_once(equation, attracts) {
+                Ok(Some(cycle)) => return Ok(cycle),
+                Ok(None) | Err(NoReturn::Away) => searched.push(attracts),
+                Err(NoReturn::TooManySteps) => too_stiff = true,
+            }
+        }
+        if let Some(cycle) = by_rings(equation, &searched) {
+            return Ok(cycle);
+        }
+    }
+    if too_stiff {
+        return Err(NoLimitCycle::TooStiff);
+    }
+    Err(NoLimitCycle::NoneBetween {
+        from: equation.equilibrium + equation.amplitude * RATIO.powi(-RINGS),
+        to: equation.equilibrium + equation.amplitude * RATIO.powi(RINGS),
+    })
+}
+
+/// Where the attraction is strong, as that of a relaxation oscillation, two returns are on the cycle to the last digit.
+fn at_once(equation: &Equation, attracts: bool) -> Result<Option<LimitCycle>, NoReturn> {
+    const RETURNS: usize = 3;
+    let mut start = 1.0;
+    for _ in 0..RETURNS {
+        let path = swing(equation, attracts, start, STEPS_OF_RELAXATION)?;
+        let (before, after) = (start, path.end().x);
+        if (after - before).abs() <= ROUNDING * after {
+            return Ok(Some(cycle(equation, attracts, path)));
+        }
+        start = after;
+    }
+    Ok(None)
+}
+
+/// The first ring about the amplitude in which the return map changes from growing to shrinking.
+fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
+    let growth = |attracts: bool, start: f64| {
+        let path = swing(equation, attracts, start, STEPS_OF_SEARCH);
+        path.map_or(f64::NAN, |path| path.end().x - start)
+    };
+    // The growth at the inner and at the outer end of what was looked at, for each direction of time.
+    let mut ends: Vec<[f64; 2]> = directions.iter().map(|&attracts| [growth(attracts, 1.0); 2]).collect();
+    for ring in 1..=RINGS {
+        for (&attracts, ends) in directions.iter().zip(&mut ends) {
+            for (side, sign) in [(0, -1), (1, 1)] {
+                let [known, place] = [ring - 1, ring].map(|ring| RATIO.powi(sign * ring));
+                let (before, after) = (ends[side], growth(attracts, place));
+                ends[side] = after;
+                let (inner, outer) = if side == 0 { (after, before) } else { (before, after) };
+                if !(inner > 0.0 && outer <= 0.0) {
+                    continue;
+                }
+                let Ok(fixed) = find_root(|start| growth(attracts, start), known, place) else {
+                    continue;
+                };
+                if let Ok(path) = swing(equation, attracts, fixed, STEPS_OF_SEARCH) {
+                    return Some(cycle(equation, attracts, path));
+                }
+            }
+        }
+    }
+    None
+}
+
+fn cycle(equation: &Equation, attracts: bool, path: Trajectory) -> LimitCycle {
+    LimitCycle {
+        path,
+        attracts,
+        equilibrium: equation.equilibrium,
+        amplitude: equation.amplitude,
+        frequency: equation.frequency,
+    }
+}
+
+/// Why a motion was not seen to come back.
+enum NoReturn {
+    Away,
+    TooManySteps,
+}
+
+/// From rest at `start` amplitudes to the next turning point on the same side, forward in time or backward.
+fn swing(equation: &Equation, forward: bool, start: f64, maximum_steps: usize) -> Result<Trajectory, NoReturn> {
+    let Equation {
+        acceleration,
+        equilibrium,
+        amplitude,
+        frequency,
+    } = equation;
+    let speed = amplitude * frequency * if forward { 1.0 } else { -1.0 };
+    let unit = amplitude * frequency * frequency;
+    let scaled = |_: f64, x: f64, v: f64| acceleration(equilibrium + amplitude * x, speed * v) / unit;
+    let state = State {
+        t: 0.0,
+        x: start,
+        v: 0.0,
+    };
+    let options = Options {
+        maximum_steps,
+        ..Options::with_tolerance(STEP_TOLERANCE)
+    };
+    let turning = Event::stop(|_, _, v| v).falling();
+    let path = integrate(scaled, state, LONGEST, &[turning], &options).map_err(|_| NoReturn::Away)?;
+    match path.stop_reason() {
+        StopReason::Event { .. } if path.end().x > 0.0 => Ok(path),
+        StopReason::MaximumSteps { .. } => Err(NoReturn::TooManySteps),
+        _ => Err(NoReturn::Away),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cycle of x'' = acceleration about zero, found from a guess.
+    fn found(acceleration: &dyn Fn(f64, f64) -> f64, guess: f64) -> LimitCycle {
+        let equation = Equation {
+            acceleration,
+            equilibrium: 0.0,
+            amplitude: guess,
+            frequency: 1.0,
+        };
+        nearest_limit_cycle(&equation, None).expect("a limit cycle")
+    }
+
+    fn van_der_pol(mu: f64) -> LimitCycle {
+        found(&move |x, v| mu * (1.0 - x * x) * v - x, 2.0)
+    }
+
+    /// The period of van der Pol's equation by its Taylor series, which shares nothing with Runge-Kutta: from passage to
+    /// passage through x = 0. With u = 1 - x^2 and v = x', Cauchy products give `v_n` and `x_n`.
+    fn period_by_taylor(mu: f64, tolerance: f64) -> f64 {
+        const ORDER: usize = 30;
+        let series = |x0: f64, v0: f64| {
+            let (mut x, mut v, mut u) = (vec![x0], vec![v0], vec![]);
+            for n in 0..ORDER {
+                let square: f64 = (0..=n).map(|i| x[i] * x[n - i]).sum();
+                u.push(if n == 0 { 1.0 - square } else { -square });
+                let product: f64 = (0..=n).map(|i| u[i] * v[n - i]).sum();
+                let next = n as f64 + 1.0;
+                x.push(v[n] / next);
+                v.push((mu * product - x[n]) / next);
+            }
+            (x, v)
+        };
+        let at = |series: &[f64], h: f64| series.iter().rev().fold(0.0, |sum, term| sum * h + term);
+        let (mut t, mut state) = (0.0, (2.0, 0.0));
+        let mut passages: Vec<f64> = vec![];
+        while passages.len() < 12 {
+            let (x, v) = series(state.0, state.1);
+            let step = |coefficients: &[f64], k: usize| (tolerance / coefficients[k].abs()).powf(1.0 / k as f64);
+            let h = [ORDER - 1, ORDER].into_iter().flat_map(|k| [step(&x, k), step(&v, k)]);
+            let h = 0.5 * h.fold(1.0, f64::min);
+            let next = (at(&x, h), at(&v, h));
+            if state.0 < 0.0 && next.0 >= 0.0 {
+                passages.push(t + find_root(|h| at(&x, h), 0.0, h).unwrap());
+            }
+            (t, state) = (t + h, next);
+        }
+        passages[11] - passages[10]
+    }
+
+    #[test]
+    fn van_der_pol_has_the_period_of_its_taylor_series() {
+        for mu in [0.5, 1.0, 3.0, 10.0, 20.0] {
+            let [coarse, fine] = [1e-12, 1e-16].map(|tolerance| period_by_taylor(mu, tolerance));
+            let period = van_der_pol(mu).period();
+            assert!((coarse / fine - 1.0).abs() < 1e-10, "mu = {mu}: {coarse} {fine}");
+            assert!((period / fine - 1.0).abs() < 1e-10, "mu = {mu}: {period} {fine}");
+        }
+    }
+
+    #[test]
+    fn relaxation_oscillations_follow_their_asymptotics() {
+        // T = (3 - 2 log 2) mu + 3 alpha mu^(-1/3) + ..., alpha = 2.338107 the first zero of Ai(-x): J. Grasman, *Asymptotic
+        // Methods for Relaxation Oscillations and Applications*, Springer 1987. The next term is negative.
+        let slow = 3.0 - 2.0 * 2.0_f64.ln();
+        let rest = |mu: f64| (van_der_pol(mu).period() - slow * mu) * mu.cbrt() / (3.0 * 2.338_107);
+        let [at_10, at_50, at_200] = [10.0, 50.0, 200.0].map(rest);
+        assert!(
+            0.8 < at_10 && at_10 < at_50 && at_50 < at_200 && at_200 < 1.0,
+            "{at_10} {at_50} {at_200}"
+        );
+    }
+
+    #[test]
+    fn the_energy_of_a_cycle_balances() {
+        // Over one period the damping does no work: int (1 - x^2) x'^2 dt = 0.
+        for mu in [0.1, -0.3, 2.0, -5.0, 10.0] {
+            let cycle = van_der_pol(mu);
+            let place = |k: i32| cycle.period() * f64::from(k) / 20_000.0;
+            let work = |weight: &dyn Fn(f64) -> f64| {
+                let powers = (0..20_000).map(|k| cycle.at(place(k)));
+                powers.map(|(x, v)| weight(x) * v * v).sum::<f64>()
+            };
+            let (net, whole) = (work(&|x| 1.0 - x * x), work(&|x| (1.0 - x * x).abs()));
+            assert!(net.abs() < 1e-8 * whole, "mu = {mu}: {net} of {whole}");
+            assert_eq!(cycle.attracts(), mu > 0.0);
+        }
+    }
+
+    #[test]
+    fn with_mu_negative_the_same_cycle_runs_backward() {
+        for mu in [0.3, 3.0, 20.0] {
+            let (forward, backward) = (van_der_pol(mu), van_der_pol(-mu));
+            assert!((forward.period() / backward.period() - 1.0).abs() < 1e-10);
+            for k in 0..20 {
+                let t = 0.05 * f64::from(k) * forward.period();
+                let ((x, v), (y, w)) = (forward.at(t), backward.at(-t));
+                assert!(
+                    (x - y).abs() < 1e-7 && (v + w).abs() < 1e-6 * mu,
+                    "mu = {mu}, t = {t}: {x} {y} {v} {w}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn units_do_not_matter() {
+        let plain = van_der_pol(2.0);
+        for (length, rate) in [(1e-9, 1e6), (1e12, 1e-8), (1e-20, 1e20)] {
+            let acceleration = |x: f64, v: f64| {
+                let (x, v) = (x / length, v / (length * rate));
+                length * rate * rate * (2.0 * (1.0 - x * x) * v - x)
+            };
+            let equation = Equation {
+                acceleration: &acceleration,
+                equilibrium: 0.0,
+                amplitude: 3.0 * length,
+                frequency: rate,
+            };
+            let cycle = nearest_limit_cycle(&equation, None).expect("a limit cycle");
+            assert!((cycle.period() * rate / plain.period() - 1.0).abs() < 1e-10);
+            assert!((cycle.at(0.0).0 / length / plain.at(0.0).0 - 1.0).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn of_two_cycles_the_nearest() {
+        // x' (1 - 3 x^2 + x^4): to first order 1 - 3 a^2/4 + a^4/8 = 0, a^2 = 2 and 4; the outer one attracts for eps > 0.
+        let [inner, outer] = [2.0_f64.sqrt(), 2.0];
+        for eps in [0.001, -0.001] {
+            let acceleration = move |x: f64, v: f64| -eps * (1.0 - 3.0 * x * x + x.powi(4)) * v - x;
+            for (guess, amplitude) in [(0.5, inner), (1.5, inner), (1.9, outer), (4.0, outer)] {
+                let cycle = found(&acceleration, guess);
+                assert!(
+                    (cycle.at(0.0).0 / amplitude - 1.0).abs() < 1e-4,
+                    "{guess}: {}",
+                    cycle.at(0.0).0
+                );
+                assert_eq!(cycle.attracts(), (amplitude == outer) == (eps > 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn where_there_is_none_the_search_ends() {
+        let damped = |x: f64, v: f64| -0.1 * v - x;
+        let stiff = |x: f64, v: f64| 1e5 * (1.0 - x * x) * v - x;
+        let search = |acceleration: &dyn Fn(f64, f64) -> f64| {
+            let equation = Equation {
+                acceleration,
+                equilibrium: 0.0,
+                amplitude: 2.0,
+                frequency: 1.0,
+            };
+            nearest_limit_cycle(&equation, None).err()
+        };
+        assert!(matches!(search(&damped), Some(NoLimitCycle::NoneBetween { .. })));
+        assert!(matches!(search(&stiff), Some(NoLimitCycle::TooStiff)));
+    }
+}

@@ -6,6 +6,7 @@ use std::fmt;
 
 use num_traits::{One, Zero};
 
+use crate::derivation::{Line, Step};
 use crate::exact::Polynomial;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::Expr;
@@ -225,8 +226,8 @@ pub struct Solution {
     pub relation: Option<Polynomial>,
     /// A closed form that is no polynomial.
     pub closed_form: Option<ClosedForm>,
-    /// A law that only numbers solve, as text: `omega^2 = (2/(pi*A)) int_0^pi ...`.
-    pub by_quadrature: Option<String>,
+    /// A law that only numbers solve: `omega^2 = (2/(pi*A)) int_0^pi ...`.
+    pub by_quadrature: Option<Vec<Line>>,
     /// The equations of a balance of several harmonics.
     pub system: Option<System>,
     /// The motion, equilibrium included.
@@ -239,24 +240,8 @@ pub struct Solution {
     pub validity: Vec<String>,
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
-    /// The derivation of any other method, line by line.
-    pub derivation: Vec<String>,
-}
-
-/// One order of a derivation, `y_n'' + y_n = right_side + (resonance + W_n) cos(theta)`, in units of the amplitude and of the
-/// linear frequency (of omega in homotopy perturbation). Every part carries its power of the small parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Step {
-    /// The order `n`, from one on.
-    pub order: u32,
-    /// What drives `y_n` beside the secular term.
-    pub right_side: FourierSeries<Polynomial>,
-    /// The coefficient of the secular `cos(theta)` that the nonlinear terms leave.
-    pub resonance: Polynomial,
-    /// `W_n`, which the secular condition fixes.
-    pub correction: Polynomial,
-    /// `y_n`.
-    pub displacement: FourierSeries<Polynomial>,
+    /// What precedes the orders, or the derivation of any other method, line by line.
+    pub derivation: Vec<Line>,
 }
 
 impl Solution {
@@ -295,6 +280,17 @@ impl Solution {
         })
     }
 
+    /// The law that only numbers solve, in one line.
+    pub fn by_numbers(&self) -> Option<String> {
+        let lines: Vec<String> = self.by_quadrature.as_ref()?.iter().map(ToString::to_string).collect();
+        Some(lines.join("; "))
+    }
+
+    /// The letter of the coordinate: what carries the primes in the equation.
+    pub fn coordinate(&self) -> &str {
+        self.equation.split('\'').next().unwrap_or("x")
+    }
+
     fn defines(&self, symbol: Symbol) -> bool {
         self.definitions.iter().any(|definition| definition.symbol == symbol)
     }
@@ -313,6 +309,9 @@ impl Solution {
         }
         self.displacement = self.displacement.map(|coefficient, _| rounded(coefficient));
         for step in &mut self.steps {
+            if let Some(condition) = &mut step.amplitude {
+                condition.sine = rounded(&condition.sine);
+            }
             step.resonance = rounded(&step.resonance);
             step.correction = rounded(&step.correction);
             step.right_side = step.right_side.map(|coefficient, _| rounded(coefficient));
@@ -366,7 +365,7 @@ impl Solution {
             let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
             return format!("harmonics {} balanced, solved by numbers", kept.join(", "));
         } else {
-            return self.by_quadrature.clone().unwrap_or_default();
+            return self.by_numbers().unwrap_or_default();
         };
         let definitions = self.definitions.iter().filter(|definition| {
             let name = definition.symbol;

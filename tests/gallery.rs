@@ -282,7 +282,9 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 51] = [
+    const COMMANDS: [&str; 53] = [
+        "int",
+        "Rightarrow",
         "hbar",
         "Gamma",
         "begin",

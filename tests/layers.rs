@@ -7,12 +7,13 @@
 use std::path::{Path, PathBuf};
 
 /// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only and uses nothing at all.
-const LAYERS: [&[&str]; 17] = [
+const LAYERS: [&[&str]; 18] = [
     &["symbol", "spelling", "ode"],
     &["exact", "period", "return_map"],
     &["decimal"],
     &["expr"],
     &["series"],
+    &["derivation"],
     &["solution"],
     &["oscillator"],
     &["conservative"],

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 
 use crate::contact::phases::{Column, Form, Phase, ThreePhases};
 use crate::contact::true_motion::Deviation;
+use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Integer, Polynomial, Rational};
@@ -103,7 +104,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Val
         "frequency_squared": optional(&solution.frequency_squared),
         "relation": optional(&solution.relation),
         "closed_form": solution.closed_form.as_ref().map(ToString::to_string),
-        "by_quadrature": solution.by_quadrature,
+        "by_quadrature": solution.by_numbers(),
         "system": solution.system.as_ref().map(system),
         "displacement": {
             "variable": "theta",
@@ -385,7 +386,9 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         frequency_squared: optional("frequency_squared")?,
         relation: optional("relation")?,
         closed_form: read_closed_form(&document["closed_form"])?,
-        by_quadrature: document["by_quadrature"].as_str().map(str::to_owned),
+        by_quadrature: document["by_quadrature"]
+            .as_str()
+            .map(|text| text.split("; ").map(Line::words).collect()),
         system: read_system(&document["system"])?,
         displacement: read_displacement(&document["displacement"]["harmonics"])?,
         limit_cycle,

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use num_traits::{One, Signed};
 
-use super::terms::{self, Notation};
+pub use super::steps::latex as steps;
 use crate::contact::phases::{Column, Form, Phase};
 use crate::decimal::{decimal, significant};
 use crate::exact::polynomial::Monomial;
@@ -16,7 +16,8 @@ use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, Function, Node, parse_expression};
 use crate::impact::Impact;
 use crate::series::FourierSeries;
-use crate::solution::{Method, Solution};
+use crate::series::terms::{self, Notation};
+use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::verify::comparison::Comparison;
 use crate::verify::{Verdict, Verification};
@@ -169,7 +170,7 @@ pub fn symbol(symbol: Symbol) -> String {
 }
 
 /// A polynomial with the lowest power of the small parameter first.
-fn law(polynomial: &Polynomial, solution: &Solution) -> String {
+pub(super) fn law(polynomial: &Polynomial, solution: &Solution) -> String {
     terms::polynomial(
         polynomial,
         |monomial| monomial.exponent(solution.small_parameter),
@@ -222,6 +223,8 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
         let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
         lines.push(format!("{name} &= {}", expression(&form.value)));
     }
+    let by_numbers = solution.by_quadrature.iter().flatten();
+    lines.extend(by_numbers.flat_map(super::steps::line_as_latex));
     for equation in solution.system.iter().flat_map(|system| &system.equations) {
         lines.push(format!("0 &= {}", expression(equation)));
     }
@@ -244,7 +247,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
     }
     let mut text = String::new();
     let _ = writeln!(text, "% {}; {}", solution.title(), solution.amplitude);
-    for line in solution.by_quadrature.iter().chain(&solution.validity) {
+    for line in &solution.validity {
         let _ = writeln!(text, "% {line}");
     }
     if let Some(verification) = verification {
@@ -359,7 +362,7 @@ fn phase(phase: &Phase) -> String {
     format!("x(t) &= {form}")
 }
 
-const NOTATION: Notation = Notation {
+pub(super) const NOTATION: Notation = Notation {
     wave: |function, k| match k {
         1 => format!("\\{function} \\theta"),
         _ => format!("\\{function} {k}\\theta"),
@@ -368,13 +371,13 @@ const NOTATION: Notation = Notation {
     brackets: ["\\left(", "\\right)"],
 };
 
-fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
+pub(super) fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
     terms::waves(series, |coefficient| law(coefficient, solution), &NOTATION)
 }
 
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> Vec<String> {
-    let coordinate = solution.equation.split('\'').next().unwrap_or("x");
+    let coordinate = solution.coordinate();
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
     lines.push("\\theta &= \\omega t".to_owned());
@@ -465,32 +468,19 @@ fn formula(solution: &Solution) -> String {
     format!("${text}{}$", definitions.collect::<String>())
 }
 
-/// The derivation, order by order.
-pub fn steps(solution: &Solution) -> String {
-    if solution.steps.is_empty() {
-        return solution.derivation.iter().map(|line| format!("% {line}\n")).collect();
-    }
-    let one_line = |series: &FourierSeries<Polynomial>| terms::sum(waves(series, solution));
-    let squared = match solution.method {
-        Method::HomotopyPerturbation | Method::ParameterExpansion => {
-            "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - W_{1} - W_{2} - \\dots\\right)"
+/// Running text inside `\\text{...}`.
+pub(super) fn words(text: &str) -> String {
+    let mut escaped = String::new();
+    for letter in text.chars() {
+        match letter {
+            '%' | '&' | '#' | '$' | '_' | '{' | '}' => escaped.extend(['\\', letter]),
+            '^' => escaped.push_str("\\^{}"),
+            '<' | '>' => escaped.extend(['$', letter, '$']),
+            '\\' | '~' => escaped.push(' '),
+            _ => escaped.push(letter),
         }
-        _ => "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",
-    };
-    let mut lines = vec![
-        squared.to_owned(),
-        "y_{0}'' + y_{0} &= 0, \\qquad y_{0} = \\cos \\theta".to_owned(),
-    ];
-    for step in &solution.steps {
-        let (n, resonance) = (step.order, law(&step.resonance, solution));
-        let right_side = one_line(&step.right_side);
-        lines.push(format!(
-            "y_{{{n}}}'' + y_{{{n}}} &= {right_side} + \\left({resonance} + W_{{{n}}}\\right) \\cos \\theta"
-        ));
-        lines.push(format!("W_{{{n}}} &= {}", law(&step.correction, solution)));
-        lines.push(format!("y_{{{n}}} &= {}", one_line(&step.displacement)));
     }
-    format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"))
+    escaped
 }
 
 #[cfg(test)]

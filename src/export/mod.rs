@@ -5,6 +5,5 @@ pub mod figure;
 pub mod json;
 pub mod latex;
 pub mod simulation;
+pub mod steps;
 pub mod text;
-
-mod terms;

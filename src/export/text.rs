@@ -4,16 +4,18 @@ use std::fmt::Write as _;
 
 use num_traits::One;
 
-use super::terms::{self, Notation};
+pub use super::steps::text as steps;
 use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant};
+use crate::derivation::NOTATION;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
 use crate::impact::Impact;
 use crate::method::homotopy_analysis::HBAR;
 use crate::series::FourierSeries;
-use crate::solution::{Method, Solution};
+use crate::series::terms;
+use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::verify::comparison::{Comparison, Row};
 use crate::verify::validity::Reach;
@@ -67,8 +69,8 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
             by_order(amplitude, solution)
         );
     }
-    if let Some(law) = &solution.by_quadrature {
-        let _ = writeln!(text, "  {law}");
+    for line in solution.by_quadrature.iter().flatten() {
+        let _ = writeln!(text, "  {line}");
     }
     if let Some(system) = &solution.system {
         let names: Vec<&str> = system.unknowns.iter().map(|name| name.name()).collect();
@@ -123,22 +125,13 @@ fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> 
     }
 }
 
-const NOTATION: Notation = Notation {
-    wave: |function, k| match k {
-        1 => format!("{function}(theta)"),
-        _ => format!("{function}({k}*theta)"),
-    },
-    times: "*",
-    brackets: ["(", ")"],
-};
-
 fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
     terms::waves(series, |coefficient| by_order(coefficient, solution), &NOTATION)
 }
 
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
-    let name = solution_coordinate(solution);
+    let name = solution.coordinate();
     let mut lines = terms::lines(
         &waves(&solution.displacement, solution),
         &format!("  {name}(t) = "),
@@ -146,76 +139,6 @@ fn motion(solution: &Solution) -> String {
     );
     lines.push("         theta = omega*t".to_owned());
     lines.join("\n")
-}
-
-/// The derivation, order by order, for someone who wants to follow it with a pencil.
-pub fn steps(solution: &Solution) -> String {
-    if solution.steps.is_empty() {
-        let mut text = String::from("Derivation\n");
-        for line in &solution.derivation {
-            let _ = writeln!(text, "  {line}");
-        }
-        text.push('\n');
-        return if solution.derivation.is_empty() {
-            String::new()
-        } else {
-            text
-        };
-    }
-    let homotopy = matches!(
-        solution.method,
-        Method::HomotopyPerturbation | Method::ParameterExpansion
-    );
-    let amplitude = match &solution.limit_cycle {
-        None => solution.amplitude.symbol().to_string(),
-        Some(amplitude) => by_order(&amplitude.truncated(solution.small_parameter, 0), solution),
-    };
-    let name = solution_coordinate(solution);
-    let mut text = String::from("Derivation\n");
-    let frame = match homotopy {
-        true => [
-            format!("  {name} = {amplitude}*(y0 + p*y1 + p^2*y2 + ...), theta = omega*t, derivatives in theta"),
-            "  omega0^2 = omega^2*(1 - p*W1 - p^2*W2 - ...); the nonlinear terms stand at p, all in units of omega^2"
-                .to_owned(),
-        ],
-        false => [
-            format!("  {name} = {amplitude}*(y0 + y1 + y2 + ...), theta = omega*t, derivatives in theta"),
-            "  omega^2 = omega0^2*(1 + W1 + W2 + ...); each order carries its power of the small parameter".to_owned(),
-        ],
-    };
-    for line in frame {
-        let _ = writeln!(text, "{line}");
-    }
-    text.push_str("\n  order 0\n    y0'' + y0 = 0\n    y0 = cos(theta)\n");
-    for step in &solution.steps {
-        let n = step.order;
-        let right_side = terms::sum(waves(&step.right_side, solution));
-        let resonance = by_order(&step.resonance, solution);
-        let _ = writeln!(text, "\n  order {n}");
-        let _ = writeln!(
-            text,
-            "    y{n}'' + y{n} = {right_side} + ({resonance} + W{n})*cos(theta)"
-        );
-        let _ = writeln!(text, "    no secular term:  {resonance} + W{n} = 0");
-        let _ = writeln!(
-            text,
-            "    fixes             W{n} = {}",
-            by_order(&step.correction, solution)
-        );
-        if solution.limit_cycle.is_some() {
-            let _ = writeln!(
-                text,
-                "    the cos(theta) part of y{n}, its amplitude, is fixed by the secular sin(theta) of order {}",
-                n + 1
-            );
-        }
-        let _ = writeln!(text, "    y{n} = {}", terms::sum(waves(&step.displacement, solution)));
-    }
-    text
-}
-
-fn solution_coordinate(solution: &Solution) -> &str {
-    solution.equation.split('\'').next().unwrap_or("x")
 }
 
 /// The verdict, number by number.

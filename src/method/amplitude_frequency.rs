@@ -20,6 +20,7 @@
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
+use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
@@ -40,16 +41,21 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let [first, second] = trials.each_ref().map(residual);
     let numerator = (&trials[0] * &second - &trials[1] * &first).expand()?;
     let law = Expr::divide(&numerator, &(&second - &first).expand()?)?.expand()?;
+    let law = positive_amplitude(&law).unwrap_or(law);
     let mut solution = unsolved(oscillator, options, METHOD, 1);
-    set_law(&mut solution, &positive_amplitude(&law).unwrap_or(law))?;
+    set_law(&mut solution, &law)?;
+    let [omega, first_trial, second_trial] =
+        ["omega", "omega1", "omega2"].map(|name| Expr::symbol(name).integer_power(2));
+    let (first_trial, second_trial) = (first_trial?, second_trial?);
+    let [r1, r2] = ["R1", "R2"].map(Expr::symbol);
+    let mixed = Expr::divide(&(&first_trial * &r2 - &second_trial * &r1), &(&r2 - &r1))?;
+    let [one, two] = &trials;
     solution.derivation = vec![
-        format!(
-            "trials A*cos(omega_i*t) with omega_1^2 = {} and omega_2^2 = {}, at cos^2 = 3/4",
-            trials[0], trials[1]
-        ),
-        format!("R_1 = {first}"),
-        format!("R_2 = {second}"),
-        "omega^2 = (omega_1^2*R_2 - omega_2^2*R_1)/(R_2 - R_1)".to_owned(),
+        Line::equation(first_trial, one).because("first trial motion A*cos(omega1*t)"),
+        Line::equation(second_trial, two).because("second trial motion A*cos(omega2*t)"),
+        Line::equation(r1, first).because("residuals where the square of the cosine is 3/4"),
+        Line::equation(r2, second),
+        Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),
     ];
     solution
         .validity

@@ -20,6 +20,7 @@
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
+use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
@@ -45,25 +46,47 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         positive_amplitude(&law)?.expand().ok()
     };
     match potential.as_ref().and_then(law) {
-        Some(law) => set_law(&mut solution, &law)?,
-        None => {
-            solution.by_quadrature = Some(format!(
-                "omega^2 = (4/A^2)*int_(A/sqrt(2))^A ({force}) d{}",
-                oscillator.coordinate
-            ));
+        Some(law) => {
+            set_law(&mut solution, &law)?;
+            if let Some(potential) = &potential {
+                solution.derivation = derivation(oscillator, potential)?;
+                let squared = Expr::symbol("omega").integer_power(2)?;
+                solution.derivation.push(Line::equation(squared, law));
+            }
         }
-    }
-    if let Some(potential) = potential {
-        solution.derivation = vec![
-            format!("V = {potential}"),
-            "x'^2/2 + V(x) = V(A) with x = A*cos(theta), at theta = pi/4".to_owned(),
-            "omega^2*A^2/4 = V(A) - V(A/sqrt(2))".to_owned(),
-        ];
+        None => {
+            let amplitude = Expr::symbol("A");
+            let integral = Formula::Integral {
+                factor: Expr::divide(&Expr::from(4), &amplitude.integer_power(2)?)?,
+                from: Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?,
+                to: amplitude,
+                integrand: Box::new(force.into()),
+                variable: oscillator.coordinate,
+            };
+            let squared = Expr::symbol("omega").integer_power(2)?;
+            solution.by_quadrature = Some(vec![Line::equation(squared, integral)]);
+        }
     }
     solution
         .validity
         .push("one term, collocated at theta = pi/4: the instant is a convention of the method".to_owned());
     Ok(solution)
+}
+
+/// The energy at the start and at an eighth of the period, written out.
+fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Refusal> {
+    let (amplitude, omega) = (Expr::symbol("A"), Expr::symbol("omega"));
+    let eighth = Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?;
+    let at = |place: &Expr| {
+        let value = potential.substitute(oscillator.coordinate, place)?;
+        positive_amplitude(&value).unwrap_or(value).expand()
+    };
+    let kinetic = Expr::divide(&(&omega * &amplitude).integer_power(2)?, &Expr::from(4))?;
+    Ok(vec![
+        Line::equation("V", potential).because("potential energy"),
+        Line::equation(kinetic + at(&eighth)?, at(&amplitude)?)
+            .because("kinetic and potential energy of A*cos(theta) at theta = pi/4, and at theta = 0"),
+    ])
 }
 
 /// `abs` and `sgn` of the positive amplitude resolved: `|A| = A`.

@@ -26,16 +26,20 @@
 
 use num_traits::{One, Zero};
 
+use super::energy_balance::positive_amplitude;
 use super::iteration_perturbation::polynomial_coefficients;
 use super::one_term::{conservative_force, unsolved};
 use super::{Options, Refusal};
-use crate::conservative::{linear_in, split, take_powers};
+use crate::conservative::potential::potential;
+use crate::conservative::{is_odd, linear_in, split, take_powers};
+use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{ClosedForm, Method, Solution};
+use crate::symbol::Symbol;
 
 /// The exact law of a conservative oscillator; its motion is known by numbers.
 ///
@@ -53,17 +57,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     match law {
         Some(Law::Squared(squared)) => solution.frequency_squared = Some(squared),
         Some(Law::Form(value)) => solution.closed_form = Some(ClosedForm { squared: false, value }),
-        None => {
-            let x = oscillator.coordinate;
-            solution.by_quadrature = Some(format!(
-                "omega = 2*pi/T, T = 2*int_x1^A d{x}/sqrt(2*(V(A) - V({x}))), V' = {force}, V(x1) = V(A)"
-            ));
-        }
+        None => solution.by_quadrature = Some(period_by_energy(oscillator, &force)?),
     }
-    solution.derivation = vec![
-        "x'^2/2 + V(x) = V(A), V' = f".to_owned(),
-        "T = 2*int_x1^A dx/sqrt(2*(V(A) - V(x))), omega = 2*pi/T".to_owned(),
-    ];
+    solution.derivation = period_by_energy(oscillator, &force)?;
     solution.validity.push(match solution.by_quadrature {
         None => "exact wherever the motion is periodic".to_owned(),
         Some(_) => {
@@ -72,6 +68,56 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         }
     });
     Ok(solution)
+}
+
+/// The period as an integral over the energy, with the force of this equation in it.
+fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
+    let (x, amplitude) = (oscillator.coordinate, Expr::symbol("A"));
+    let odd = is_odd(force, x)?;
+    let variable = Symbol::new(if x.name() == "u" { "v" } else { "u" });
+    let mut lines = Vec::new();
+    // What the potential has fallen by from the turning point: in closed form, or as an integral of the force.
+    let potential = potential(force, x).map(|potential| {
+        let turning = potential.substitute(x, &amplitude)?;
+        let turning = positive_amplitude(&turning).unwrap_or(turning);
+        (Expr::from(2) * (turning - potential)).expand()
+    });
+    let gained: Formula = match potential {
+        Some(Ok(gained)) => gained.into(),
+        _ => Formula::Integral {
+            factor: Expr::from(2),
+            from: x.into(),
+            to: amplitude.clone(),
+            integrand: Box::new(force.substitute(x, &variable.into())?.into()),
+            variable,
+        },
+    };
+    let (factor, from) = if odd {
+        (4, Expr::zero())
+    } else {
+        (2, Expr::symbol("x1"))
+    };
+    if !odd {
+        let work = Formula::Integral {
+            factor: Expr::one(),
+            from: from.clone(),
+            to: amplitude.clone(),
+            integrand: Box::new(force.into()),
+            variable: x,
+        };
+        lines.push(Line::equal([work, Expr::zero().into()]).because("the other turning point x1 < 0"));
+    }
+    let period = Formula::Integral {
+        factor: Expr::from(factor),
+        from,
+        to: amplitude,
+        integrand: Box::new(Formula::OverRoot(Expr::one(), Box::new(gained))),
+        variable: x,
+    };
+    lines.push(Line::equation("T", period).because("the period, from the energy"));
+    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::symbol("T"))?;
+    lines.push(Line::equation("omega", frequency));
+    Ok(lines)
 }
 
 enum Law {

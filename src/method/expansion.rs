@@ -9,13 +9,14 @@ use std::collections::BTreeSet;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::secular::{Expansion, ForceTerm, Scheme, SecularError, expand};
+use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, Scheme, SecularError, expand};
+use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::expr::Expr;
 use crate::oscillator::Term;
 use crate::series::FourierSeries;
-use crate::solution::Step;
 use crate::symbol::Symbol;
 
 /// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
@@ -26,7 +27,7 @@ pub struct ExactSeries {
     pub frequency_squared: Polynomial,
     /// The motion.
     pub displacement: FourierSeries<Polynomial>,
-    /// Each order by itself.
+    /// Each order by itself, the unperturbed one first.
     pub steps: Vec<Step>,
 }
 
@@ -69,7 +70,7 @@ pub fn expand_exactly(
             let polynomial = |numerator: &Integer, denominator: &Integer| {
                 Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
             };
-            Ok(collect(&expansion, polynomial, restore))
+            Ok(collect(&expansion, scheme, polynomial, restore))
         }
         None => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
@@ -77,7 +78,7 @@ pub fn expand_exactly(
             let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
                 numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
             };
-            Ok(collect(&expansion, polynomial, restore))
+            Ok(collect(&expansion, scheme, polynomial, restore))
         }
     }
 }
@@ -143,6 +144,7 @@ fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomia
 /// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
 fn collect<C: Ring>(
     expansion: &Expansion<C>,
+    scheme: &Scheme,
     polynomial: impl Fn(&C, &Integer) -> Polynomial,
     restore: impl Fn(usize) -> Monomial,
 ) -> ExactSeries {
@@ -154,17 +156,48 @@ fn collect<C: Ring>(
         let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
         exact.fold(FourierSeries::zero(), |sum, term| sum.sum(&term))
     };
-    let step = |n: usize| Step {
-        order: n as u32,
-        right_side: exact(&expansion.right_side[n - 1], n),
-        resonance: exact(&expansion.removed[n - 1], n).mean().0,
-        correction: exact(&expansion.frequency_squared[n], n).mean().0,
-        displacement: exact(&expansion.displacement[n], n),
+    let constant = |series: &FourierSeries<C>, n: usize| exact(series, n).mean().0;
+    let amplitude = |n: usize| {
+        let fixed = expansion.amplitudes.get(n.checked_sub(1)?)?;
+        let unknown = Symbol::new(&format!("B{n}"));
+        let mut sine = constant(&fixed.slope, 1).product(&Polynomial::symbol(unknown));
+        sine.accumulate(&constant(&fixed.sine, n + 1));
+        Some(AmplitudeCondition {
+            sine,
+            unknown,
+            value: Expr::from(&constant(&fixed.amplitude, n)),
+        })
+    };
+    let step = |n: usize| {
+        let driven = |series: &[FourierSeries<C>]| {
+            n.checked_sub(1)
+                .map_or_else(FourierSeries::zero, |index| exact(&series[index], n))
+        };
+        Step {
+            order: n as u32,
+            right_side: driven(&expansion.right_side),
+            resonance: driven(&expansion.removed).mean().0,
+            correction: driven(&expansion.frequency_squared[1..]).mean().0,
+            conditions: conditions(n, scheme),
+            displacement: exact(&expansion.displacement[n], n),
+            amplitude: amplitude(n),
+        }
     };
     ExactSeries {
         frequency: sum(&expansion.frequency).mean().0,
         frequency_squared: sum(&expansion.frequency_squared).mean().0,
         displacement: sum(&expansion.displacement),
-        steps: (1..expansion.displacement.len()).map(step).collect(),
+        steps: (0..expansion.displacement.len()).map(step).collect(),
+    }
+}
+
+/// What pins down `y_n`, beside the amplitude condition of a limit cycle.
+fn conditions(n: usize, scheme: &Scheme) -> Vec<Condition> {
+    match (n, scheme.normalisation, scheme.amplitude) {
+        (0, ..) => vec![Condition::Position(1), Condition::AtRest],
+        (_, Normalisation::Initial, Amplitude::Free) => vec![Condition::Position(0), Condition::AtRest],
+        (_, Normalisation::Initial, Amplitude::Determined) => vec![Condition::AtRest],
+        (_, Normalisation::FirstHarmonic, Amplitude::Free) => vec![Condition::NoCosine, Condition::NoSine],
+        (_, Normalisation::FirstHarmonic, Amplitude::Determined) => vec![Condition::NoSine],
     }
 }

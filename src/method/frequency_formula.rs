@@ -18,6 +18,7 @@
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
+use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
@@ -43,7 +44,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
-    solution.derivation = vec![format!("f' = {slope}"), "omega^2 = f'(A/2)".to_owned()];
+    let derivative = Formula::Slope {
+        factor: Expr::one(),
+        of: "f".into(),
+        by: oscillator.coordinate,
+    };
+    solution.derivation = vec![
+        Line::equal([derivative, slope.into()]).because("slope of the force"),
+        Line::equation(Expr::symbol("omega").integer_power(2)?, law).because("its value at half the amplitude"),
+    ];
     solution
         .validity
         .push("one line: exact for linear forces, and to first order for cubic ones alone".to_owned());

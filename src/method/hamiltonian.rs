@@ -23,9 +23,13 @@ use super::one_term::{conservative_force, first_order_only, note_even_part, set_
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
+use crate::derivation::{Formula, Line};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+
+/// The name of the mean potential in the derivation.
+const MEAN: &str = "V_mean";
 
 /// The frequency by the mean Hamiltonian.
 ///
@@ -38,25 +42,45 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let amplitude = Expr::symbol("A");
     // The derivative of an arc's edge cancels, but leaves its traces: arcs are differentiated under the integral.
     let has_arcs = force.contains_function(Function::Step);
-    let mean = potential(&force, oscillator.coordinate)
-        .and_then(|potential| cosine_coefficient(&potential, oscillator.coordinate, &amplitude, 0))
-        .map(|twice| twice * Expr::number(crate::exact::rational::ratio(1, 2)));
+    let mean_of = |potential: &Expr| {
+        let twice = cosine_coefficient(potential, oscillator.coordinate, &amplitude, 0)?;
+        Some(twice * Expr::number(crate::exact::rational::ratio(1, 2)))
+    };
     let law = |mean: &Expr| {
         let slope = mean.differentiate("A".into()).ok()?;
         Expr::divide(&(Expr::from(2) * slope), &amplitude).ok()?.expand().ok()
     };
-    let Some((mean, law)) = mean
+    let stationary = |potential: Expr| {
+        let mean = mean_of(&potential)?;
+        let law = law(&mean)?;
+        Some((potential, mean, law))
+    };
+    let Some((potential, mean, law)) = potential(&force, oscillator.coordinate)
         .filter(|_| !has_arcs)
-        .and_then(|mean| law(&mean).map(|law| (mean, law)))
+        .and_then(stationary)
     else {
         return solve_by_integral(oscillator, options, METHOD);
     };
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
+    let along = amplitude.clone() * Expr::symbol("theta").cos()?;
+    let integral = Formula::Integral {
+        factor: Expr::divide(&Expr::one(), &Expr::pi())?,
+        from: Expr::zero(),
+        to: Expr::pi(),
+        integrand: Box::new(potential.substitute(oscillator.coordinate, &along)?.into()),
+        variable: "theta".into(),
+    };
+    let slope = Formula::Slope {
+        factor: Expr::divide(&Expr::from(2), &amplitude)?,
+        of: MEAN.into(),
+        by: "A".into(),
+    };
     solution.derivation = vec![
-        "H = x'^2/2 + V(x), x = A*cos(theta): the mean of V over the motion".to_owned(),
-        format!("<V> = {mean}"),
-        "omega^2 = (2/A)*d<V>/dA".to_owned(),
+        Line::equation("V", potential).because("potential energy"),
+        Line::equal([MEAN.into(), integral, mean.into()]).because("its mean over A*cos(theta)"),
+        Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
+            .because("the mean Hamiltonian is stationary"),
     ];
     solution
         .validity

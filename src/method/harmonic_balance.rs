@@ -26,10 +26,11 @@ use nalgebra::{DMatrix, DVector};
 use num_traits::{One, Zero};
 
 use super::iteration_perturbation::{horner, polynomial_coefficients};
-use super::one_term::{conservative_force, set_law, shared_integral, unsolved};
+use super::one_term::{conservative_force, integral_law, set_law, shared_integral, unsolved};
 use super::{Options, Refusal};
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
+use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::expr::{Expr, Function};
@@ -66,7 +67,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         && let Some(law) = shared_integral(oscillator, &force)
     {
         set_law(&mut solution, &law)?;
-        solution.derivation = vec!["cos(theta) part of the equation:  -omega^2*A + c1 = 0".to_owned()];
+        solution.derivation = integral_law(oscillator, &force, &solution)?;
         solution
             .validity
             .push("one harmonic: exact for a linear force, the first step beyond it otherwise".to_owned());
@@ -79,19 +80,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         cosine[k] = Polynomial::symbol(name);
     }
     solution.displacement = FourierSeries::from_parts(cosine, vec![], Integer::one());
-    solution.derivation = vec![
-        format!(
-            "{} = {}",
-            oscillator.coordinate,
-            names
-                .iter()
-                .zip(&harmonics)
-                .map(|(name, k)| format!("{name}*cos({k}*theta)"))
-                .collect::<Vec<_>>()
-                .join(" + ")
-        ),
-        "cos(k*theta) part of the equation:  -k^2*omega^2*a_k + c_k = 0 for each k".to_owned(),
-    ];
+    solution.derivation = projections(oscillator, &force, &harmonics, &names, &solution.displacement)?;
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
         Some(equations) => {
@@ -105,13 +94,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             solution.system = Some(System { unknowns, equations });
         }
         None => {
-            let sum: Vec<String> = names.iter().map(ToString::to_string).collect();
-            solution.by_quadrature = Some(format!(
-                "-k^2*omega^2*a_k + (2/pi)*int_0^pi f({x}(theta))*cos(k*theta) dtheta = 0, k = {}; A = {}; f = {force}",
-                kept.join(", "),
-                sum.join(" + "),
-                x = oscillator.coordinate
-            ));
+            solution.by_quadrature = Some(solution.derivation.clone());
         }
     }
     solution.validity.push(format!(
@@ -119,6 +102,47 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         kept.join(", ")
     ));
     Ok(solution)
+}
+
+/// The balance of each harmonic as an integral over the force along the motion.
+fn projections(
+    oscillator: &Oscillator,
+    force: &Expr,
+    harmonics: &[usize],
+    names: &[Symbol],
+    motion: &FourierSeries<Polynomial>,
+) -> Result<Vec<Line>, Refusal> {
+    /// Beyond so many harmonics one line stands for all.
+    const MOST_LINES: usize = 8;
+    let omega = Expr::symbol("omega").integer_power(2)?;
+    let balance = |k: Expr, name: Expr, factor: i64| -> Result<Line, Refusal> {
+        let integral = Formula::Integral {
+            factor: Expr::divide(&Expr::from(factor), &Expr::pi())?,
+            from: Expr::zero(),
+            to: Expr::pi(),
+            integrand: Box::new((force * &(&k * &Expr::symbol("theta")).cos()?).into()),
+            variable: "theta".into(),
+        };
+        Ok(Line::equation(k.integer_power(2)? * &omega * name, integral))
+    };
+    let mut lines = vec![Line::equation(oscillator.coordinate, motion.clone())];
+    if harmonics.len() <= MOST_LINES {
+        for (&k, &name) in harmonics.iter().zip(names) {
+            let factor = if k == 0 { 1 } else { 2 };
+            lines.push(balance(Expr::from(k as i64), name.into(), factor)?.because(format!("harmonic {k}")));
+        }
+    } else {
+        let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
+        let letter = names.last().map_or("a", |name| name.name());
+        let letter = letter.trim_end_matches(|digit: char| digit.is_ascii_digit() || digit == '_');
+        let general = balance(Expr::symbol("k"), Expr::symbol(&format!("{letter}_k")), 2)?;
+        lines.push(general.because(format!("harmonics k = {}", kept.join(", "))));
+    }
+    lines.push(Line::equation(
+        "A",
+        Expr::sum(names.iter().map(|name| Expr::from(*name))),
+    ));
+    Ok(lines)
 }
 
 /// The harmonics of an order.

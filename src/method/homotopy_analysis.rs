@@ -26,6 +26,7 @@ use num_traits::{One, Zero};
 
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::{Options, Refusal};
+use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::expr::{Expr, Node};
@@ -81,14 +82,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.frequency = Some(constant(&sum(&series.frequency)));
     solution.displacement = sum(&series.displacement);
-    solution.derivation =
-        vec!["w0^2*(u_m'' + u_m - chi*(u_(m-1)'' + u_(m-1))) = hbar*R_m, no secular term in R_m".to_owned()];
-    for (m, (frequency, motion)) in series.frequency.iter().zip(&series.displacement).enumerate() {
-        solution.derivation.push(format!("w_{m} = {}", constant(frequency)));
-        for (k, cosine, _) in motion.harmonics() {
-            solution.derivation.push(format!("u_{m}: cos({k}*theta) * ({cosine})"));
-        }
-    }
     solution.validity.push(format!("truncated after q^{}", order - 1));
     if polynomial.is_none() {
         let line = format!("the force entered as its Taylor polynomial of degree {degree}");
@@ -118,6 +111,7 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
     let hbar = constant_series(hbar);
     let mut inverse = FourierSeries::zero();
     let mut linear = force.linear.clone();
+    let mut lines = vec![Line::equation("u0", displacement[0].clone())];
     for m in 1..=order {
         extend_powers(&mut powers, &displacement, m - 1);
         let mut right_side = powers[0][m - 1].product(&constant_series(linear.clone()));
@@ -137,13 +131,20 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
             inverse = first.inverse().map_or_else(FourierSeries::zero, |(unit, integer)| {
                 FourierSeries::constant(unit, Integer::one()).divided_by(i64::try_from(&integer).unwrap_or(1))
             });
-            let squared = first.product(&first);
+            let name = first.single_term().filter(|(_, number)| number.is_one());
+            let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
+            let name = name.filter(|name| solution.definitions.iter().any(|entry| entry.symbol == *name));
+            let name = name.unwrap_or_else(|| Symbol::new("w0"));
+            let inertia = |square: Polynomial| displacement[0].times(-1).product(&constant_series(square));
+            let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
+            lines.extend(secular_lines(
+                m,
+                &right_side.sum(&unknown),
+                Expr::from(name).integer_power(2)?,
+                &squared,
+            ));
+            right_side = right_side.sum(&inertia(first.product(&first)));
             frequency.push(constant_series(first));
-            let inertia = displacement[0]
-                .derivative()
-                .derivative()
-                .product(&constant_series(squared));
-            right_side = right_side.sum(&inertia);
         } else {
             right_side = right_side.sum(&inertia_without_last(&frequency, &displacement, m - 1));
             // -2 w_0 w_(m-1) A + r = 0
@@ -153,6 +154,17 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
                 .product(&inverse)
                 .product(&by_amplitude)
                 .divided_by(2);
+            let name = Symbol::new(&format!("w{}", m - 1));
+            let unknown = frequency[0]
+                .product(&displacement[0])
+                .product(&constant_series(Polynomial::symbol(name)))
+                .times(-2);
+            lines.extend(secular_lines(
+                m,
+                &right_side.sum(&unknown),
+                name.into(),
+                &constant(&next),
+            ));
             frequency.push(next);
         }
         if m == order {
@@ -169,12 +181,37 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }
+        let name = Symbol::new(&format!("u{m}"));
+        let driven = next.sum(&next.derivative().derivative());
+        let left = Formula::Oscillator {
+            of: name,
+            square: Expr::one(),
+        };
+        lines.push(Line::equal([left, driven.into()]).because(match m {
+            1 => "u1'' + u1 = hbar*R1/w0^2".to_owned(),
+            _ => format!("u{m}'' + u{m} = u{k}'' + u{k} + hbar*R{m}/w0^2", k = m - 1),
+        }));
+        let start = |derivatives| Formula::AtZero { of: name, derivatives };
+        lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
+        lines.push(Line::equation(name, next.clone()));
         displacement.push(next);
     }
+    solution.derivation = lines;
     Ok(Series {
         frequency,
         displacement,
     })
+}
+
+/// `R_m` with the unknown frequency in it, and the condition that fixes that.
+fn secular_lines(m: usize, residual: &FourierSeries<Polynomial>, unknown: Expr, value: &Polynomial) -> Vec<Line> {
+    let name = format!("R{m}");
+    let secular = constant(&residual.cosine(1));
+    vec![
+        Line::equation(name.as_str(), residual.clone()),
+        Line::equation(&secular, Expr::zero()).because(format!("no cos(theta) in {name}")),
+        Line::equation(unknown, value),
+    ]
 }
 
 /// Adds the coefficient of q^k to every power of u.

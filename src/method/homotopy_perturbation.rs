@@ -27,6 +27,7 @@ use super::expansion::expand_exactly;
 use super::one_term::conservative_force;
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
 use super::{Options, Refusal};
+use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational, Ring};
@@ -128,7 +129,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         numerical: false,
         validity,
         steps: series.steps,
-        derivation: vec![],
+        derivation: vec![Line::equation(Expr::symbol("omega0").integer_power(2)?, &force.linear)],
     })
 }
 

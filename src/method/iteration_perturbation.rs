@@ -21,13 +21,16 @@
 
 use num_traits::{One, Zero};
 
-use super::one_term::{conservative_force, cosine, note_even_part, solve_by_integral, unsolved};
+use super::one_term::{
+    conservative_force, cosine, first_projection, law_of, note_even_part, solve_by_integral, unsolved,
+};
 use super::{Options, Refusal};
 use crate::conservative::projection::cosine_coefficient;
+use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::expr::Expr;
-use crate::oscillator::Oscillator;
+use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
 use crate::solution::{Definition, Method, Solution};
@@ -62,14 +65,19 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
     first_iterate(&mut solution, oscillator, &force)?;
-    let factor = Expr::divide(&force, &Expr::from(oscillator.coordinate))?.expand()?;
-    solution.derivation = vec![
-        format!(
-            "{x}1'' + ({factor})*{x}1 = 0 with {x} = A*cos(theta) in the factor",
-            x = oscillator.coordinate
-        ),
-        "no secular term:  omega^2 = c1/A, c1 the cos(theta) part of f(A*cos(theta))".to_owned(),
-    ];
+    solution.derivation = match polynomial_coefficients(oscillator, &force)? {
+        Some(coefficients) => {
+            let start = cosine(Polynomial::symbol(Symbol::new("A")));
+            let mut lines = vec![Line::equation(numbered(oscillator, 0), start.clone())];
+            lines.extend(Pass::new(oscillator, &coefficients, &start)?.lines(oscillator, 1, None)?);
+            lines
+        }
+        None => frozen_function(oscillator, &force)?,
+    };
+    if let Some(law) = law_of(&solution) {
+        let squared = Expr::symbol("omega").integer_power(2)?;
+        solution.derivation.push(Line::equation(squared, law));
+    }
     solution.validity.retain(|line| !line.starts_with("the even part"));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)
@@ -139,17 +147,14 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     if degree.saturating_pow(passes) > MOST_HARMONICS {
         return Err(Refusal::TooLong { terms: MOST_TERMS });
     }
-    let squared = FourierSeries::constant(
-        Polynomial::term(Monomial::power_of(omega, 2), Rational::one()),
-        Integer::one(),
-    );
     let inverse = Monomial::power_of(omega, -2);
     let mut solution = unsolved(oscillator, options, METHOD, passes);
     let mut motion = cosine(Polynomial::symbol(amplitude));
     let mut secular = Polynomial::zero();
-    for _ in 0..passes {
-        let right_side = motion.product(&squared).difference(&horner(&coefficients, &motion)?);
-        let (particular, resonance) = right_side.solve_oscillator();
+    let mut lines = vec![Line::equation(numbered(oscillator, 0), motion.clone())];
+    for number in 1..=passes {
+        let pass = Pass::new(oscillator, &coefficients, &motion)?;
+        let (particular, resonance) = pass.right_side.solve_oscillator();
         secular = over_one(&resonance.cosine);
         let particular = particular.map(|numerator, denominator| {
             let mut polynomial = numerator.times_monomial(&inverse);
@@ -159,22 +164,106 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
         let rest =
             FourierSeries::constant(Polynomial::symbol(amplitude), Integer::one()).difference(&particular.at_zero());
         motion = particular.sum(&rest.product(&FourierSeries::cos(1)));
+        lines.extend(pass.lines(oscillator, number, (number < passes).then_some(&motion))?);
     }
     let relation = secular.times_monomial(&Monomial::power_of(amplitude, -1));
     let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
     solution.relation = Some(relation.times_monomial(&Monomial::power_of(omega, -lowest)));
     solution.displacement = motion;
-    solution.derivation = vec![
-        format!(
-            "{x}_n'' + omega^2*{x}_n = omega^2*{x}_(n-1) - f({x}_(n-1)), {x}_0 = A*cos(theta)",
-            x = oscillator.coordinate
-        ),
-        format!("no secular term after {passes} passes fixes omega^2"),
-    ];
+    solution.derivation = lines;
     solution.validity.push(format!(
         "after {passes} passes; the frequency is the root that continues omega0^2 from A = 0"
     ));
     Ok(solution)
+}
+
+/// One pass: the factor frozen at the motion before, and what it leaves on the right side.
+struct Pass {
+    factor: FourierSeries<Polynomial>,
+    right_side: FourierSeries<Polynomial>,
+}
+
+impl Pass {
+    fn new(
+        oscillator: &Oscillator,
+        coefficients: &[Polynomial],
+        motion: &FourierSeries<Polynomial>,
+    ) -> Result<Self, Refusal> {
+        // f(0) = 0, so f/x is a polynomial as well.
+        let quotient = coefficients.get(1..).unwrap_or_default();
+        if coefficients.first().is_some_and(|constant| !constant.is_zero()) {
+            return Err(OscillatorError::NoEquilibrium(oscillator.force.to_string()).into());
+        }
+        let factor = horner(quotient, motion)?;
+        let squared = Polynomial::term(Monomial::power_of(Symbol::new("omega"), 2), Rational::one());
+        let squared = FourierSeries::constant(squared, Integer::one());
+        Ok(Self {
+            right_side: squared.difference(&factor).product(motion),
+            factor,
+        })
+    }
+
+    /// The pass on paper; `next` is the motion it gives, where another pass follows.
+    fn lines(
+        &self,
+        oscillator: &Oscillator,
+        number: u32,
+        next: Option<&FourierSeries<Polynomial>>,
+    ) -> Result<Vec<Line>, Refusal> {
+        let (before, after) = (numbered(oscillator, number - 1), numbered(oscillator, number));
+        let omega = Expr::symbol("omega").integer_power(2)?;
+        let x = Expr::from(oscillator.coordinate);
+        let factor = Expr::divide(&oscillator.force, &x)?.expand()?;
+        let factor = factor.substitute(oscillator.coordinate, &before.into())?;
+        let left = Formula::Oscillator {
+            of: after,
+            square: omega,
+        };
+        let secular = over_one(&self.right_side.cosine(1));
+        let mut lines = vec![
+            Line::equation(factor, self.factor.clone())
+                .because(format!("pass {number}, the factor frozen at {before}")),
+            Line::equal([left, self.right_side.clone().into()])
+                .because(format!("{after}'' + omega^2*{after} = (omega^2 - factor)*{before}")),
+        ];
+        let zero = Expr::zero();
+        match next {
+            Some(motion) => {
+                lines.push(
+                    Line::equation(after, motion.clone())
+                        .because("the secular term left out: omega follows from the last pass"),
+                );
+            }
+            None => lines.push(Line::equation(&secular, zero).because("no cos(theta) on the right")),
+        }
+        Ok(lines)
+    }
+}
+
+/// `x0`, `x1`, ...
+fn numbered(oscillator: &Oscillator, number: u32) -> Symbol {
+    Symbol::new(&format!("{}{number}", oscillator.coordinate))
+}
+
+/// The first pass of a force that is no polynomial.
+fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
+    let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
+    let along = Expr::symbol("A") * Expr::symbol("theta").cos()?;
+    let factor = Expr::divide(force, &oscillator.coordinate.into())?;
+    let frozen = factor.substitute(oscillator.coordinate, &along)?;
+    let squared = Expr::symbol("omega").integer_power(2)?;
+    Ok(vec![
+        Line::equation(start, along),
+        Line::equal([
+            Formula::Oscillator {
+                of: first,
+                square: frozen,
+            },
+            Expr::zero().into(),
+        ])
+        .because(format!("the factor frozen at {start}")),
+        Line::equation(squared, first_projection(oscillator, force)?).because("no cos(theta) remains"),
+    ])
 }
 
 fn over_one(series: &FourierSeries<Polynomial>) -> Polynomial {

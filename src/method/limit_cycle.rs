@@ -17,12 +17,17 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use super::lindstedt_poincare::{TITLE, inverse_power};
 use super::{Refusal, first_term};
+use crate::derivation::AmplitudeCondition;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::expr::Expr;
 use crate::oscillator::{Parts, PerturbedForce};
 use crate::series::FourierSeries;
 use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
+
+/// The amplitude of a limit cycle before its corrections.
+pub(super) const LEADING: &str = "a0";
 
 /// The square of the amplitude at which the first order has no secular sine; `None` where the amplitude is free.
 pub(super) fn limit_cycle_amplitude(
@@ -71,6 +76,28 @@ pub(super) fn limit_cycle_amplitude(
                 equation: text(),
                 reason: "whose stable positive root is no fraction",
             }),
+    }
+}
+
+/// The secular sine of the first order, which vanishes at the amplitude of the limit cycle.
+pub(super) fn leading_amplitude(
+    force: &PerturbedForce,
+    linear_frequency: &Polynomial,
+    delta: Symbol,
+    squared: &Polynomial,
+) -> AmplitudeCondition {
+    let unknown = Symbol::new(LEADING);
+    let mut sine = Polynomial::zero();
+    for (power, coefficient) in amplitude_equation(force, linear_frequency).iter().enumerate() {
+        let unit = Monomial::power_of(unknown, 2 * power as i32).product(&Monomial::power_of(delta, 1));
+        sine.accumulate(&coefficient.times_monomial(&unit));
+    }
+    sine.negate();
+    let squared = Expr::from(squared);
+    AmplitudeCondition {
+        sine,
+        unknown,
+        value: squared.sqrt().unwrap_or(squared),
     }
 }
 

@@ -27,9 +27,10 @@
 use num_traits::{One, Zero};
 
 use super::expansion::expand_exactly;
-use super::limit_cycle::{limit_cycle, limit_cycle_amplitude, stability};
+use super::limit_cycle::{LEADING, leading_amplitude, limit_cycle, limit_cycle_amplitude, stability};
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
 use super::{Options, Refusal, first_term};
+use crate::derivation::Line;
 use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter, Term};
@@ -86,7 +87,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         None => (Polynomial::symbol(symbol), Amplitude::Free),
         Some(squared) => {
             let root = squared.single_term_root().unwrap_or_else(|| {
-                let name = Symbol::new("a0");
+                let name = Symbol::new(LEADING);
                 definitions.push(Definition {
                     symbol: name,
                     meaning: Expr::from(squared).sqrt().unwrap_or_else(|_| Expr::from(squared)),
@@ -118,6 +119,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         }
     })?;
 
+    let mut steps = series.steps;
+    if let (Some(squared), Some(start)) = (&cycle, steps.first_mut()) {
+        start.amplitude = Some(leading_amplitude(&force, &linear_frequency, delta, squared));
+    }
     let times = |series: Polynomial, factor: &Polynomial| series.product(factor);
     let squared_unit = times(linear_frequency.clone(), &linear_frequency);
     let displacement = series.displacement.map(|coefficient, _| coefficient.product(&unit));
@@ -149,8 +154,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         limit_cycle,
         numerical: false,
         validity,
-        steps: series.steps,
-        derivation: vec![],
+        steps,
+        derivation: vec![Line::equation(Expr::symbol("omega0").integer_power(2)?, &force.linear)],
     })
 }
 

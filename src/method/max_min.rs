@@ -17,21 +17,30 @@
 //! let options = Options { method: Some(Method::MaxMin), ..Options::default() };
 //! let solution = solve(&duffing, &options)?;
 //! assert_eq!(solution.frequency_squared.unwrap().to_string(), "1 + 3*eps*A^2/4");
-//! assert!(solution.derivation[1].ends_with("between 1 and 1 + eps*A^2"));
-//! assert_eq!(solution.derivation[2], "k = 3/4");
+//! let lines: Vec<String> = solution.derivation.iter().map(ToString::to_string).collect();
+//! assert_eq!(lines[2], "at x = A:  q_A = 1 + eps*A^2");
+//! assert_eq!(lines.last().unwrap(), "k = 3/4");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::collections::BTreeMap;
+
 use num_traits::{Signed, Zero};
 
-use super::one_term::{conservative_force, first_order_only, require_odd, solve_by_integral};
+use super::one_term::{
+    compiled, conservative_force, first_order_only, integral_law, law_of, require_odd, solve_by_integral,
+};
 use super::{Options, Refusal};
 use crate::conservative::{split, take_powers};
-use crate::exact::Rational;
-use crate::expr::Expr;
+use crate::decimal::decimal;
+use crate::derivation::{Formula, Line};
+use crate::exact::{Polynomial, Rational};
+use crate::expr::{Expr, Function};
+use crate::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
 use crate::solution::{Method, Solution};
+use crate::symbol::Symbol;
 
 /// The frequency between the bounds of `f(x)/x`.
 ///
@@ -51,31 +60,175 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let at_turning = super::energy_balance::positive_amplitude(&quotient.substitute(coordinate, &amplitude)?)
         .unwrap_or_else(|| quotient.clone());
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
-    solution.derivation = vec![
-        format!("{coordinate}'' + ({quotient})*{coordinate} = 0"),
-        format!("the factor runs between {at_rest} and {at_turning}"),
+    let squared: Formula = Expr::symbol("omega").integer_power(2)?.into();
+    let (rest, end) = (Expr::symbol("q_rest"), Expr::symbol("q_A"));
+    let (lo, hi, share) = (Expr::symbol("lo"), Expr::symbol("hi"), Expr::symbol("k"));
+    let mut lines = vec![
+        Line::equation("q", &quotient).because(format!("{coordinate}'' + q*{coordinate} = 0 with the factor")),
+        Line::equation(rest.clone(), &at_rest).because("at rest"),
+        Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = A")),
     ];
-    let law = solution
-        .frequency_squared
-        .as_ref()
-        .map(Expr::from)
-        .or_else(|| solution.closed_form.as_ref().map(|form| form.value.clone()));
-    let share = law.and_then(|law| {
+    lines.extend(integral_law(oscillator, &force, &solution)?);
+    let law = law_of(&solution);
+    let between = |bounds: [&Expr; 2]| Line::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]));
+    let bounds = match turning_backs(oscillator, &quotient, &force) {
+        None => {
+            lines.push(between([&rest, &end]).because("while f/x runs from one to the other without turning back"));
+            if let Some((place, value)) = stationary_point(&quotient, coordinate)? {
+                lines.push(
+                    Line::equal(place).because("it turns back where the right side is positive and A lies beyond"),
+                );
+                lines.push(Line::equation("q_s", value).because("the bound there"));
+            }
+            format!("omega^2 lies between {at_rest} and {at_turning} wherever f(x)/x is monotonic")
+        }
+        Some(places) if places.is_empty() => {
+            lines.push(between([&rest, &end]).because("f/x runs from one to the other without turning back"));
+            format!("omega^2 lies between {at_rest} and {at_turning}")
+        }
+        Some(places) => {
+            let first = decimal(places[0].0);
+            lines.push(between([&rest, &end]).because(format!("for A up to {first}")));
+            lines.extend(pieces(&places, &at_rest, oscillator, [&end, &lo, &hi])?);
+            lines.push(between([&lo, &hi]).because(format!("for A beyond {first}")));
+            format!(
+                "omega^2 lies between the least and the largest of f(x)/x: {at_rest} and {at_turning} up to A = {first}, \
+                 where f(x)/x turns back"
+            )
+        }
+    };
+    let turns = lines.iter().any(|line| line.equal.first() == Some(&lo.clone().into()));
+    let exact_share = law.as_ref().filter(|_| !turns).and_then(|law| {
         let above = (law - &at_rest).expand().ok()?;
-        let range = (&at_turning - &at_rest).expand().ok()?;
-        quotient_of(&above, &range)
+        quotient_of(&above, &(&at_turning - &at_rest).expand().ok()?)
     });
-    if let Some(share) = share {
-        solution.derivation.push(format!("k = {share}"));
+    if let Some(value) = exact_share {
+        lines.push(Line::equation(share, value));
+    } else if let (Some(law), true) = (law, turns) {
+        lines.push(Line::equation(share, Expr::divide(&(law - &lo), &(&hi - &lo))?));
     }
-    solution
-        .derivation
-        .push("no secular term: omega^2 = lo + k*(hi - lo)".to_owned());
-    solution.validity.insert(
-        0,
-        format!("omega^2 lies between {at_rest} and {at_turning} wherever f(x)/x is monotonic"),
-    );
+    solution.derivation = lines;
+    solution.validity.insert(0, bounds);
     Ok(solution)
+}
+
+/// The most places where `f(x)/x` turns back that are written out.
+const MOST_PIECES: usize = 4;
+
+/// Where `f(x)/x` turns back for `x > 0`, with its value there, up to the end of the well; `None` where that depends on
+/// parameters.
+fn turning_backs(oscillator: &Oscillator, quotient: &Expr, force: &Expr) -> Option<Vec<(f64, f64)>> {
+    /// The search goes through the decades of what a number can be in SI units, so many points in each.
+    const DECADES: i32 = 24;
+    const POINTS: i32 = 48;
+    let coordinate = oscillator.coordinate;
+    // A single power changes one way only.
+    let varying = quotient.terms().iter().filter(|term| term.contains(coordinate));
+    let powers: Vec<bool> = varying.map(|term| is_power(term, coordinate)).collect();
+    if powers == [true] || powers.is_empty() {
+        return Some(vec![]);
+    }
+    if force.symbols().into_iter().any(|symbol| symbol != coordinate) {
+        return None;
+    }
+    let value = compiled(oscillator, quotient, &BTreeMap::new())?;
+    let slope = compiled(oscillator, &quotient.differentiate(coordinate).ok()?, &BTreeMap::new())?;
+    let place = |k: i32| 10_f64.powf(f64::from(k) / f64::from(POINTS));
+    let mut found = Vec::new();
+    let mut before = f64::NAN;
+    for k in -DECADES * POINTS..=DECADES * POINTS {
+        let (x, rate) = (place(k), slope(place(k)));
+        if value(x) <= 0.0 || !value(x).is_finite() || found.len() > MOST_PIECES {
+            break;
+        }
+        // Near rest the slope is lost in rounding: it counts once f/x has moved by more than that.
+        let visible = (rate * x).abs() > 1e-9 * value(x).abs();
+        if visible {
+            if before * rate < 0.0
+                && let Ok(root) = find_root(&slope, place(k - 1), x)
+            {
+                found.push((root, value(root)));
+            }
+            before = rate;
+        }
+    }
+    Some(found)
+}
+
+/// Whether a term is a power of the coordinate times a constant.
+fn is_power(term: &Expr, coordinate: Symbol) -> bool {
+    let (mut outside, mut inside) = split(term, coordinate);
+    take_powers(&mut inside, &mut outside, coordinate).is_some() && inside.is_empty()
+}
+
+/// The bounds beyond each place where `f(x)/x` turns back: the least and the largest so far, or the value at `x = A`.
+fn pieces(
+    places: &[(f64, f64)],
+    at_rest: &Expr,
+    oscillator: &Oscillator,
+    [end, lo, hi]: [&Expr; 3],
+) -> Result<Vec<Line>, Refusal> {
+    let rest = compiled(oscillator, at_rest, &BTreeMap::new()).map_or(f64::NAN, |value| value(0.0));
+    let (mut least, mut largest) = (rest, rest);
+    let mut lines = Vec::new();
+    for (index, &(place, value)) in places.iter().enumerate() {
+        if index == MOST_PIECES {
+            lines.push(Line::words(format!(
+                "f/x goes on turning back beyond {}: left out",
+                decimal(place)
+            )));
+            break;
+        }
+        (least, largest) = (least.min(value), largest.max(value));
+        let number = index + 1;
+        let names = ["L", "H"].map(|letter| Expr::symbol(&format!("{letter}{number}")));
+        lines.push(Line::words(format!(
+            "{x} = {}: f/{x} turns back at {}; up to there the least is L{number} = {}, the largest H{number} = {}",
+            decimal(place),
+            decimal(value),
+            decimal(least),
+            decimal(largest),
+            x = oscillator.coordinate
+        )));
+        let range = match places.get(index + 1) {
+            Some((next, _)) => format!("for A from {} to {}", decimal(place), decimal(*next)),
+            None => format!("for A beyond {}", decimal(place)),
+        };
+        let [least_name, largest_name] = names;
+        let minimum = Expr::function(Function::Minimum, vec![least_name, end.clone()])?;
+        let maximum = Expr::function(Function::Maximum, vec![largest_name, end.clone()])?;
+        lines.push(Line::equation(lo, minimum).because(range));
+        lines.push(Line::equation(hi, maximum));
+    }
+    Ok(lines)
+}
+
+/// Of `a + b x^m + c x^n`: where it is stationary, as `x^(n-m) = -m b/(n c)`, and its value there.
+fn stationary_point(quotient: &Expr, coordinate: Symbol) -> Result<Option<(Vec<Formula>, Expr)>, Refusal> {
+    let Some(polynomial) = quotient.to_polynomial(&mut |_| None)? else {
+        return Ok(None);
+    };
+    let mut by_power: BTreeMap<i32, Polynomial> = BTreeMap::new();
+    for (monomial, number) in polynomial.terms() {
+        let power = by_power
+            .entry(monomial.exponent(coordinate))
+            .or_insert_with(Polynomial::zero);
+        power.add_term(monomial.without(coordinate), number.clone());
+    }
+    let constant = by_power.remove(&0).unwrap_or_else(Polynomial::zero);
+    let powers: Vec<(i32, Polynomial)> = by_power.into_iter().collect();
+    let [(m, b), (n, c)] = powers.as_slice() else {
+        return Ok(None);
+    };
+    let (b, c) = (Expr::from(b), Expr::from(c));
+    let number = |power: i32| Expr::from(i64::from(power));
+    let ratio = Expr::divide(&-&(number(*m) * &b), &(number(*n) * &c))?;
+    let place = Expr::from(coordinate).integer_power(i64::from(n - m))?;
+    // b x^m + c x^n = b x^m (1 - m/n) there.
+    let share = Expr::divide(&number(n - m), &number(*n))?;
+    let power = Expr::power(&ratio, &Expr::divide(&number(*m), &number(n - m))?)?;
+    let value = Expr::from(&constant) + share * b * power;
+    Ok(Some((vec![place.into(), ratio.into()], value)))
 }
 
 fn quotient_of(above: &Expr, below: &Expr) -> Option<Expr> {

@@ -19,8 +19,9 @@ use num_traits::One;
 use super::{Options, Refusal, first_term};
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
+use crate::derivation::{Formula, Line};
 use crate::exact::{Integer, Polynomial};
-use crate::expr::{CompiledFunction, Expr};
+use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
@@ -161,13 +162,16 @@ pub(super) fn solve_by_integral(
     match shared_integral(oscillator, &force) {
         Some(law) => set_law(&mut solution, &law)?,
         None => {
-            solution.by_quadrature = Some(integral_text(&force, oscillator.coordinate, "cos(theta)"));
+            let squared = Expr::symbol("omega").integer_power(2)?;
+            let integral = first_projection(oscillator, &force)?;
+            solution.by_quadrature = Some(vec![Line::equation(squared, integral)]);
         }
     }
     solution
         .validity
         .push("one term: exact for a linear force, the first step beyond it otherwise".to_owned());
     note_even_part(&mut solution, oscillator, &force)?;
+    solution.derivation = integral_law(oscillator, &force, &solution)?;
     Ok(solution)
 }
 
@@ -182,13 +186,36 @@ pub(super) fn note_even_part(solution: &mut Solution, oscillator: &Oscillator, f
     Ok(())
 }
 
-/// The law as an integral over the force, for forces without closed form.
-pub(super) fn integral_text(force: &Expr, coordinate: Symbol, weight: &str) -> String {
-    let along = Expr::symbol("A") * Expr::symbol("theta").cos().unwrap_or_else(|_| Expr::one());
-    let along = force
-        .substitute(coordinate, &along)
-        .map_or_else(|_| "f(A*cos(theta))".to_owned(), |f| f.to_string());
-    format!("omega^2 = (2/(pi*A))*int_0^pi ({along})*{weight} dtheta")
+/// `(2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta`, written out.
+pub(super) fn first_projection(oscillator: &Oscillator, force: &Expr) -> Result<Formula, ExprError> {
+    let (amplitude, cosine) = (Expr::symbol("A"), Expr::symbol("theta").cos()?);
+    let along = force.substitute(oscillator.coordinate, &(&amplitude * &cosine))?;
+    Ok(Formula::Integral {
+        factor: Expr::divide(&Expr::from(2), &(Expr::pi() * amplitude))?,
+        from: Expr::zero(),
+        to: Expr::pi(),
+        integrand: Box::new((along * cosine).into()),
+        variable: "theta".into(),
+    })
+}
+
+/// The condition that the force along the motion has no more of `cos(theta)` than the acceleration, and what it gives.
+pub(super) fn integral_law(oscillator: &Oscillator, force: &Expr, solution: &Solution) -> Result<Vec<Line>, Refusal> {
+    let squared = Expr::symbol("omega").integer_power(2)?;
+    let mut equal = vec![squared.into(), first_projection(oscillator, force)?];
+    equal.extend(law_of(solution).map(Formula::from));
+    Ok(vec![
+        Line::equal(equal).because("no cos(theta) remains in the equation"),
+    ])
+}
+
+/// omega^2 of an answer that has it as a polynomial or in closed form.
+pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
+    let polynomial = solution.frequency_squared.as_ref().map(Expr::from);
+    polynomial.or_else(|| {
+        let form = solution.closed_form.as_ref().filter(|form| form.squared)?;
+        Some(form.value.clone())
+    })
 }
 
 /// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its error: the midpoint

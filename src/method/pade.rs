@@ -24,6 +24,7 @@ use num_traits::{One, Zero};
 
 use super::{Options, Refusal, lindstedt_poincare};
 use crate::decimal::decimal;
+use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational, Ring};
@@ -105,6 +106,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         }
         sum
     };
+    let values = (above.clone(), below.clone());
     let (above, below) = (with_powers(&above), with_powers(&below));
     let value = Expr::divide(&Expr::from(&above), &Expr::from(&below))?;
     let variable = if step == 2 {
@@ -132,8 +134,64 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         poles(&below),
         "the motion is that of Lindstedt-Poincare to its first correction".to_owned(),
     ];
-    solution.derivation = vec![format!("exact series: omega^2 = {law} + ...")];
+    solution.derivation = linear_system(&coefficient, &law, (l, m), &values, &with_powers);
     Ok(solution)
+}
+
+/// The equations for the denominator and then for the numerator, with the coefficients of this series in them.
+fn linear_system(
+    coefficient: &dyn Fn(i64) -> Polynomial,
+    law: &Polynomial,
+    (l, m): (i64, usize),
+    (above, below): &(Vec<Polynomial>, Vec<Polynomial>),
+    with_powers: &dyn Fn(&[Polynomial]) -> Polynomial,
+) -> Vec<Line> {
+    let name = |letter: &str, index: usize| Symbol::new(&format!("{letter}{index}"));
+    let unknown = |j: usize| match j {
+        0 => Polynomial::constant(Rational::one()),
+        _ => Polynomial::symbol(name("q", j)),
+    };
+    let sum = |highest: i64, most: usize| {
+        let mut sum = Polynomial::zero();
+        for j in 0..=most {
+            sum.accumulate(&unknown(j).product(&coefficient(highest - j as i64)));
+        }
+        sum
+    };
+    let value = |polynomial: &Polynomial| {
+        let first = below.first().map_or_else(Expr::one, Expr::from);
+        let polynomial = Expr::from(polynomial);
+        Expr::divide(&polynomial, &first).unwrap_or(polynomial)
+    };
+    let squared = Expr::symbol("omega").integer_power(2).unwrap_or_else(|_| Expr::zero());
+    let numerator: Vec<Polynomial> = (0..above.len()).map(|i| Polynomial::symbol(name("p", i))).collect();
+    let denominator: Vec<Polynomial> = (0..=m).map(unknown).collect();
+    let [numerator, denominator] = [numerator, denominator].map(|names| Expr::from(&with_powers(&names)));
+    let mut lines = vec![Line::equation(squared.clone(), law).because("the exact series begins")];
+    if let Ok(quotient) = Expr::divide(&numerator, &denominator) {
+        lines.push(Line::equation(squared, quotient).because("agrees with"));
+    }
+    for k in 1..=m {
+        let words = match k {
+            1 => "multiplied out, the powers beyond the numerator vanish",
+            _ => "",
+        };
+        lines.push(Line::equation(&sum(l + k as i64, m), Expr::zero()).because(words));
+    }
+    for (j, q) in below.iter().enumerate().skip(1) {
+        let words = if j == 1 { "the denominator" } else { "" };
+        lines.push(Line::equation(name("q", j), value(q)).because(words));
+    }
+    for (i, p) in above.iter().enumerate() {
+        let words = if i == 0 { "the numerator" } else { "" };
+        let (combination, value) = (Expr::from(&sum(i as i64, i.min(m))), value(p));
+        let mut equal: Vec<Formula> = vec![name("p", i).into(), combination.clone().into()];
+        if combination != value {
+            equal.push(value.into());
+        }
+        lines.push(Line::equal(equal).because(words));
+    }
+    lines
 }
 
 /// The terms of one power of the small parameter, without it.

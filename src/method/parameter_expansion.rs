@@ -21,10 +21,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::one_term::{conservative_force, solve_by_integral};
+use super::one_term::{conservative_force, integral_law, solve_by_integral};
 use super::{Options, Refusal, homotopy_perturbation};
+use crate::derivation::{Formula, Line};
+use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+use crate::symbol::Symbol;
 
 /// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the force is no polynomial.
 ///
@@ -39,10 +42,20 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .unwrap_or(if polynomial || options.taylor.is_some() { 2 } else { 1 });
     if order <= 1 && options.taylor.is_none() {
         let mut solution = solve_by_integral(oscillator, options, METHOD)?;
+        let omega = Expr::symbol("omega").integer_power(2)?;
+        let along = Expr::symbol("A") * Expr::symbol("theta").cos()?;
+        let driven = &omega * &along - oscillator.force.substitute(oscillator.coordinate, &along)?;
+        let [start, first] = [0, 1].map(|number| Symbol::new(&format!("{}{number}", oscillator.coordinate)));
+        let left = Formula::Oscillator {
+            of: first,
+            square: omega,
+        };
         solution.derivation = vec![
-            "omega0^2 = omega^2 + p*w1 + ..., x0 = A*cos(omega*t)".to_owned(),
-            "no secular term at p^1:  w1*A + (cos(theta) part of N(A*cos(theta))) = 0".to_owned(),
+            Line::equation(start, along).because("at p^0"),
+            Line::equation(left, driven).because("at p^1, omega0^2 - omega^2 = p*w1 and the nonlinear terms together"),
         ];
+        let law = integral_law(oscillator, &oscillator.force, &solution)?;
+        solution.derivation.extend(law);
         return Ok(solution);
     }
     if !polynomial && options.taylor.is_none() && options.order.is_some() {

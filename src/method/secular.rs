@@ -83,6 +83,19 @@ pub struct Expansion<C> {
     pub right_side: Vec<FourierSeries<C>>,
     /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
     pub removed: Vec<FourierSeries<C>>,
+    /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where it is free.
+    pub amplitudes: Vec<SecularSine<C>>,
+}
+
+/// The condition `sine + slope B_n = 0` of order `n + 1`, which fixes the amplitude of `y_n`.
+#[derive(Clone, Debug)]
+pub struct SecularSine<C> {
+    /// The secular sine with `B_n = 0`.
+    pub sine: FourierSeries<C>,
+    /// Its derivative in `B_n`.
+    pub slope: FourierSeries<C>,
+    /// `B_n`.
+    pub amplitude: FourierSeries<C>,
 }
 
 /// Why no periodic expansion exists.
@@ -169,6 +182,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             displacement: vec![start.clone()],
             right_side: vec![],
             removed: vec![],
+            amplitudes: vec![],
         };
         // y_0'' and -y_0 are the same.
         let detuned = vec![start.times(-1)];
@@ -246,13 +260,19 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             terms.push((-1, first, &self.detuned[0]));
         }
         let change = sum_of_products(&terms);
-        let needed = right_side.sine(1).times(-1);
-        let correction = match needed.is_zero() {
+        let (sine, slope) = (right_side.sine(1), change.sine(1));
+        let correction = match sine.is_zero() {
             true => FourierSeries::zero(),
-            false => needed
-                .divided_by_constant(&change.sine(1))
+            false => sine
+                .times(-1)
+                .divided_by_constant(&slope)
                 .ok_or(SecularError::Degenerate { order })?,
         };
+        self.result.amplitudes.push(SecularSine {
+            sine,
+            slope,
+            amplitude: correction.clone(),
+        });
         self.convolutions.correct(order - 1, &correction, &self.variations);
         let corrected = self.result.displacement[order - 1].sum(&correction.product(&FourierSeries::cos(1)));
         self.detuned[order - 1] = self.detuned(&corrected);

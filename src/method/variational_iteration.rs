@@ -20,8 +20,10 @@
 //! ```
 
 use super::iteration_perturbation::first_iterate;
-use super::one_term::{conservative_force, first_order_only, note_even_part, solve_by_integral};
+use super::one_term::{conservative_force, first_order_only, integral_law, note_even_part, solve_by_integral};
 use super::{Options, Refusal};
+use crate::derivation::{Formula, Line};
+use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 
@@ -35,10 +37,22 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
     first_iterate(&mut solution, oscillator, &force)?;
+    let [amplitude, omega, t, s, first, start] = ["A", "omega", "t", "s", "u1", "u0"].map(Expr::symbol);
+    let along = &amplitude * &(&omega * &s).cos()?;
+    let defect = force.substitute(oscillator.coordinate, &along)? - omega.integer_power(2)? * &along;
+    let multiplier = Expr::divide(&(&omega * &(s - &t)).sin()?, &omega)?;
+    let functional = Formula::Integral {
+        factor: Expr::one(),
+        from: Expr::zero(),
+        to: t.clone(),
+        integrand: Box::new((multiplier * defect).into()),
+        variable: "s".into(),
+    };
     solution.derivation = vec![
-        "u1 = u0 + int_0^t sin(omega*(s - t))/omega*(u0'' + f(u0)) ds, u0 = A*cos(omega*t)".to_owned(),
-        "no term t*sin(omega*t):  omega^2 = c1/A, c1 the cos(theta) part of f(A*cos(theta))".to_owned(),
+        Line::equation(start.clone(), &amplitude * &(&omega * &t).cos()?).because("first iterate"),
+        Line::equation(first - start, functional).because("correction functional"),
     ];
+    solution.derivation.extend(integral_law(oscillator, &force, &solution)?);
     solution.validity.retain(|line| !line.starts_with("the even part"));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)

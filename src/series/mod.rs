@@ -4,5 +4,6 @@
 pub mod convolution;
 pub mod fourier;
 pub mod taylor;
+pub mod terms;
 
 pub use fourier::FourierSeries;

@@ -2,12 +2,12 @@
 
 use num_traits::Zero;
 
+use super::FourierSeries;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
-use crate::series::FourierSeries;
 
 /// How a format writes a harmonic.
-pub(super) struct Notation {
+pub struct Notation {
     /// `cos(3*theta)` from `"cos"` and 3; never asked for the zeroth harmonic.
     pub wave: fn(&str, usize) -> String,
     /// What stands between coefficient and harmonic.
@@ -17,7 +17,7 @@ pub(super) struct Notation {
 }
 
 /// Terms joined by their signs; `0` where there are none.
-pub(super) fn sum(terms: impl IntoIterator<Item = String>) -> String {
+pub fn sum(terms: impl IntoIterator<Item = String>) -> String {
     let mut text = String::new();
     for term in terms {
         match (text.is_empty(), term.strip_prefix('-')) {
@@ -30,7 +30,7 @@ pub(super) fn sum(terms: impl IntoIterator<Item = String>) -> String {
 }
 
 /// A polynomial, its terms in the order of `key`.
-pub(super) fn polynomial(
+pub fn polynomial(
     polynomial: &Polynomial,
     key: impl Fn(&Monomial) -> i32,
     term: impl Fn(&Monomial, &Rational) -> String,
@@ -43,7 +43,7 @@ pub(super) fn polynomial(
 }
 
 /// The terms of a Fourier series, a minus in front of those that have one; `law` writes a coefficient.
-pub(super) fn waves(
+pub fn waves(
     series: &FourierSeries<Polynomial>,
     law: impl Fn(&Polynomial) -> String,
     notation: &Notation,
@@ -73,7 +73,7 @@ pub(super) fn waves(
 }
 
 /// The lines of a motion: `first` before the first term, `next` before the others, each with its sign.
-pub(super) fn lines(waves: &[String], first: &str, next: &str) -> Vec<String> {
+pub fn lines(waves: &[String], first: &str, next: &str) -> Vec<String> {
     let line = |(index, wave): (usize, &String)| match (index, wave.strip_prefix('-')) {
         (0, _) => format!("{first}{wave}"),
         (_, Some(rest)) => format!("{next}- {rest}"),

@@ -1,0 +1,262 @@
+//! How an answer came about, as it stands on paper: the orders of an expansion, and lines of words and equations.
+//!
+//! What prints as text prints as LaTeX: both read the same formulas.
+
+use std::fmt;
+
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::series::FourierSeries;
+use crate::series::terms::{self, Notation};
+use crate::symbol::Symbol;
+
+/// One order of an expansion, `y_n'' + y_n = right_side + (resonance + W_n) cos(theta)`, in units of the amplitude and of the
+/// linear frequency (of omega in homotopy perturbation). Every part carries its power of the small parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The order `n`; at order zero there is no force, and `y_0 = cos(theta)`.
+    pub order: u32,
+    /// What drives `y_n` beside the secular term.
+    pub right_side: FourierSeries<Polynomial>,
+    /// The coefficient of the secular `cos(theta)` that the nonlinear terms leave.
+    pub resonance: Polynomial,
+    /// `W_n`, which the secular condition fixes.
+    pub correction: Polynomial,
+    /// What pins down the homogeneous solution.
+    pub conditions: Vec<Condition>,
+    /// `y_n`.
+    pub displacement: FourierSeries<Polynomial>,
+    /// Limit cycles: what fixes the amplitude of `y_n`.
+    pub amplitude: Option<AmplitudeCondition>,
+}
+
+/// What a homogeneous solution is chosen by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// `y_n(0)` has this value.
+    Position(i64),
+    /// `y_n'(0) = 0`.
+    AtRest,
+    /// `y_n` has no `cos(theta)`.
+    NoCosine,
+    /// `y_n` has no `sin(theta)`.
+    NoSine,
+}
+
+/// The secular sine of the next order set to zero, which fixes the `cos(theta)` part of `y_n` (`a0`, `B1`, `B2`, ...).
+#[derive(Clone, Debug, PartialEq)]
+pub struct AmplitudeCondition {
+    /// The coefficient of the secular `sin(theta)`, which must vanish.
+    pub sine: Polynomial,
+    /// The amplitude in it.
+    pub unknown: Symbol,
+    /// Its value.
+    pub value: Expr,
+}
+
+/// One line of a derivation: words, an equation, or an equation with the reason for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What is done; may be empty.
+    pub words: String,
+    /// Formulas that are equal, from left to right; may be empty.
+    pub equal: Vec<Formula>,
+}
+
+/// What a line is made of: an expression, or what no expression of the grammar can say.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Formula {
+    /// An expression.
+    Expression(Expr),
+    /// A motion or a force along it.
+    Waves(FourierSeries<Polynomial>),
+    /// `y'' + square*y`, derivatives in theta or, with `square` = omega^2, in time.
+    Oscillator {
+        /// `y`.
+        of: Symbol,
+        /// What stands before `y`.
+        square: Expr,
+    },
+    /// `y(0)`, or `y'(0)`.
+    AtZero {
+        /// `y`.
+        of: Symbol,
+        /// The number of derivatives.
+        derivatives: usize,
+    },
+    /// `factor * int_from^to integrand d(variable)`.
+    Integral {
+        /// What stands before the integral.
+        factor: Expr,
+        /// The lower end.
+        from: Expr,
+        /// The upper end.
+        to: Expr,
+        /// What is integrated.
+        integrand: Box<Self>,
+        /// Over which variable.
+        variable: Symbol,
+    },
+    /// `numerator/sqrt(inside)`.
+    OverRoot(Expr, Box<Self>),
+    /// `factor * d(of)/d(by)`.
+    Slope {
+        /// What stands before the derivative.
+        factor: Expr,
+        /// What is differentiated.
+        of: Symbol,
+        /// By what.
+        by: Symbol,
+    },
+}
+
+impl Line {
+    /// Words alone.
+    pub fn words(words: impl Into<String>) -> Self {
+        Self {
+            words: words.into(),
+            equal: vec![],
+        }
+    }
+
+    /// Formulas that are equal.
+    pub fn equal(formulas: impl IntoIterator<Item = Formula>) -> Self {
+        Self {
+            words: String::new(),
+            equal: formulas.into_iter().collect(),
+        }
+    }
+
+    /// An equation between two expressions.
+    pub fn equation(left: impl Into<Formula>, right: impl Into<Formula>) -> Self {
+        Self::equal([left.into(), right.into()])
+    }
+
+    /// The same line with words in front of it.
+    pub fn because(self, words: impl Into<String>) -> Self {
+        Self {
+            words: words.into(),
+            ..self
+        }
+    }
+}
+
+impl From<Expr> for Formula {
+    fn from(expression: Expr) -> Self {
+        Self::Expression(expression)
+    }
+}
+
+impl From<&Expr> for Formula {
+    fn from(expression: &Expr) -> Self {
+        Self::Expression(expression.clone())
+    }
+}
+
+impl From<&str> for Formula {
+    /// A name.
+    fn from(name: &str) -> Self {
+        Self::Expression(Expr::symbol(name))
+    }
+}
+
+impl From<Symbol> for Formula {
+    fn from(name: Symbol) -> Self {
+        Self::Expression(Expr::from(name))
+    }
+}
+
+impl From<&Polynomial> for Formula {
+    fn from(polynomial: &Polynomial) -> Self {
+        Self::Waves(FourierSeries::constant(polynomial.clone(), 1.into()))
+    }
+}
+
+impl From<FourierSeries<Polynomial>> for Formula {
+    fn from(series: FourierSeries<Polynomial>) -> Self {
+        Self::Waves(series)
+    }
+}
+
+/// Harmonics as they are typed: `cos(3*theta)`.
+pub const NOTATION: Notation = Notation {
+    wave: |function, k| match k {
+        1 => format!("{function}(theta)"),
+        _ => format!("{function}({k}*theta)"),
+    },
+    times: "*",
+    brackets: ["(", ")"],
+};
+
+impl fmt::Display for Line {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.words)?;
+        if !self.words.is_empty() && !self.equal.is_empty() {
+            formatter.write_str(":  ")?;
+        }
+        for (index, formula) in self.equal.iter().enumerate() {
+            let sign = if index == 0 { "" } else { " = " };
+            write!(formatter, "{sign}{formula}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Formula {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Expression(expression) => write!(formatter, "{expression}"),
+            Self::Waves(series) => {
+                let waves = terms::waves(series, ToString::to_string, &NOTATION);
+                formatter.write_str(&terms::sum(waves))
+            }
+            Self::Oscillator { of, square } => {
+                let linear = square * &Expr::from(*of);
+                write!(formatter, "{of}'' + {linear}")
+            }
+            Self::AtZero { of, derivatives } => write!(formatter, "{of}{}(0)", "'".repeat(*derivatives)),
+            Self::Integral {
+                factor,
+                from,
+                to,
+                integrand,
+                variable,
+            } => {
+                let end =
+                    |end: &Expr| match end.symbols().is_empty() && end.terms().len() < 2 || end.as_symbol().is_some() {
+                        true => end.to_string(),
+                        false => format!("({end})"),
+                    };
+                let inside = match integrand.as_ref() {
+                    Self::Expression(sum) if sum.terms().len() > 1 => format!("({sum})"),
+                    other => other.to_string(),
+                };
+                write!(
+                    formatter,
+                    "{}int_{}^{} {inside} d{variable}",
+                    before(factor),
+                    end(from),
+                    end(to)
+                )
+            }
+            Self::OverRoot(numerator, inside) => write!(formatter, "{}/sqrt({inside})", bracketed(numerator)),
+            Self::Slope { factor, of, by } => write!(formatter, "{}d{of}/d{by}", before(factor)),
+        }
+    }
+}
+
+/// A factor in front of something that is no expression.
+fn before(factor: &Expr) -> String {
+    match *factor == Expr::one() {
+        true => String::new(),
+        false => format!("{}*", bracketed(factor)),
+    }
+}
+
+fn bracketed(factor: &Expr) -> String {
+    let text = factor.to_string();
+    match factor.terms().len() > 1 || text.contains('/') {
+        true => format!("({text})"),
+        false => text,
+    }
+}

@@ -1,0 +1,292 @@
+//! The derivation of an answer, for someone who wants to follow it with a pencil: as text, and as LaTeX for a slide.
+
+use std::fmt::Write as _;
+
+use num_traits::Zero;
+
+use super::latex::{self, symbol};
+use super::text::by_order;
+use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, NOTATION, Step};
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::series::FourierSeries;
+use crate::series::terms;
+use crate::solution::{Method, Solution};
+use crate::symbol::Symbol;
+
+/// Whether everything stands in units of omega, and `p` marks the orders.
+fn is_homotopy(solution: &Solution) -> bool {
+    matches!(
+        solution.method,
+        Method::HomotopyPerturbation | Method::ParameterExpansion
+    )
+}
+
+/// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its corrections.
+fn unit(solution: &Solution) -> Symbol {
+    let leading = solution.steps.first().and_then(|step| step.amplitude.as_ref());
+    leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)
+}
+
+/// The derivation as text: the orders of an expansion, or the lines of any other method; empty where there is nothing to show.
+pub fn text(solution: &Solution) -> String {
+    if solution.steps.is_empty() && solution.derivation.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("Derivation\n");
+    if !solution.steps.is_empty() {
+        let (name, unit) = (solution.coordinate(), unit(solution));
+        let frame = match is_homotopy(solution) {
+            true => [
+                format!("{name} = {unit}*(y0 + p*y1 + p^2*y2 + ...), theta = omega*t, derivatives in theta"),
+                "omega0^2 = omega^2*(1 - p*W1 - p^2*W2 - ...); the nonlinear terms stand at p, all in units of omega^2"
+                    .to_owned(),
+            ],
+            false => [
+                format!("{name} = {unit}*(y0 + y1 + y2 + ...), theta = omega*t, derivatives in theta"),
+                "omega^2 = omega0^2*(1 + W1 + W2 + ...); each order carries its power of the small parameter"
+                    .to_owned(),
+            ],
+        };
+        for line in frame {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    for line in &solution.derivation {
+        let _ = writeln!(text, "  {line}");
+    }
+    for step in &solution.steps {
+        for line in order_as_text(step, solution) {
+            let _ = writeln!(text, "{line}");
+        }
+    }
+    if solution.steps.is_empty() {
+        text.push('\n');
+    }
+    text
+}
+
+fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
+    let n = step.order;
+    let waves = |series: &FourierSeries<Polynomial>| {
+        terms::sum(terms::waves(
+            series,
+            |coefficient| by_order(coefficient, solution),
+            &NOTATION,
+        ))
+    };
+    let conditions: Vec<String> = step
+        .conditions
+        .iter()
+        .map(|condition| condition_as_text(*condition, n))
+        .collect();
+    let mut lines = vec![format!("\n  order {n}")];
+    if n == 0 {
+        lines.push("    y0'' + y0 = 0".to_owned());
+    } else {
+        let secular = secular_terms(step, |resonance| by_order(resonance, solution), format!("W{n}"));
+        let driven = terms::waves(
+            &step.right_side,
+            |coefficient| by_order(coefficient, solution),
+            &NOTATION,
+        );
+        let resonant = match step.resonance.is_zero() {
+            true => format!("{secular}*cos(theta)"),
+            false => format!("({secular})*cos(theta)"),
+        };
+        lines.push(format!(
+            "    y{n}'' + y{n} = {}",
+            terms::sum(driven.into_iter().chain([resonant]))
+        ));
+        lines.push(format!("    no secular cos(theta):  {secular} = 0"));
+        if !step.resonance.is_zero() {
+            lines.push(format!(
+                "    fixes               W{n} = {}",
+                by_order(&step.correction, solution)
+            ));
+        }
+    }
+    lines.push(format!("    with                {}", conditions.join(", ")));
+    if let Some(AmplitudeCondition { sine, unknown, value }) = &step.amplitude {
+        lines.push(format!(
+            "    no secular sin(theta) at order {}:  {} = 0",
+            n + 1,
+            by_order(sine, solution)
+        ));
+        let what = match n {
+            0 => "the amplitude of the limit cycle".to_owned(),
+            _ => format!("the cos(theta) of y{n}"),
+        };
+        lines.push(format!("    fixes               {unknown} = {value}, {what}"));
+    }
+    lines.push(format!("    y{n} = {}", waves(&step.displacement)));
+    lines
+}
+
+/// `resonance + W_n`, the coefficient that must vanish.
+fn secular_terms(step: &Step, law: impl Fn(&Polynomial) -> String, correction: String) -> String {
+    match step.resonance.is_zero() {
+        true => correction,
+        false => format!("{} + {correction}", law(&step.resonance)),
+    }
+}
+
+fn condition_as_text(condition: Condition, n: u32) -> String {
+    match condition {
+        Condition::Position(value) => format!("y{n}(0) = {value}"),
+        Condition::AtRest => format!("y{n}'(0) = 0"),
+        Condition::NoCosine => format!("no cos(theta) in y{n}"),
+        Condition::NoSine => format!("no sin(theta) in y{n}"),
+    }
+}
+
+/// The derivation as LaTeX.
+pub fn latex(solution: &Solution) -> String {
+    if solution.steps.is_empty() && solution.derivation.is_empty() {
+        return String::new();
+    }
+    let mut lines = Vec::new();
+    if !solution.steps.is_empty() {
+        let (name, unit) = (symbol(solution.coordinate().into()), symbol(unit(solution)));
+        let (motion, squared) = match is_homotopy(solution) {
+            true => (
+                "y_{0} + p y_{1} + p^{2} y_{2} + \\dots",
+                "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - p W_{1} - p^{2} W_{2} - \\dots\\right)",
+            ),
+            false => (
+                "y_{0} + y_{1} + y_{2} + \\dots",
+                "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",
+            ),
+        };
+        lines.push(format!(
+            "{name} &= {unit} \\left({motion}\\right), \\qquad \\theta = \\omega t"
+        ));
+        lines.push(squared.to_owned());
+    }
+    lines.extend(solution.derivation.iter().flat_map(line_as_latex));
+    for step in &solution.steps {
+        lines.extend(order_as_latex(step, solution));
+    }
+    format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"))
+}
+
+fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
+    let n = step.order;
+    let law = |polynomial: &Polynomial| latex::law(polynomial, solution);
+    let conditions: Vec<String> = step
+        .conditions
+        .iter()
+        .map(|condition| condition_as_latex(*condition, n))
+        .collect();
+    let conditions = conditions.join(", \\quad ");
+    let mut lines = Vec::new();
+    if n == 0 {
+        lines.push("y_{0}'' + y_{0} &= 0".to_owned());
+    } else {
+        let secular = secular_terms(step, law, format!("W_{{{n}}}"));
+        let resonant = match step.resonance.is_zero() {
+            true => format!("{secular} \\cos \\theta"),
+            false => format!("\\left({secular}\\right) \\cos \\theta"),
+        };
+        let driven = latex::waves(&step.right_side, solution);
+        let right_side = terms::sum(driven.into_iter().chain([resonant]));
+        lines.push(format!("y_{{{n}}}'' + y_{{{n}}} &= {right_side}"));
+        let fixes = match step.resonance.is_zero() {
+            true => String::new(),
+            false => format!(" \\quad\\Rightarrow\\quad W_{{{n}}} = {}", law(&step.correction)),
+        };
+        lines.push(format!("{secular} &= 0{fixes}"));
+    }
+    if let Some(condition) = &step.amplitude {
+        lines.push(format!(
+            "{} &= 0 \\quad\\Rightarrow\\quad {} = {} \\qquad \\text{{(no secular $\\sin \\theta$ at order {})}}",
+            law(&condition.sine),
+            symbol(condition.unknown),
+            latex::expression(&condition.value),
+            n + 1
+        ));
+    }
+    let displacement = terms::sum(latex::waves(&step.displacement, solution));
+    lines.push(format!("y_{{{n}}} &= {displacement}, \\qquad {conditions}"));
+    lines
+}
+
+fn condition_as_latex(condition: Condition, n: u32) -> String {
+    match condition {
+        Condition::Position(value) => format!("y_{{{n}}}(0) = {value}"),
+        Condition::AtRest => format!("y_{{{n}}}'(0) = 0"),
+        Condition::NoCosine => format!("\\text{{no $\\cos \\theta$ in $y_{{{n}}}$}}"),
+        Condition::NoSine => format!("\\text{{no $\\sin \\theta$ in $y_{{{n}}}$}}"),
+    }
+}
+
+/// A line of a derivation as rows of `align*`: its words above its equation.
+pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
+    let mut rows = Vec::new();
+    if !line.words.is_empty() {
+        let colon = if line.equal.is_empty() { "" } else { ":" };
+        rows.push(format!("&\\text{{{}{colon}}}", latex::words(&line.words)));
+    }
+    if let Some((first, rest)) = line.equal.split_first() {
+        let rest: Vec<String> = rest.iter().map(formula_as_latex).collect();
+        rows.push(format!("{} &= {}", formula_as_latex(first), rest.join(" = ")));
+    }
+    rows
+}
+
+fn formula_as_latex(formula: &Formula) -> String {
+    match formula {
+        Formula::Expression(expression) => latex::expression(expression),
+        Formula::Waves(series) => terms::sum(terms::waves(
+            series,
+            |coefficient| latex::expression(&Expr::from(coefficient)),
+            &latex::NOTATION,
+        )),
+        Formula::Oscillator { of, square } => {
+            let linear = latex::expression(&(square * &Expr::from(*of)));
+            format!("{}'' + {linear}", symbol(*of))
+        }
+        Formula::AtZero { of, derivatives } => format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives)),
+        Formula::Integral {
+            factor,
+            from,
+            to,
+            integrand,
+            variable,
+        } => {
+            let inside = match integrand.as_ref() {
+                Formula::Expression(sum) if sum.terms().len() > 1 => {
+                    format!("\\left({}\\right)", latex::expression(sum))
+                }
+                other => formula_as_latex(other),
+            };
+            format!(
+                "{}\\int_{{{}}}^{{{}}} {inside} \\, \\mathrm{{d}}{}",
+                before(factor),
+                latex::expression(from),
+                latex::expression(to),
+                symbol(*variable)
+            )
+        }
+        Formula::OverRoot(numerator, inside) => format!(
+            "\\frac{{{}}}{{\\sqrt{{{}}}}}",
+            latex::expression(numerator),
+            formula_as_latex(inside)
+        ),
+        Formula::Slope { factor, of, by } => format!(
+            "{}\\frac{{\\mathrm{{d}}{}}}{{\\mathrm{{d}}{}}}",
+            before(factor),
+            symbol(*of),
+            symbol(*by)
+        ),
+    }
+}
+
+/// A factor in front of something that is no expression.
+fn before(factor: &Expr) -> String {
+    match (*factor == Expr::one(), factor.terms().len() > 1) {
+        (true, _) => String::new(),
+        (_, true) => format!("\\left({}\\right) ", latex::expression(factor)),
+        _ => format!("{} ", latex::expression(factor)),
+    }
+}

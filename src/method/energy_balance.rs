@@ -56,14 +56,22 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         }
         None => {
             let amplitude = Expr::symbol("A");
-            let integral = Formula::Integral {
-                factor: Expr::divide(&Expr::from(4), &amplitude.integer_power(2)?)?,
-                from: Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?,
-                to: amplitude,
-                integrand: Box::new(force.into()),
+            let eighth = Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?;
+            let work = |factor: Expr| Formula::Integral {
+                factor,
+                from: eighth.clone(),
+                to: amplitude.clone(),
+                integrand: Box::new((&force).into()),
                 variable: oscillator.coordinate,
             };
             let squared = Expr::symbol("omega").integer_power(2)?;
+            let quarter = Expr::divide(&amplitude.integer_power(2)?, &Expr::from(4))?;
+            let integral = work(Expr::divide(&Expr::one(), &quarter)?);
+            solution.derivation = vec![
+                Line::equation(&squared * &quarter, work(Expr::one()))
+                    .because("kinetic energy of A*cos(theta) at theta = pi/4, from the work of the force"),
+                Line::equation(squared.clone(), integral.clone()),
+            ];
             solution.by_quadrature = Some(vec![Line::equation(squared, integral)]);
         }
     }

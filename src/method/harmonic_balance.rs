@@ -67,7 +67,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         && let Some(law) = shared_integral(oscillator, &force)
     {
         set_law(&mut solution, &law)?;
-        solution.derivation = integral_law(oscillator, &force, &solution)?;
+        solution.derivation = vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+        let law = integral_law(oscillator, &force, &solution)?;
+        solution.derivation.extend(law);
         solution
             .validity
             .push("one harmonic: exact for a linear force, the first step beyond it otherwise".to_owned());

@@ -171,7 +171,9 @@ pub(super) fn solve_by_integral(
         .validity
         .push("one term: exact for a linear force, the first step beyond it otherwise".to_owned());
     note_even_part(&mut solution, oscillator, &force)?;
-    solution.derivation = integral_law(oscillator, &force, &solution)?;
+    solution.derivation = vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+    let law = integral_law(oscillator, &force, &solution)?;
+    solution.derivation.extend(law);
     Ok(solution)
 }
 

@@ -2,12 +2,17 @@
 //!
 //! A formula without its amplitude convention, order and validity is half a formula, so all of them travel together.
 
+mod branch;
+
 use std::fmt;
 
-use num_traits::{One, Zero};
+use num_traits::One;
+
+pub use branch::Branch;
 
 use crate::derivation::{Line, Step};
 use crate::exact::Polynomial;
+use crate::exact::polynomial::Monomial;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
@@ -406,8 +411,11 @@ impl Solution {
         if let Some(law) = &self.frequency_squared {
             return self.evaluate(law, value_of).ok();
         }
-        if let Some(relation) = &self.relation {
-            return self.continued_root(relation, value_of);
+        if self.relation.is_some() {
+            return match self.branch_at(value_of)? {
+                Branch::At(squared) => Some(squared),
+                Branch::Ends(_) => None,
+            };
         }
         if let Some(form) = &self.closed_form {
             let value = self.evaluate_expression(&form.value, value_of)?;
@@ -427,54 +435,31 @@ impl Solution {
         expression.evaluate(&values).ok()
     }
 
-    fn continued_root(&self, relation: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
-        const LONGEST_STEP: f64 = 1.0 / 32.0;
-        const SHORTEST_STEP: f64 = 1e-9;
+    /// The branch of the relation that starts at the linear frequency, at given values; `None` where there is no relation, a
+    /// value is missing, or the branch has no start.
+    pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
+        let relation = self.relation.as_ref()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
-        let highest = usize::try_from(relation.exponent_range(omega)?.1 / 2).ok()?;
-        // One polynomial in z = omega^2 for each step of the amplitude.
-        let coefficients = |part: f64| {
-            let value = |symbol| {
-                if symbol == amplitude {
-                    Some(part * value_of(symbol)?)
-                } else {
-                    value_of(symbol)
-                }
-            };
-            let mut coefficients = vec![Polynomial::zero(); highest + 1];
-            for (monomial, number) in relation.terms() {
-                let power = usize::try_from(monomial.exponent(omega) / 2).ok()?;
-                coefficients[power].add_term(monomial.without(omega), number.clone());
+        let mut sizes: Vec<(Symbol, branch::Scaled)> = Vec::new();
+        for symbol in relation.symbols() {
+            if symbol != omega && symbol != amplitude {
+                let value = self.evaluate(&Polynomial::symbol(symbol), value_of).ok()?;
+                sizes.push((symbol, branch::Scaled::new(value)));
             }
-            coefficients
-                .iter()
-                .map(|entry| self.evaluate(entry, &value).ok())
-                .collect::<Option<Vec<f64>>>()
+        }
+        let term = |(monomial, number): (&Monomial, &Rational)| {
+            let mut coefficient = branch::Scaled::new(to_f64(number));
+            for (symbol, size) in &sizes {
+                coefficient = coefficient.product(size.power(monomial.exponent(*symbol)));
+            }
+            branch::Term {
+                coefficient,
+                amplitude: monomial.exponent(amplitude),
+                frequency: monomial.exponent(omega) / 2,
+            }
         };
-        // At rest the relation is z^(n-1) (z - omega0^2).
-        let at_rest = coefficients(0.0)?;
-        let mut z = -at_rest[highest.checked_sub(1)?] / at_rest[highest];
-        if z == 0.0 {
-            // Without a linear part nothing can be continued from rest: of a relation that is homogeneous in the amplitude
-            // the largest root is the one that the first order, its only root, goes over into.
-            return largest_root(&coefficients(1.0)?);
-        }
-        let (mut part, mut step) = (0.0, LONGEST_STEP);
-        while part < 1.0 {
-            let next = f64::min(part + step, 1.0);
-            match newton(&coefficients(next)?, z) {
-                // A root that moved little is the same branch; any other asks for a shorter step.
-                Some(root) if root > 0.0 && (root / z).ln().abs() < 0.2 => {
-                    (z, part) = (root, next);
-                    step = f64::min(2.0 * step, LONGEST_STEP);
-                }
-                _ => step *= 0.5,
-            }
-            if step < SHORTEST_STEP {
-                return None;
-            }
-        }
-        Some(z)
+        let terms: Vec<branch::Term> = relation.terms().map(term).collect();
+        branch::follow(&terms, value_of(amplitude).unwrap_or(0.0))
     }
 
     /// The motion as a numerical Fourier series in `theta`.
@@ -510,37 +495,4 @@ impl Solution {
                 .iter()
                 .any(|definition| definition.meaning.contains(amplitude))
     }
-}
-
-/// The largest real root: Newton's iteration from above all roots.
-fn largest_root(coefficients: &[f64]) -> Option<f64> {
-    let (leading, rest) = coefficients.split_last()?;
-    let bound = 1.0 + rest.iter().map(|value| (value / leading).abs()).fold(0.0, f64::max);
-    newton(coefficients, bound)
-}
-
-/// The root of a polynomial, lowest coefficient first, that Newton's iteration reaches from `start`; `None` where it does
-/// not settle, as it does not where two roots meet.
-fn newton(coefficients: &[f64], start: f64) -> Option<f64> {
-    const ITERATIONS: usize = 400;
-    let mut root = start;
-    for _ in 0..ITERATIONS {
-        let horner = |(value, slope): (f64, f64), coefficient: &f64| (value * root + coefficient, slope * root + value);
-        let (value, slope) = coefficients.iter().rev().fold((0.0, 0.0), horner);
-        let change = value / slope;
-        root -= change;
-        if change.abs() <= 1e-15 * root.abs() || value == 0.0 {
-            return Some(root);
-        }
-    }
-    // The last digits may go on turning in a circle.
-    let scale = coefficients
-        .iter()
-        .rev()
-        .fold(0.0, |sum, coefficient| sum * root.abs() + coefficient.abs());
-    let value = coefficients
-        .iter()
-        .rev()
-        .fold(0.0, |sum, coefficient| sum * root + coefficient);
-    (value.abs() <= 1e-14 * scale).then_some(root)
 }

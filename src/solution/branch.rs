@@ -1,0 +1,381 @@
+//! The branch of a relation between frequency and amplitude that starts at the linear frequency, followed in the amplitude.
+//!
+//! References: E. L. Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM 2003, chapter 2 (prediction
+//! along the tangent, correction by Newton's iteration); S. Smale, *Newton's method estimates from data at one point*, 1986
+//! (how far other roots are, from the derivatives at one root).
+//!
+//! ```text
+//! F(z, A) = sum_i c_i A^(p_i) z^(q_i) = 0,   z = omega^2,   d ln z/d ln A = - sum p_i c_i A^(p_i) z^(q_i) / sum q_i c_i A^(p_i) z^(q_i)
+//! at small A:  z = w A^m, m the least p/(n - q) over all terms, n the highest power of z; m = 0 and w = omega0^2 where the
+//!              force has a linear part; of several roots w the largest
+//! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
+//! ```
+//!
+//! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots.
+//! Mantissa and binary exponent are kept apart: at order 20 the terms span far more than the range of doubles.
+
+/// A term `coefficient A^amplitude z^frequency`.
+pub(super) struct Term {
+    pub(super) coefficient: Scaled,
+    pub(super) amplitude: i32,
+    pub(super) frequency: i32,
+}
+
+/// `mantissa * 2^exponent`, the mantissa zero or of a size between 1 and 2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scaled {
+    mantissa: f64,
+    exponent: i64,
+}
+
+impl Scaled {
+    pub(super) fn new(value: f64) -> Self {
+        // Subnormal numbers have no exponent of their own.
+        let (value, shift) = if value.abs() < f64::MIN_POSITIVE {
+            (value * 2.0_f64.powi(100), 100)
+        } else {
+            (value, 0)
+        };
+        if value == 0.0 || !value.is_finite() {
+            return Self {
+                mantissa: value,
+                exponent: 0,
+            };
+        }
+        let exponent = ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+        Self {
+            mantissa: value / 2.0_f64.powi(exponent as i32),
+            exponent: exponent - shift,
+        }
+    }
+
+    pub(super) fn product(self, other: Self) -> Self {
+        let product = Self::new(self.mantissa * other.mantissa);
+        Self {
+            exponent: product.exponent + self.exponent + other.exponent,
+            ..product
+        }
+    }
+
+    pub(super) fn power(self, exponent: i32) -> Self {
+        let base = if exponent < 0 { self.inverse() } else { self };
+        let (mut result, mut square, mut left) = (Self::new(1.0), base, exponent.unsigned_abs());
+        while left > 0 {
+            if left % 2 == 1 {
+                result = result.product(square);
+            }
+            square = square.product(square);
+            left /= 2;
+        }
+        result
+    }
+
+    fn inverse(self) -> Self {
+        let inverse = Self::new(1.0 / self.mantissa);
+        Self {
+            exponent: inverse.exponent - self.exponent,
+            ..inverse
+        }
+    }
+
+    /// The number in units of `2^unit`.
+    fn in_units(self, unit: i64) -> f64 {
+        let exponent = (self.exponent - unit).clamp(-2200, 2200) as i32;
+        // In two steps: the first power alone may underflow where the product does not.
+        self.mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
+    }
+
+    fn logarithm(self) -> f64 {
+        self.mantissa.abs().ln() + self.exponent as f64 * std::f64::consts::LN_2
+    }
+}
+
+/// The branch at an amplitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Branch {
+    /// omega^2 there.
+    At(f64),
+    /// The branch goes no farther than this amplitude: it turns back there, or its frequency reaches zero.
+    Ends(f64),
+}
+
+/// Follows the branch from rest to `amplitude`; `None` where it has no start, or a value is not finite.
+pub(super) fn follow(terms: &[Term], amplitude: f64) -> Option<Branch> {
+    const LONGEST: f64 = 0.5;
+    const SHORTEST: f64 = 1e-11;
+    if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
+        return None;
+    }
+    let relation = Relation {
+        highest: terms.iter().map(|term| term.frequency).max()?,
+        terms,
+    };
+    let target = Scaled::new(amplitude);
+    let (mut at, mut z) = relation.start(target)?;
+    let (mut length, goal) = (LONGEST / 8.0, target.logarithm());
+    while at.logarithm() < goal {
+        let left = goal - at.logarithm();
+        let step = f64::min(length, left);
+        let next = if step == left {
+            target
+        } else {
+            at.product(Scaled::new(step.exp()))
+        };
+        let predicted = relation
+            .tangent(at, z)
+            .map(|slope| z.product(Scaled::new((slope * step).exp())));
+        match predicted.and_then(|predicted| relation.corrected(next, predicted)) {
+            Some(found) => {
+                (at, z) = (next, found);
+                if step == left {
+                    break;
+                }
+                length = f64::min(2.0 * length, LONGEST);
+            }
+            None => length = 0.5 * step,
+        }
+        if length < SHORTEST {
+            return Some(Branch::Ends(at.in_units(0)));
+        }
+    }
+    Some(Branch::At(z.in_units(0))).filter(|branch| matches!(branch, Branch::At(z) if z.is_finite()))
+}
+
+struct Relation<'a> {
+    terms: &'a [Term],
+    highest: i32,
+}
+
+impl Relation<'_> {
+    /// Every term at an amplitude and `z = u 2^k`, as what stands before `u^q`, all in one unit in which the largest is of
+    /// order one.
+    fn values(&self, amplitude: Scaled, k: i64) -> Vec<f64> {
+        let value = |term: &Term| {
+            let value = term.coefficient.product(amplitude.power(term.amplitude));
+            Scaled {
+                exponent: value.exponent + k * i64::from(term.frequency),
+                ..value
+            }
+        };
+        let values: Vec<Scaled> = self.terms.iter().map(value).collect();
+        let sizes = values.iter().filter(|value| value.mantissa != 0.0);
+        let unit = sizes.map(|value| value.exponent).max().unwrap_or(0);
+        values.iter().map(|value| value.in_units(unit)).collect()
+    }
+
+    /// The polynomial in `u`, lowest power first.
+    fn polynomial(&self, values: &[f64]) -> Vec<f64> {
+        let mut coefficients = vec![0.0; usize::try_from(self.highest).map_or(0, |highest| highest + 1)];
+        for (term, value) in self.terms.iter().zip(values) {
+            if let Some(entry) = usize::try_from(term.frequency).ok().and_then(|q| coefficients.get_mut(q)) {
+                *entry += value;
+            }
+        }
+        coefficients
+    }
+
+    /// An amplitude, not above the one asked for, at which the lowest terms alone decide, and the root there.
+    fn start(&self, amplitude: Scaled) -> Option<(Scaled, Scaled)> {
+        /// What the other terms may add: of the isolation of the root by Rouche's theorem nothing is lost.
+        const SMALL: f64 = 1e-3;
+        const HALVINGS: usize = 10_000;
+        let exponent = |term: &Term| {
+            let below = self.highest - term.frequency;
+            (below > 0).then(|| f64::from(term.amplitude) / f64::from(below))
+        };
+        let used = self.terms.iter().filter(|term| term.coefficient.mantissa != 0.0);
+        let growth = used.filter_map(exponent).fold(f64::INFINITY, f64::min);
+        let decides = |term: &Term| match exponent(term) {
+            Some(own) => own == growth,
+            None => term.amplitude == 0,
+        };
+        let lowest: Vec<Term> = self
+            .terms
+            .iter()
+            .filter(|term| decides(term))
+            .map(|term| Term { ..*term })
+            .collect();
+        let lowest = Relation {
+            terms: &lowest,
+            highest: self.highest,
+        };
+        let mut at = amplitude;
+        for _ in 0..HALVINGS {
+            let z = lowest.largest_root(at)?;
+            let values = self.values(at, z.exponent);
+            let (mut leading, mut others) = (0.0, 0.0);
+            for (term, value) in self.terms.iter().zip(&values) {
+                let size = (value * z.mantissa.powi(term.frequency)).abs();
+                if term.frequency == self.highest {
+                    leading += size;
+                }
+                if !decides(term) {
+                    others += size;
+                }
+            }
+            if others <= SMALL * leading {
+                let z = if others == 0.0 { z } else { self.newton(at, z)? };
+                return Some((at, z));
+            }
+            at.exponent -= 1;
+        }
+        None
+    }
+
+    /// The largest root, by Newton's iteration from above all roots.
+    fn largest_root(&self, amplitude: Scaled) -> Option<Scaled> {
+        let size = |term: &Term| {
+            let value = term.coefficient.product(amplitude.power(term.amplitude));
+            value.logarithm()
+        };
+        let leading = self.terms.iter().find(|term| term.frequency == self.highest)?;
+        let bound = self
+            .terms
+            .iter()
+            .filter(|term| term.frequency < self.highest && term.coefficient.mantissa != 0.0)
+            .map(|term| {
+                let below = f64::from(self.highest - term.frequency);
+                (size(term) - size(leading) + (self.terms.len() as f64).ln()) / below
+            })
+            .fold(f64::NEG_INFINITY, f64::max);
+        if !bound.is_finite() {
+            return None;
+        }
+        let start = Scaled {
+            mantissa: 1.0,
+            exponent: (bound / std::f64::consts::LN_2).ceil() as i64 + 1,
+        };
+        self.newton(amplitude, start)
+    }
+
+    /// The root that Newton's iteration reaches, where it is positive.
+    fn newton(&self, amplitude: Scaled, start: Scaled) -> Option<Scaled> {
+        const ITERATIONS: usize = 400;
+        let polynomial = self.polynomial(&self.values(amplitude, start.exponent));
+        let mut u = start.mantissa;
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let horner = |(value, slope): (f64, f64), coefficient: &f64| (value * u + coefficient, slope * u + value);
+            let (value, slope) = polynomial.iter().rev().fold((0.0, 0.0), horner);
+            if value == 0.0 {
+                last = 0.0;
+                break;
+            }
+            let change = value / slope;
+            // Rounding may keep the last digits moving: they no longer shrink then.
+            if !change.is_finite() || (change.abs() <= 1e-13 * u.abs() && change.abs() >= last) {
+                break;
+            }
+            u -= change;
+            last = change.abs();
+        }
+        let settled = last <= 1e-12 * u.abs();
+        (settled && u > 0.0 && u.is_finite()).then(|| {
+            let root = Scaled::new(u);
+            Scaled {
+                exponent: root.exponent + start.exponent,
+                ..root
+            }
+        })
+    }
+
+    /// `d ln z/d ln A` along the branch.
+    fn tangent(&self, amplitude: Scaled, z: Scaled) -> Option<f64> {
+        let values = self.values(amplitude, z.exponent);
+        let (mut above, mut below) = (0.0, 0.0);
+        for (term, value) in self.terms.iter().zip(&values) {
+            let value = value * z.mantissa.powi(term.frequency);
+            above += f64::from(term.amplitude) * value;
+            below += f64::from(term.frequency) * value;
+        }
+        Some(-above / below).filter(|slope| slope.is_finite())
+    }
+
+    /// The root nearest to a prediction, where the way to it is short beside the distance to any other root.
+    fn corrected(&self, amplitude: Scaled, predicted: Scaled) -> Option<Scaled> {
+        const SHARE: f64 = 0.2;
+        let root = self.newton(amplitude, predicted)?;
+        let mut polynomial = self.polynomial(&self.values(amplitude, root.exponent));
+        // Derivatives over factorials at the root, by repeated division, then in units of the root.
+        let mut derivatives = Vec::with_capacity(polynomial.len());
+        while let Some(highest) = polynomial.len().checked_sub(1) {
+            for i in (0..highest).rev() {
+                polynomial[i] += root.mantissa * polynomial[i + 1];
+            }
+            derivatives.push(polynomial.remove(0) * root.mantissa.powi(derivatives.len() as i32));
+        }
+        let slope = *derivatives.get(1)?;
+        let gamma = derivatives
+            .iter()
+            .enumerate()
+            .skip(2)
+            .map(|(k, value)| (value / slope).abs().powf(1.0 / (k as f64 - 1.0)))
+            .fold(0.0, f64::max);
+        let way = (predicted.product(root.inverse()).in_units(0) - 1.0).abs();
+        (way <= SHARE * f64::min(0.5 / gamma, 1.0)).then_some(root)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `(z - 1 - s)(z - s/4)(z - s/9)` with `s = A^2`: the branch of the linear frequency is 1 + s, and the others pass close
+    /// to what it was at smaller amplitudes.
+    fn three_branches() -> Vec<Term> {
+        let term = |coefficient: f64, amplitude, frequency| Term {
+            coefficient: Scaled::new(coefficient),
+            amplitude,
+            frequency,
+        };
+        let (b, c) = (13.0 / 36.0, 1.0 / 36.0);
+        vec![
+            term(1.0, 0, 3),
+            term(-1.0, 0, 2),
+            term(-1.0 - b, 2, 2),
+            term(b, 2, 1),
+            term(b + c, 4, 1),
+            term(-c, 4, 0),
+            term(-c, 6, 0),
+        ]
+    }
+
+    #[test]
+    fn the_linear_branch_is_followed_past_others() {
+        for power in -160..=150 {
+            let amplitude = 10.0_f64.powi(power);
+            let found = follow(&three_branches(), -amplitude);
+            let Some(Branch::At(z)) = found else {
+                panic!("lost at {amplitude:e}: {found:?}");
+            };
+            let exact = 1.0 + amplitude * amplitude;
+            assert!((z / exact - 1.0).abs() < 1e-12, "{amplitude}: {z} {exact}");
+        }
+    }
+
+    #[test]
+    fn the_end_of_a_branch_is_found() {
+        // z^2 - z + A^2 = 0 turns back at A = 1/2.
+        let term = |coefficient: f64, amplitude, frequency| Term {
+            coefficient: Scaled::new(coefficient),
+            amplitude,
+            frequency,
+        };
+        let circle = [term(1.0, 0, 2), term(-1.0, 0, 1), term(1.0, 2, 0)];
+        let found = follow(&circle, 0.49);
+        let upper = 0.5 + 0.0099_f64.sqrt();
+        assert!(matches!(found, Some(Branch::At(z)) if (z - upper).abs() < 1e-14), "{found:?} {upper}");
+        assert!(matches!(follow(&circle, 3.0), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8));
+        assert!(matches!(follow(&circle, -3.0), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8));
+    }
+
+    #[test]
+    fn numbers_beyond_the_range_of_doubles_keep_their_digits() {
+        let huge = Scaled::new(1.7e300).power(40).product(Scaled::new(3.1e-310));
+        let expected = 40.0 * 1.7e300_f64.ln() + (3.1_f64.ln() - 310.0 * 10.0_f64.ln());
+        assert!((huge.logarithm() / expected - 1.0).abs() < 1e-14);
+        assert_eq!(Scaled::new(-0.75).power(3).in_units(0), -0.421875);
+        assert_eq!(Scaled::new(0.0).in_units(5), 0.0);
+        assert_eq!(Scaled::new(8.0).power(-2).in_units(0), 1.0 / 64.0);
+    }
+}

@@ -781,7 +781,8 @@ fn negative_amplitudes() {
         for method in Method::ALL {
             let Ok(solution) = by(equation, method) else { continue };
             let [plus, minus] = [0.7, -0.7].map(|a| {
-                evaluate(&oscillator, &solution, &numbers(&[("A", a)])).unwrap_or_else(|| panic!("{}", method.name()))
+                evaluate(&oscillator, &solution, &numbers(&[("A", a)]))
+                    .unwrap_or_else(|reason| panic!("{}: {reason}", method.name()))
             });
             assert!(
                 (plus.frequency_squared / minus.frequency_squared - 1.0).abs() < 1e-10,

@@ -10,6 +10,7 @@
 //! Where a term has no closed form here the answer is `None`, and the methods fall back on quadrature and say so.
 
 pub mod features;
+pub mod force;
 pub mod potential;
 pub mod projection;
 

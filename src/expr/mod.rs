@@ -36,6 +36,7 @@ mod order;
 mod parse;
 mod polynomial;
 mod print;
+mod rounding;
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -52,6 +53,7 @@ pub use evaluate::{CompiledFunction, EvaluationError};
 pub use function::Function;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;
+pub use rounding::Rounded;
 
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but a number.
 pub const LARGEST_EXPONENT: u32 = 10_000;

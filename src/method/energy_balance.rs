@@ -19,10 +19,10 @@
 
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
+use crate::conservative::force::Force;
 use crate::conservative::potential::potential;
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
-use crate::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 
@@ -120,10 +120,9 @@ pub(super) fn positive_amplitude(law: &Expr) -> Option<Expr> {
     .ok()
 }
 
-/// The law by numbers, for forces without a potential in closed form.
-pub(super) fn by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f64) -> Option<f64> {
-    let rise = integrate_smooth(force, amplitude / f64::sqrt(2.0), amplitude, 1e-12)
-        .ok()?
-        .0;
-    Some(4.0 * rise / (amplitude * amplitude))
+/// The law by the work of the force, which loses no digits where a difference of potentials would.
+pub(super) fn by_quadrature(force: &Force, amplitude: f64) -> Option<f64> {
+    let rise = force.work(amplitude / f64::sqrt(2.0), amplitude)?;
+    // Not over A^2 at once, which may leave the range of doubles.
+    Some(4.0 * (rise / amplitude) / amplitude)
 }

@@ -6,12 +6,10 @@
 //! ```text
 //! x = sum_k a_k cos(k theta),   k = 1, 3, ..., 2n-1 for an odd force, 0, 1, ..., n otherwise,   A = sum_k a_k
 //! -k^2 omega^2 a_k + c_k = 0,   c_k = (2/pi) int_0^pi f(x(theta)) cos(k theta) dtheta          (c_0 counts half)
-//! J = -k^2 omega^2 delta_kj + (2/pi) int_0^pi f'(x) cos(k theta) cos(j theta) dtheta
 //! ```
 //!
-//! One harmonic of an odd force is solved in closed form. Beyond that the system is printed, and solved by Newton's
-//! iteration with the amplitude raised in steps from where one harmonic is enough. Sums over `N` points stand for the
-//! integrals: exact for polynomials of degree `d` once `N > (d + 1) k/2`, and doubled until they settle otherwise.
+//! One harmonic of an odd force is solved in closed form. Beyond that the system is printed, and solved at an amplitude by
+//! [`balance`](super::balance::balance).
 //!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
@@ -22,7 +20,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use nalgebra::{DMatrix, DVector};
 use num_traits::{One, Zero};
 
 use super::iteration_perturbation::{horner, polynomial_coefficients};
@@ -148,7 +145,7 @@ fn projections(
 }
 
 /// The harmonics of an order.
-fn harmonics(order: u32, odd: bool) -> Vec<usize> {
+pub(super) fn harmonics(order: u32, odd: bool) -> Vec<usize> {
     let order = order as usize;
     match odd {
         true => (0..order).map(|n| 2 * n + 1).collect(),
@@ -219,170 +216,4 @@ fn equations(
     equations.push(sum - Expr::symbol("A"));
     let length: usize = equations.iter().map(|equation| equation.terms().len()).sum();
     Ok((length <= MOST_TERMS).then_some(equations))
-}
-
-/// A balance solved by numbers.
-pub struct Balance {
-    /// omega^2.
-    pub frequency_squared: f64,
-    /// The motion.
-    pub motion: FourierSeries<f64>,
-}
-
-/// Solves the balance for the motion with `x(0) = amplitude` about zero; `None` where Newton's iteration finds no way there.
-pub fn balance(
-    force: &dyn Fn(f64) -> f64,
-    slope: &dyn Fn(f64) -> f64,
-    degree: Option<u32>,
-    odd: bool,
-    order: u32,
-    amplitude: f64,
-) -> Option<Balance> {
-    let harmonics = harmonics(order, odd);
-    let highest = *harmonics.last()?;
-    let exact = degree.map(|degree| (degree as usize + 1) * highest / 2 + 2);
-    let mut points = exact.unwrap_or(8 * highest + 32);
-    let mut solution = continued(force, slope, &harmonics, points, amplitude)?;
-    if exact.is_none() {
-        /// Points beyond which a force with corners is taken as it is.
-        const MOST_POINTS: usize = 1 << 13;
-        loop {
-            points *= 2;
-            let finer = newton(force, slope, &Grid::new(&harmonics, points), amplitude, &solution)?;
-            let change = (finer[0] - solution[0]).abs() / finer[0].abs();
-            solution = finer;
-            if change < 1e-13 || points > MOST_POINTS {
-                break;
-            }
-        }
-    }
-    let mut cosine = vec![0.0; highest + 1];
-    for (&k, value) in harmonics.iter().zip(solution.iter().skip(1)) {
-        cosine[k] = *value;
-    }
-    Some(Balance {
-        frequency_squared: solution[0],
-        motion: FourierSeries::from_parts(cosine, vec![], Integer::one()),
-    })
-}
-
-/// Cosines of the harmonics at the points of half a period.
-struct Grid {
-    harmonics: Vec<usize>,
-    /// One row for each point.
-    cosines: DMatrix<f64>,
-}
-
-impl Grid {
-    fn new(harmonics: &[usize], points: usize) -> Self {
-        let cosines = DMatrix::from_fn(points, harmonics.len(), |i, j| {
-            let theta = std::f64::consts::PI * (i as f64 + 0.5) / points as f64;
-            (harmonics[j] as f64 * theta).cos()
-        });
-        Self {
-            harmonics: harmonics.to_vec(),
-            cosines,
-        }
-    }
-}
-
-/// Raises the amplitude from where the first harmonic alone is a good start.
-fn continued(
-    force: &dyn Fn(f64) -> f64,
-    slope: &dyn Fn(f64) -> f64,
-    harmonics: &[usize],
-    points: usize,
-    amplitude: f64,
-) -> Option<DVector<f64>> {
-    const SMALLEST_STEP: f64 = 1e-6;
-    let grid = Grid::new(harmonics, points);
-    let first = harmonics.iter().position(|&k| k == 1)?;
-    let alone = |amplitude: f64| {
-        let mut start = DVector::zeros(harmonics.len() + 1);
-        start[0] = super::one_term::coefficient_by_quadrature(force, amplitude, 1).0 / amplitude;
-        start[first + 1] = amplitude;
-        start
-    };
-    let accepted = |start: &DVector<f64>, part: f64| {
-        newton(force, slope, &grid, part * amplitude, start).filter(|found| found[0] > 0.0)
-    };
-    // Straight away where that leads to the same branch: close to the one-term answer.
-    let start = alone(amplitude);
-    if let Some(found) = accepted(&start, 1.0).filter(|found| (found[0] / start[0]).ln().abs() < 0.1) {
-        return Some(found);
-    }
-    let (mut part, mut step) = (1.0 / 64.0, 1.0 / 16.0);
-    let mut current = accepted(&alone(part * amplitude), part)?;
-    while part < 1.0 {
-        let next = f64::min(part + step, 1.0);
-        let mut start = &current * (next / part);
-        start[0] = current[0];
-        match accepted(&start, next).filter(|found| (found[0] / current[0]).ln().abs() < 0.5) {
-            Some(found) => {
-                (current, part) = (found, next);
-                step = f64::min(2.0 * step, 0.25);
-            }
-            None => step *= 0.5,
-        }
-        if step < SMALLEST_STEP {
-            return None;
-        }
-    }
-    Some(current)
-}
-
-/// Newton's iteration on `[omega^2, a_k...]`.
-fn newton(
-    force: &dyn Fn(f64) -> f64,
-    slope: &dyn Fn(f64) -> f64,
-    grid: &Grid,
-    amplitude: f64,
-    start: &DVector<f64>,
-) -> Option<DVector<f64>> {
-    const ITERATIONS: usize = 30;
-    let count = grid.harmonics.len();
-    let points = grid.cosines.nrows();
-    let weight = |k: usize| if k == 0 { 1.0 } else { 2.0 } / points as f64;
-    let mut unknowns = start.clone();
-    let mut settled = false;
-    for _ in 0..ITERATIONS {
-        let position = &grid.cosines * unknowns.rows(1, count);
-        let forces = position.map(force);
-        let slopes = position.map(slope);
-        if forces.iter().chain(slopes.iter()).any(|value| !value.is_finite()) {
-            return None;
-        }
-        let mut weighted = grid.cosines.clone();
-        for mut column in weighted.column_iter_mut() {
-            column.component_mul_assign(&slopes);
-        }
-        let projected = grid.cosines.transpose() * &forces;
-        let products = grid.cosines.transpose() * &weighted;
-        let squared = unknowns[0];
-        let mut residual = DVector::zeros(count + 1);
-        let mut jacobian = DMatrix::zeros(count + 1, count + 1);
-        for (row, &k) in grid.harmonics.iter().enumerate() {
-            let inertia = (k * k) as f64;
-            residual[row] = weight(k) * projected[row] - inertia * squared * unknowns[row + 1];
-            jacobian[(row, 0)] = -inertia * unknowns[row + 1];
-            for column in 0..count {
-                jacobian[(row, column + 1)] = weight(k) * products[(row, column)];
-            }
-            jacobian[(row, row + 1)] -= inertia * squared;
-        }
-        residual[count] = unknowns.rows(1, count).sum() - amplitude;
-        for column in 0..count {
-            jacobian[(count, column + 1)] = 1.0;
-        }
-        let change = jacobian.lu().solve(&residual)?;
-        unknowns -= &change;
-        let scale = unknowns.rows(1, count).amax();
-        let small = change[0].abs() <= 1e-14 * unknowns[0].abs() && change.rows(1, count).amax() <= 1e-14 * scale;
-        if small || (settled && change[0].abs() <= 1e-11 * unknowns[0].abs()) {
-            return unknowns.iter().all(|value| value.is_finite()).then_some(unknowns);
-        }
-        // Rounding may keep the last digits moving: one step more after they are small is enough.
-        settled = change[0].abs() <= 1e-11 * unknowns[0].abs() && change.rows(1, count).amax() <= 1e-11 * scale;
-    }
-    None
 }

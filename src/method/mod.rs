@@ -4,6 +4,7 @@
 //! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`], and add one line to [`solve`].
 
 pub mod amplitude_frequency;
+pub mod balance;
 pub mod energy_balance;
 pub mod exact;
 pub mod expansion;

@@ -7,15 +7,21 @@ use std::collections::BTreeMap;
 
 use num_traits::One;
 
-use super::{energy_balance, harmonic_balance, homotopy_analysis, one_term};
+use super::{balance, energy_balance, harmonic_balance, homotopy_analysis, one_term};
+use crate::conservative::force::Force;
 use crate::conservative::is_odd;
+use crate::decimal::significant;
 use crate::exact::{Integer, Polynomial};
+use crate::expr::Rounded;
 use crate::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
 use crate::period;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{AmplitudeConvention, Branch, Method, Solution};
 use crate::symbol::Symbol;
+
+/// The relative rounding error above which a closed form is set aside for the integral it stands for.
+const LOST_DIGITS: f64 = 1e-13;
 
 /// An answer in numbers.
 #[derive(Clone, Debug)]
@@ -28,43 +34,91 @@ pub struct Numbers {
     pub chosen: Vec<(Symbol, f64)>,
 }
 
-/// omega^2 and the motion of `solution`, an answer for `oscillator`, with `numbers` for the parameters and the amplitude;
-/// `None` where there are none.
-pub fn evaluate(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Numbers> {
+/// Why an answer has no numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoNumbers {
+    /// The branch of an implicit relation turns back or reaches zero before the amplitude asked for.
+    #[error("not real: the root that continues the linear frequency ends at A = {}", significant(*amplitude, 6))]
+    BranchEnds {
+        /// Where.
+        amplitude: f64,
+    },
+    /// The assumed motion leaves the places where the force is defined and finite.
+    #[error(
+        "does not apply: the assumed motion runs through {coordinate} = {}, where the force has no finite value",
+        significant(*place, 6)
+    )]
+    Gap {
+        /// The coordinate.
+        coordinate: Symbol,
+        /// Where.
+        place: f64,
+    },
+    /// The branch of a balance does not reach the amplitude asked for.
+    #[error("{0}")]
+    Balance(#[from] balance::Lost),
+    /// A quadrature, the exact motion or a search for hbar failed.
+    #[error("no finite value at these numbers")]
+    NoValue,
+}
+
+/// omega^2 and the motion of `solution`, an answer for `oscillator`, with `numbers` for the parameters and the amplitude.
+///
+/// # Errors
+/// [`NoNumbers`], in words for a user.
+pub fn evaluate(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Numbers, NoNumbers> {
     let mut chosen = Vec::new();
     let mut numbers = numbers.clone();
-    let hbar = Symbol::new(homotopy_analysis::HBAR);
-    if solution.method == Method::HomotopyAnalysis && !numbers.contains_key(&hbar) && contains(solution, hbar) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar)?;
+    if let Some(hbar) = open_hbar(solution, &numbers) {
+        let value = best_hbar(oscillator, solution, &numbers, hbar).ok_or(NoNumbers::NoValue)?;
         numbers.insert(hbar, value);
         chosen.push((hbar, value));
     }
-    let solved = |(frequency_squared, motion): (f64, FourierSeries<f64>)| Numbers {
-        frequency_squared,
-        chosen: balanced(solution, &motion),
-        motion: (frequency_squared > 0.0).then_some(motion),
-    };
     if solution.system.is_some() || solution.by_quadrature.is_some() {
-        return solve(oscillator, solution, &numbers).map(solved);
-    }
-    if solution.method == Method::Exact {
-        let squared = frequency_squared(solution, &numbers)?;
-        let motion = (squared > 0.0)
-            .then(|| exact_motion(oscillator, solution, &numbers))
-            .flatten();
-        return Some(Numbers {
-            frequency_squared: squared,
-            motion: motion.map(|found| found.1),
-            chosen,
+        let (frequency_squared, motion) = solve(oscillator, solution, &numbers)?;
+        return Ok(Numbers {
+            frequency_squared,
+            chosen: balanced(solution, &motion),
+            motion: (frequency_squared > 0.0).then_some(motion),
         });
     }
-    let squared = frequency_squared(solution, &numbers).filter(|value| value.is_finite())?;
-    let motion = formula_motion(solution, &numbers, squared);
-    Some(Numbers {
+    let squared = frequency_squared(oscillator, solution, &numbers)?;
+    let motion = match solution.method {
+        Method::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).map(|found| found.1),
+        Method::Exact => None,
+        _ => formula_motion(oscillator, solution, &numbers, squared),
+    };
+    Ok(Numbers {
         frequency_squared: squared,
         motion,
         chosen,
     })
+}
+
+/// omega^2 alone, without the motion where that costs more.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn frequency_squared_of(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<f64, NoNumbers> {
+    match (solution.method, &solution.by_quadrature) {
+        (Method::Exact, None) => frequency_squared(oscillator, solution, numbers),
+        _ => evaluate(oscillator, solution, numbers).map(|found| found.frequency_squared),
+    }
+}
+
+/// The symbol of homotopy analysis that is to be chosen, where there is one.
+fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
+    let hbar = Symbol::new(homotopy_analysis::HBAR);
+    let open = solution.method == Method::HomotopyAnalysis && !numbers.contains_key(&hbar);
+    (open && contains(solution, hbar)).then_some(hbar)
 }
 
 /// The coefficients of a balance, by their names; the equilibrium is no part of the mean.
@@ -84,18 +138,6 @@ fn balanced(solution: &Solution, motion: &FourierSeries<f64>) -> Vec<(Symbol, f6
         .into_iter()
         .filter_map(named)
         .collect()
-}
-
-/// omega^2 alone, without the motion where that costs more.
-pub fn frequency_squared_of(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Option<f64> {
-    match (solution.method, &solution.by_quadrature) {
-        (Method::Exact, None) => frequency_squared(solution, numbers),
-        _ => evaluate(oscillator, solution, numbers).map(|found| found.frequency_squared),
-    }
 }
 
 fn contains(solution: &Solution, symbol: Symbol) -> bool {
@@ -118,18 +160,117 @@ fn by_size(solution: &Solution) -> bool {
         )
 }
 
-fn frequency_squared(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    let amplitude = solution.amplitude.symbol();
+/// Whether the law is that of a motion `A cos(theta)`.
+fn of_one_term(solution: &Solution) -> bool {
+    by_size(solution) && solution.method != Method::Exact && solution.system.is_none()
+}
+
+/// The force about the equilibrium of an answer.
+fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
+    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+    Force::new(
+        &oscillator.force,
+        oscillator.coordinate,
+        &solution.equilibrium,
+        numbers,
+        amplitude,
+    )
+}
+
+fn frequency_squared(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<f64, NoNumbers> {
+    let symbol = solution.amplitude.symbol();
+    if of_one_term(solution) {
+        stays_defined(oscillator, solution, numbers)?;
+    }
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
     let sized = by_size(solution) && (solution.method != Method::Exact || odd_equation(solution));
-    solution.frequency_squared_at(&|symbol| {
-        let value = numbers.get(&symbol).copied()?;
-        Some(if sized && symbol == amplitude {
-            value.abs()
-        } else {
-            value
-        })
-    })
+    let value_of = |name| {
+        let value = numbers.get(&name).copied()?;
+        Some(if sized && name == symbol { value.abs() } else { value })
+    };
+    if solution.frequency_squared.is_none() && solution.relation.is_some() {
+        return match solution.branch_at(&value_of) {
+            Some(Branch::At(squared)) => Ok(squared),
+            Some(Branch::Ends(amplitude)) => Err(NoNumbers::BranchEnds { amplitude }),
+            None => Err(NoNumbers::NoValue),
+        };
+    }
+    let value = solution.frequency_squared_at(&value_of);
+    if let Some(form) = &solution.closed_form {
+        let value_of = |name| rounded(solution, name, &value_of);
+        let lost = match form.value.evaluate_rounded(&value_of) {
+            Some((value, error)) => error > LOST_DIGITS * value.abs(),
+            None => true,
+        };
+        if lost && let Some(better) = by_definition(oscillator, solution, numbers) {
+            return Ok(better);
+        }
+    }
+    value.filter(|value| value.is_finite()).ok_or(NoNumbers::NoValue)
+}
+
+/// The value of a symbol or of a definition, with its rounding error.
+fn rounded(solution: &Solution, name: Symbol, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Rounded> {
+    match value_of(name) {
+        Some(value) => Some((value, 0.0)),
+        None => {
+            let value = solution.evaluate(&Polynomial::symbol(name), value_of).ok()?;
+            Some((value, f64::EPSILON * value.abs()))
+        }
+    }
+}
+
+/// A motion of one term runs from `-A` to `A`: on all of that the force must be defined and finite.
+fn stays_defined(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<(), NoNumbers> {
+    if matches!(oscillator.polynomial_degree(), Ok(Some(_))) {
+        return Ok(());
+    }
+    let (Some(force), Some(amplitude)) = (
+        force_of(oscillator, solution, numbers),
+        numbers.get(&solution.amplitude.symbol()),
+    ) else {
+        return Ok(());
+    };
+    match force.gap(-amplitude.abs(), amplitude.abs()) {
+        Some(place) => Err(NoNumbers::Gap {
+            coordinate: oscillator.coordinate,
+            place,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// A law of one term by what defines it, without the differences of a closed form.
+fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    let size = numbers.get(&solution.amplitude.symbol())?.abs();
+    if solution.method == Method::Exact {
+        return exact_motion(oscillator, solution, numbers).map(|found| found.0);
+    }
+    let force = force_of(oscillator, solution, numbers)?;
+    let law = match solution.method {
+        Method::EnergyBalance => energy_balance::by_quadrature(&force, size)?,
+        Method::AmplitudeFrequency => {
+            let place = 0.75_f64.sqrt() * size;
+            force.at(place) / place
+        }
+        Method::FrequencyFormula => force.slope(0.5 * size),
+        Method::Hamiltonian
+        | Method::MaxMin
+        | Method::VariationalIteration
+        | Method::IterationPerturbation
+        | Method::ParameterExpansion
+        | Method::HarmonicBalance => one_term::coefficient(&force, size, 1).0 / size,
+        _ => return None,
+    };
+    law.is_finite().then_some(law)
 }
 
 /// Whether the equation changes its sign with the coordinate.
@@ -140,9 +281,17 @@ fn odd_equation(solution: &Solution) -> bool {
 }
 
 /// The motion by the formula, in theta; implicit methods write it with `omega`.
-fn formula_motion(solution: &Solution, numbers: &BTreeMap<Symbol, f64>, squared: f64) -> Option<FourierSeries<f64>> {
+fn formula_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    squared: f64,
+) -> Option<FourierSeries<f64>> {
     if squared <= 0.0 {
         return None;
+    }
+    if let Some(motion) = iterate_by_definition(oscillator, solution, numbers, squared) {
+        return Some(motion);
     }
     let (omega, amplitude) = (Symbol::new("omega"), solution.amplitude.symbol());
     let turned = by_size(solution) && numbers.get(&amplitude).is_some_and(|value| *value < 0.0);
@@ -161,54 +310,81 @@ fn formula_motion(solution: &Solution, numbers: &BTreeMap<Symbol, f64>, squared:
     Some(motion.by_harmonic(half_a_period))
 }
 
+/// `x_1 = A cos theta + sum c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)` with the `c_k` by quadrature, where their closed
+/// forms have lost digits that show beside the amplitude.
+fn iterate_by_definition(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    squared: f64,
+) -> Option<FourierSeries<f64>> {
+    if !matches!(
+        solution.method,
+        Method::IterationPerturbation | Method::VariationalIteration
+    ) || solution.relation.is_some()
+    {
+        return None;
+    }
+    let symbol = solution.amplitude.symbol();
+    let amplitude = *numbers.get(&symbol)?;
+    let value_of = |name: Symbol| {
+        let value = numbers.get(&name).copied()?;
+        Some(if name == symbol { value.abs() } else { value })
+    };
+    let lost = solution.definitions.iter().any(|definition| {
+        let value_of = |name| rounded(solution, name, &value_of);
+        match definition.meaning.evaluate_rounded(&value_of) {
+            Some((_, error)) => error > LOST_DIGITS * squared * amplitude.abs(),
+            None => true,
+        }
+    });
+    if !lost {
+        return None;
+    }
+    let force = force_of(oscillator, solution, numbers)?;
+    let harmonics = solution.displacement.harmonics();
+    let mut cosine = vec![0.0; harmonics.last()?.0.max(1) + 1];
+    cosine[1] = amplitude;
+    for (k, ..) in harmonics.into_iter().filter(|entry| entry.0 != 1) {
+        // The constant term of the series is half of c_0.
+        let divisor = if k == 0 { -2.0 } else { (k * k - 1) as f64 };
+        let part = one_term::coefficient(&force, amplitude, k).0 / (divisor * squared);
+        cosine[k] += part;
+        cosine[1] -= part;
+    }
+    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
+    cosine[0] += equilibrium;
+    let finite = cosine.iter().all(|value| value.is_finite());
+    finite.then(|| FourierSeries::from_parts(cosine, vec![], Integer::one()))
+}
+
 /// What has to be solved: balances, integrals, the exact motion.
 fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Option<(f64, FourierSeries<f64>)> {
+) -> Result<(f64, FourierSeries<f64>), NoNumbers> {
     if solution.method == Method::Exact {
-        return exact_motion(oscillator, solution, numbers);
+        return exact_motion(oscillator, solution, numbers).ok_or(NoNumbers::NoValue);
     }
-    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
-    let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-    let force = one_term::compiled(oscillator, &oscillator.force, numbers)?;
-    let about = |y: f64| force(equilibrium + y);
-    let (squared, motion) = match solution.method {
-        Method::HarmonicBalance => {
-            let slope = oscillator.force.differentiate(oscillator.coordinate).ok()?;
-            let slope = one_term::compiled(oscillator, &slope, numbers)?;
-            let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
-            let degree = oscillator.polynomial_degree().ok().flatten();
-            let found = harmonic_balance::balance(
-                &about,
-                &|y| slope(equilibrium + y),
-                degree,
-                odd,
-                solution.order,
-                amplitude,
-            )?;
-            (found.frequency_squared, found.motion)
-        }
-        Method::EnergyBalance => {
-            let size = amplitude.abs();
-            let squared = energy_balance::by_quadrature(&about, size)?;
-            (
-                squared,
-                FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one()),
-            )
-        }
-        _ => {
-            let size = amplitude.abs();
-            let squared = one_term::coefficient_by_quadrature(&about, size, 1).0 / size;
-            (
-                squared,
-                FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one()),
-            )
-        }
+    let given = || {
+        let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
+        let amplitude = *numbers.get(&solution.amplitude.symbol())?;
+        Some((equilibrium, amplitude, force_of(oscillator, solution, numbers)?))
     };
+    let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(equilibrium, Integer::one());
-    squared.is_finite().then(|| (squared, motion.sum(&shift)))
+    if solution.method == Method::HarmonicBalance {
+        let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
+        let harmonics = harmonic_balance::harmonics(solution.order, odd);
+        let degree = oscillator.polynomial_degree().ok().flatten();
+        let found = balance::balance(&force, degree, &harmonics, amplitude)?;
+        return Ok((found.frequency_squared, found.motion.sum(&shift)));
+    }
+    stays_defined(oscillator, solution, numbers)?;
+    let squared = by_definition(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    let motion = FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one());
+    Ok((squared, motion.sum(&shift)))
 }
 
 /// omega^2 and the motion by quadrature of the energy.
@@ -241,8 +417,8 @@ fn best_hbar(
     let squared_residual = |value: f64| {
         let mut numbers = numbers.clone();
         numbers.insert(hbar, value);
-        let squared = frequency_squared(solution, &numbers).unwrap_or(f64::NAN);
-        let Some(motion) = formula_motion(solution, &numbers, squared) else {
+        let squared = frequency_squared(oscillator, solution, &numbers).unwrap_or(f64::NAN);
+        let Some(motion) = formula_motion(oscillator, solution, &numbers, squared) else {
             return f64::INFINITY;
         };
         let acceleration = motion.derivative().derivative();

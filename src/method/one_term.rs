@@ -17,11 +17,13 @@ use std::f64::consts::PI;
 use num_traits::One;
 
 use super::{Options, Refusal, first_term};
+use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::{Integer, Polynomial};
 use crate::expr::{CompiledFunction, Expr, ExprError};
+use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
@@ -242,6 +244,33 @@ pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f
             return (value, change);
         }
     }
+}
+
+/// `c_k` of a force about its equilibrium, and a bound of its error: between corners and narrow places by Gauss's rule, as
+/// fine as it has to be, where there are any.
+pub(crate) fn coefficient(force: &Force, amplitude: f64, k: usize) -> (f64, f64) {
+    const TOLERANCE: f64 = 1e-14;
+    let cuts = force.cuts(-amplitude.abs(), amplitude.abs());
+    if cuts.is_empty() {
+        return coefficient_by_quadrature(&|y| force.at(y), amplitude, k);
+    }
+    let mut angles: Vec<f64> = cuts
+        .iter()
+        .map(|cut| (cut / amplitude).clamp(-1.0, 1.0).acos())
+        .collect();
+    angles.extend([0.0, PI]);
+    angles.sort_by(f64::total_cmp);
+    let integrand = |theta: f64| force.at(amplitude * theta.cos()) * (k as f64 * theta).cos();
+    let piece = |pair: &[f64]| match integrate_smooth(integrand, pair[0], pair[1], TOLERANCE) {
+        Ok(found) => found,
+        Err(QuadratureError::NotConverged {
+            value, error_estimate, ..
+        }) => (value, error_estimate),
+        Err(_) => (f64::NAN, f64::NAN),
+    };
+    let pieces = angles.windows(2).filter(|pair| pair[1] > pair[0]).map(piece);
+    let sum = pieces.fold((0.0, 0.0), |sum, piece| (sum.0 + piece.0, sum.1 + piece.1));
+    (sum.0 * 2.0 / PI, sum.1 * 2.0 / PI)
 }
 
 /// The force at given numbers, as a function of the position.

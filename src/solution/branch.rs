@@ -167,7 +167,10 @@ impl Relation<'_> {
     fn polynomial(&self, values: &[f64]) -> Vec<f64> {
         let mut coefficients = vec![0.0; usize::try_from(self.highest).map_or(0, |highest| highest + 1)];
         for (term, value) in self.terms.iter().zip(values) {
-            if let Some(entry) = usize::try_from(term.frequency).ok().and_then(|q| coefficients.get_mut(q)) {
+            if let Some(entry) = usize::try_from(term.frequency)
+                .ok()
+                .and_then(|q| coefficients.get_mut(q))
+            {
                 *entry += value;
             }
         }
@@ -364,7 +367,10 @@ mod tests {
         let circle = [term(1.0, 0, 2), term(-1.0, 0, 1), term(1.0, 2, 0)];
         let found = follow(&circle, 0.49);
         let upper = 0.5 + 0.0099_f64.sqrt();
-        assert!(matches!(found, Some(Branch::At(z)) if (z - upper).abs() < 1e-14), "{found:?} {upper}");
+        assert!(
+            matches!(found, Some(Branch::At(z)) if (z - upper).abs() < 1e-14),
+            "{found:?} {upper}"
+        );
         assert!(matches!(follow(&circle, 3.0), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8));
         assert!(matches!(follow(&circle, -3.0), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8));
     }

@@ -239,7 +239,7 @@ pub fn judge(
         residual: residual.filter(|value| value.is_finite()),
         slope: slope(oscillator, solution, &numbers),
         ranges: validity::ranges(oscillator, solution, &numbers, tolerance),
-        chosen: evaluate(oscillator, solution, &numbers).map_or_else(Vec::new, |found| found.chosen),
+        chosen: evaluate(oscillator, solution, &numbers).map_or_else(|_| vec![], |found| found.chosen),
         verdict: if pass { Verdict::Pass } else { Verdict::Fail },
     })
 }
@@ -312,7 +312,7 @@ pub fn motions(
 
 /// omega by the formula: the root of omega^2, `None` where that is not positive.
 fn formula_frequency(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    let squared = frequency_squared_of(oscillator, solution, numbers)?;
+    let squared = frequency_squared_of(oscillator, solution, numbers).ok()?;
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
 }
 
@@ -322,7 +322,7 @@ fn formula_motion(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<(f64, FourierSeries<f64>)> {
-    let found = evaluate(oscillator, solution, numbers)?;
+    let found = evaluate(oscillator, solution, numbers).ok()?;
     Some((found.frequency_squared.sqrt(), found.motion?))
 }
 

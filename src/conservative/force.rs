@@ -1,0 +1,304 @@
+//! A force at given numbers, measured from its equilibrium: what every law that is solved by numbers evaluates.
+//!
+//! Near rest a force such as `exp(x) - 1`, or any force about an equilibrium that is not zero, is a small difference of large
+//! numbers. Where rounding would show, its Taylor polynomial stands in for it, whose coefficients are exact:
+//!
+//! ```text
+//! f(x_e + y) = f'(x_e) y + f''(x_e) y^2/2 + ...,   |y| <= r,   r so small that the last terms kept are below rounding
+//! ```
+
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+
+use num_traits::Zero;
+
+use super::features::Features;
+use crate::exact::Rational;
+use crate::expr::{CompiledFunction, Expr, Function, Node};
+use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::series::taylor::taylor;
+use crate::symbol::Symbol;
+
+/// The degree of the polynomial near rest.
+const DEGREE: u32 = 10;
+
+/// A force as a function of the distance from its equilibrium.
+pub struct Force {
+    force: Expr,
+    coordinate: Symbol,
+    numbers: BTreeMap<Symbol, f64>,
+    equilibrium: f64,
+    value: CompiledFunction,
+    slope: Option<CompiledFunction>,
+    arguments: RefCell<Vec<f64>>,
+    near: Option<Near>,
+    features: OnceCell<Features>,
+}
+
+/// The Taylor polynomial and the distance up to which it is as good as the force.
+struct Near {
+    coefficients: Vec<f64>,
+    radius: f64,
+}
+
+impl Force {
+    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None` where a symbol has no number.
+    pub fn new(
+        force: &Expr,
+        coordinate: Symbol,
+        equilibrium: &Expr,
+        numbers: &BTreeMap<Symbol, f64>,
+        amplitude: f64,
+    ) -> Option<Self> {
+        let names: Vec<Symbol> = std::iter::once(coordinate).chain(numbers.keys().copied()).collect();
+        let place = equilibrium.evaluate(numbers).ok()?;
+        let slope = force.differentiate(coordinate).ok();
+        Some(Self {
+            value: CompiledFunction::new(force, &names).ok()?,
+            slope: slope.and_then(|slope| CompiledFunction::new(&slope, &names).ok()),
+            // One row of arguments for all calls: only its first entry, the position, changes.
+            arguments: RefCell::new(std::iter::once(0.0).chain(numbers.values().copied()).collect()),
+            near: near(force, coordinate, equilibrium, numbers, amplitude),
+            equilibrium: place,
+            force: force.clone(),
+            coordinate,
+            numbers: numbers.clone(),
+            features: OnceCell::new(),
+        })
+    }
+
+    /// The force at the distance `y` from the equilibrium.
+    pub fn at(&self, y: f64) -> f64 {
+        match self.near.as_ref().filter(|near| y.abs() <= near.radius) {
+            Some(near) => near.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c),
+            None => self.call(&self.value, y),
+        }
+    }
+
+    /// Its derivative there, jumps left out; NaN where it has none.
+    pub fn slope(&self, y: f64) -> f64 {
+        match (self.near.as_ref().filter(|near| y.abs() <= near.radius), &self.slope) {
+            (Some(near), _) => {
+                let terms = near.coefficients.iter().enumerate().skip(1).rev();
+                terms.fold(0.0, |sum, (k, c)| sum * y + k as f64 * c)
+            }
+            (None, Some(slope)) => self.call(slope, y),
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// The work against the force from one distance to another; `None` where it has no value between.
+    pub fn work(&self, from: f64, to: f64) -> Option<f64> {
+        const TOLERANCE: f64 = 1e-14;
+        let mut ends = self.cuts(from, to);
+        ends.extend([from.min(to), from.max(to)]);
+        ends.sort_by(f64::total_cmp);
+        let mut sum = 0.0;
+        for pair in ends.windows(2) {
+            sum += match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
+                Ok((value, _)) => value,
+                Err(QuadratureError::NotConverged {
+                    value, error_estimate, ..
+                }) if error_estimate < 1e-9 * value.abs() => value,
+                Err(_) => return None,
+            };
+        }
+        Some(if from <= to { sum } else { -sum })
+    }
+
+    fn call(&self, function: &CompiledFunction, y: f64) -> f64 {
+        let mut arguments = self.arguments.borrow_mut();
+        arguments[0] = self.equilibrium + y;
+        function.call(&arguments)
+    }
+
+    fn features(&self) -> &Features {
+        self.features.get_or_init(|| {
+            // The poles of the tangent are the zeros of the cosine.
+            let quotients = self
+                .force
+                .fold(|expr, children: &[Expr]| match (expr.node(), children) {
+                    (Node::Function(Function::Tan, _), [argument]) => Expr::divide(&argument.sin()?, &argument.cos()?),
+                    _ => expr.with_children(children),
+                });
+            let force = quotients.as_ref().unwrap_or(&self.force);
+            Features::new(force, self.coordinate, &self.numbers)
+        })
+    }
+
+    /// Where to cut an interval of distances so that the force is smooth on each piece.
+    pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
+        let at = self.equilibrium;
+        let cuts = self.features().cuts(at + from, at + to);
+        cuts.into_iter().map(|place| place - at).collect()
+    }
+
+    /// The position (not the distance) of a place between these distances at which the force has no value, or grows so fast
+    /// towards a pole that no motion passes it; the pole of an odd force at the equilibrium itself is none.
+    pub fn gap(&self, from: f64, to: f64) -> Option<f64> {
+        const SAMPLES: usize = 48;
+        let (from, to) = (from.min(to), from.max(to));
+        let size = from.abs().max(to.abs());
+        let defined =
+            |y: f64| self.at(y).is_finite() || [-1e-9, 1e-9].iter().all(|d| self.at(y + d * size).is_finite());
+        let sample = |k: usize| {
+            let half = 0.5 - 0.5 * (std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64).cos();
+            from + (to - from) * half
+        };
+        let samples: Vec<f64> = std::iter::once(from)
+            .chain((0..SAMPLES).map(sample))
+            .chain(std::iter::once(to))
+            .collect();
+        if let Some(outside) = samples.iter().copied().find(|&y| !defined(y)) {
+            let inside = samples.iter().copied().filter(|&y| defined(y));
+            let nearest = inside.min_by(|a, b| (a - outside).abs().total_cmp(&(b - outside).abs()));
+            let (mut inside, mut outside) = (nearest.unwrap_or(outside), outside);
+            for _ in 0..60 {
+                let middle = 0.5 * (inside + outside);
+                if defined(middle) {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            return Some(self.equilibrium + outside);
+        }
+        if self.features().is_empty() {
+            return None;
+        }
+        let grows = |y: f64| {
+            let near = |distance: f64| {
+                let sides = [-distance, distance].map(|d| self.at(y + d * size).abs());
+                distance * sides.into_iter().fold(0.0, f64::max)
+            };
+            let (far, close) = (near(1e-4), near(1e-7));
+            close > 0.3 * far && close > 0.0
+        };
+        let places = self.features().between(self.equilibrium + from, self.equilibrium + to);
+        places
+            .into_iter()
+            .map(|feature| feature.place)
+            .filter(|place| (from..=to).contains(&(place - self.equilibrium)))
+            .filter(|place| (place - self.equilibrium).abs() > 1e-9 * size)
+            .find(|place| grows(place - self.equilibrium))
+    }
+}
+
+/// The polynomial near rest, where rounding of the force itself would show at this amplitude.
+fn near(
+    force: &Expr,
+    coordinate: Symbol,
+    equilibrium: &Expr,
+    numbers: &BTreeMap<Symbol, f64>,
+    amplitude: f64,
+) -> Option<Near> {
+    /// Relative errors below this are no loss.
+    const HARMLESS: f64 = 2e-14;
+    let place = equilibrium.evaluate(numbers).ok()?;
+    let cancels = [0.31 * amplitude, -0.7 * amplitude].into_iter().any(|y| {
+        let there = |symbol: Symbol| match symbol == coordinate {
+            // The sum of equilibrium and distance is rounded itself.
+            true if place == 0.0 => Some((y, 0.0)),
+            true => Some((place + y, 0.5 * f64::EPSILON * place.abs())),
+            false => numbers.get(&symbol).map(|&value| (value, 0.0)),
+        };
+        force
+            .evaluate_rounded(&there)
+            .is_some_and(|(value, error)| error > HARMLESS * value.abs())
+    });
+    if !cancels {
+        return None;
+    }
+    let moved = Expr::from(coordinate) + equilibrium.clone();
+    let about = force.substitute(coordinate, &moved).ok()?;
+    let parts = taylor(&about, &[(coordinate, Rational::zero())], DEGREE).ok()?;
+    let mut at_one = numbers.clone();
+    at_one.insert(coordinate, 1.0);
+    let mut coefficients: Vec<f64> = parts
+        .iter()
+        .map(|part| part.evaluate(&at_one).ok())
+        .collect::<Option<_>>()?;
+    // At the equilibrium the force is zero, whatever rounding says.
+    *coefficients.first_mut()? = 0.0;
+    let size = |k: usize, radius: f64| coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32));
+    let good = |radius: f64| {
+        let leading = (1..=3).map(|k| size(k, radius)).fold(0.0, f64::max);
+        let last = coefficients.len() - 1;
+        (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
+    };
+    let mut radius = amplitude.abs();
+    let halvings = (0..200).find(|_| {
+        let found = good(radius);
+        if !found {
+            radius *= 0.5;
+        }
+        found
+    });
+    halvings.map(|_| Near { coefficients, radius })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn force(text: &str, equilibrium: &str, amplitude: f64) -> Force {
+        let [force, equilibrium]: [Expr; 2] = [text, equilibrium].map(|text| text.parse().unwrap());
+        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
+    }
+
+    #[test]
+    fn no_digits_are_lost_near_rest() {
+        type Truth = fn(f64) -> f64;
+        let cases: [(&str, &str, Truth); 4] = [
+            ("exp(x) - 1", "0", |y| y.exp_m1()),
+            ("exp(-x) - exp(-2*x)", "0", |y| (-2.0 * y).exp() * y.exp_m1()),
+            ("x^2 - 2", "sqrt(2)", |y| y * (y + 8.0_f64.sqrt())),
+            ("1/(1 - x)^2 - 4", "1/2", |y| {
+                4.0 * (4.0 * y - 4.0 * y * y) / (1.0 - 2.0 * y).powi(2)
+            }),
+        ];
+        for (text, equilibrium, truth) in cases {
+            for power in 1..20 {
+                let amplitude = 10.0_f64.powi(-power);
+                let found = force(text, equilibrium, amplitude);
+                for y in [amplitude, -0.37 * amplitude, 0.01 * amplitude] {
+                    let error = found.at(y) / truth(y) - 1.0;
+                    // A hundredth of the amplitude may lose what does not count beside the whole.
+                    assert!(
+                        error.abs() < 3e-14 * amplitude / y.abs() * 10.0,
+                        "{text} at {y}: {error:e}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn poles_and_ends_are_found() {
+        let gap = |text: &str, from, to| force(text, "0", 1.0).gap(from, to);
+        let near = |found: Option<f64>, place: f64| found.is_some_and(|found| (found - place).abs() < 1e-6);
+        assert!(near(gap("x/(1 - x)^2", -2.0, 2.0), 1.0));
+        assert!(near(gap("x/(1 - 2*x + x^2)", -2.0, 2.0), 1.0));
+        assert!(near(gap("x - 1/4/(1 - x)^2", -2.0, 2.0), 1.0));
+        assert!(near(
+            gap("tan(x)", -1.6, 1.6).map(f64::abs),
+            std::f64::consts::FRAC_PI_2
+        ));
+        assert!(near(gap("x + log(1 + x)", -1.5, 1.5), -1.0));
+        assert!(near(gap("x/sqrt(1 - x^2)", -1.5, 1.5).map(f64::abs), 1.0));
+        assert!(near(gap("asin(x)", -1.5, 1.5).map(f64::abs), 1.0));
+        for (text, reach) in [
+            ("x/(1 - x)^2", 0.999),
+            ("tan(x)", 1.57),
+            ("sin(x)/x + x", 1.0),
+            ("1/x", 2.0),
+            ("x^(-1/3)", 2.0),
+            ("x + (x - 1)^(3/2)*H(x - 1)", 3.0),
+            ("x + 5*abs(x - 1) + sgn(x - 1)", 3.0),
+            ("x + H(x - 1)/(x + 1)", 2.0),
+            ("x^3/(1 + x^2)", 1e6),
+        ] {
+            assert_eq!(gap(text, -reach, reach), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! How many digits of a value rounding leaves: an expression evaluated together with a bound of its rounding error.
+//!
+//! Reference: N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., SIAM 2002, section 3.3 (running error
+//! analysis).
+//!
+//! `4*(cos(A/sqrt(2)) - cos(A))/A^2` is right as a formula and has no correct digit at `A = 1e-8`: both cosines are one. Whoever
+//! evaluates it has to know.
+
+use num_traits::{One, Signed};
+
+use super::{Expr, Node};
+use crate::exact::rational::to_f64;
+use crate::symbol::Symbol;
+
+/// A value and a bound of its absolute error.
+pub type Rounded = (f64, f64);
+
+/// Half a unit in the last place, and some room for library functions that are not quite as good.
+const UNIT: f64 = 1.5 * f64::EPSILON;
+
+impl Expr {
+    /// The value with a bound of the error that rounding makes, given the same of the symbols; `None` where a symbol is missing.
+    ///
+    /// ```
+    /// use lindstedt::expr::Expr;
+    /// let law: Expr = "(1 - cos(A))/A^2".parse()?;
+    /// let (value, error) = law.evaluate_rounded(&|_| Some((1e-3, 0.0))).unwrap();
+    /// assert!((value - 0.5).abs() < 1e-6 && error > 1e-12 && error < 1e-8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn evaluate_rounded(&self, value_of: &dyn Fn(Symbol) -> Option<Rounded>) -> Option<Rounded> {
+        self.fold(|expr, children: &[Rounded]| node(expr, children, value_of).ok_or(()))
+            .ok()
+    }
+}
+
+fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<Rounded>) -> Option<Rounded> {
+    Some(match (expr.node(), children) {
+        (Node::Number(number), _) => {
+            let value = to_f64(number);
+            let exact = number.denom().is_one() && value.abs() < 2.0_f64.powi(53);
+            (value, if exact { 0.0 } else { UNIT * value.abs() })
+        }
+        (Node::Pi, _) => (std::f64::consts::PI, UNIT),
+        (Node::Symbol(symbol), _) => value_of(*symbol)?,
+        (Node::Sum(_), terms) => {
+            let (mut value, mut error) = (0.0, 0.0);
+            for (term, own) in terms {
+                value += term;
+                error += own + UNIT * f64::abs(value);
+            }
+            (value, error)
+        }
+        (Node::Product(coefficient, factors), values) => {
+            let coefficient = to_f64(coefficient);
+            // Where a step is zero the other factors need no value.
+            let closed = factors
+                .iter()
+                .zip(values)
+                .any(|(factor, value)| value.0 == 0.0 && factor.is_stepwise());
+            if closed {
+                return Some((0.0, 0.0));
+            }
+            let (mut value, mut error) = (coefficient, UNIT * coefficient.abs());
+            if coefficient.abs() == 1.0 {
+                error = 0.0;
+            }
+            for (factor, own) in values {
+                error = error * f64::abs(*factor) + f64::abs(value) * own;
+                value *= factor;
+                error += UNIT * f64::abs(value);
+            }
+            (value, error)
+        }
+        (Node::Power(_, exponent), [base, power]) => {
+            let number = exponent.as_number();
+            let raised = |base: f64, power: f64| match number {
+                Some(number) if base < 0.0 && number.denom() % 2_u8 != 0_u8.into() => {
+                    let odd = number.numer() % 2_u8 != 0_u8.into();
+                    base.abs().powf(power) * if odd { -1.0 } else { 1.0 }
+                }
+                _ => base.powf(power),
+            };
+            let slack = if number.is_some_and(|number| number.denom().is_one() && number.abs() <= One::one()) {
+                0.0
+            } else {
+                power.1
+            };
+            moved(&|shift| raised(base.0 + shift * base.1, power.0 + shift * slack))
+        }
+        (Node::Function(function, _), [one]) => {
+            moved(&|shift| function.value(one.0 + shift * one.1, one.0 + shift * one.1))
+        }
+        (Node::Function(function, _), [one, other]) => {
+            let (value, error) = moved(&|shift| function.value(one.0 + shift * one.1, other.0 + shift * other.1));
+            // Of `max` and `min` the arguments may move against each other.
+            (value, error + one.1 + other.1)
+        }
+        (Node::Power(..) | Node::Function(..), _) => return None,
+    })
+}
+
+/// A function of one number at zero, and how far it moves when that number moves to one side or the other.
+fn moved(function: &dyn Fn(f64) -> f64) -> Rounded {
+    let value = function(0.0);
+    let spread = [-1.0, 1.0].map(|side| (function(side) - value).abs());
+    // At the edge of where the function is defined only one side says something.
+    let spread = spread.into_iter().fold(0.0, f64::max);
+    let error = if spread.is_nan() { f64::INFINITY } else { spread };
+    (value, error + 2.0 * UNIT * value.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bound_covers_the_error_and_is_no_empty_word() {
+        // Each beside a form of the same function that does not cancel.
+        let pairs = [
+            ("(1 - cos(A))/A^2", "sin(A/2)^2/(2*(A/2)^2)"),
+            ("exp(A) - exp(-A)", "2*sinh(A)"),
+            ("sqrt(1 + A^2) - 1", "A^2/(1 + sqrt(1 + A^2))"),
+            ("1/(1 - A) - 1/(1 + A)", "2*A/((1 - A)*(1 + A))"),
+            ("2*J1(A)/A", "J0(A) + 2*J1(A)/A - J0(A)"),
+        ];
+        for (cancels, exact) in pairs {
+            let [cancels, exact] = [cancels, exact].map(|text| text.parse::<Expr>().unwrap());
+            for k in 0..60 {
+                let amplitude = 0.7 * 0.8_f64.powi(k);
+                let at = |expr: &Expr| expr.evaluate_rounded(&|_| Some((amplitude, 0.0))).unwrap();
+                let ((value, bound), (truth, own)) = (at(&cancels), at(&exact));
+                let error = (value - truth).abs();
+                assert!(error <= bound + own, "{cancels} at {amplitude}: {error} {bound}");
+                assert!(
+                    bound < 1e-12 || value.abs() < 1e3 * bound.max(1e-12),
+                    "{cancels} at {amplitude}: {bound}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_closed_gate_asks_for_nothing_behind_it() {
+        let barrier: Expr = "x + (x - 1)^(3/2)*H(x - 1)".parse().unwrap();
+        let (value, error) = barrier.evaluate_rounded(&|_| Some((0.25, 0.0))).unwrap();
+        assert_eq!(value, 0.25);
+        assert!(error < 1e-15);
+        assert_eq!(barrier.evaluate_rounded(&|_| None), None);
+    }
+}

@@ -1,0 +1,481 @@
+//! A balance of harmonics solved by numbers: the branch that starts at rest, followed in the amplitude.
+//!
+//! References: M. Krack, J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019, chapter 4; E. L.
+//! Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM 2003, chapters 2 and 6 (arclength, steps).
+//!
+//! ```text
+//! x = alpha sum_k b_k cos(k theta),   F_k = c_k/alpha - k^2 w b_k = 0,   sum_k b_k = +-1,   w = omega^2
+//! c_k = (2/pi) int_0^pi f(x) cos(k theta) dtheta                                           (c_0 counts half)
+//! unknowns ln w, b_k, ln alpha: one more than equations; predicted along the tangent, corrected at right angles to it
+//! ```
+//!
+//! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish, or, for a force without
+//! linear part such as `x^3`, keep the values that belong to its lowest power. A branch that turns back in the amplitude is
+//! followed round the turn; one that never reaches the amplitude asked for is refused in words.
+//!
+//! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
+//! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
+
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
+use num_traits::One;
+
+use crate::conservative::force::Force;
+use crate::decimal::significant;
+use crate::exact::Integer;
+use crate::ode::quadrature::nodes_and_weights;
+use crate::ode::root::find_root;
+use crate::series::FourierSeries;
+
+/// A balance solved by numbers.
+pub struct Balance {
+    /// omega^2.
+    pub frequency_squared: f64,
+    /// The motion about the equilibrium.
+    pub motion: FourierSeries<f64>,
+}
+
+/// Why a balance has no solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Lost {
+    /// The branch never reaches the amplitude.
+    #[error(
+        "no balance: followed from rest, the motion of these harmonics ends at A = {}; another --order may reach farther",
+        significant(*amplitude, 6)
+    )]
+    Ends {
+        /// The largest amplitude reached.
+        amplitude: f64,
+    },
+    /// There is no motion to start from.
+    #[error("no balance: at small amplitudes these harmonics have no motion to start from")]
+    NoStart,
+    /// The motion found runs through a place where the force has no value.
+    #[error("no balance: the motion of these harmonics runs through {}, where the force has no finite value", significant(*place, 6))]
+    Gap {
+        /// Where.
+        place: f64,
+    },
+}
+
+/// Solves the balance of `harmonics` for the motion with `x(0) = amplitude` about the equilibrium. `degree` is that of a
+/// polynomial force.
+///
+/// # Errors
+/// [`Lost`].
+pub fn balance(force: &Force, degree: Option<u32>, harmonics: &[usize], amplitude: f64) -> Result<Balance, Lost> {
+    let problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
+    let mut state = problem.followed()?;
+    if degree.is_none() {
+        state = problem.refined(state)?;
+    }
+    let highest = harmonics.last().copied().unwrap_or(0);
+    let mut cosine = vec![0.0; highest + 1];
+    for (&k, value) in harmonics.iter().zip(state.shape(problem.count).iter()) {
+        cosine[k] = value * amplitude.abs();
+    }
+    let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    let (low, high) = problem.range(&state);
+    if degree.is_none()
+        && let Some(place) = force.gap(low, high)
+    {
+        return Err(Lost::Gap { place });
+    }
+    Ok(Balance {
+        frequency_squared: state.frequency_squared(),
+        motion,
+    })
+}
+
+/// `ln w`, `b_k`, `ln alpha`.
+#[derive(Clone, Debug)]
+struct State(DVector<f64>);
+
+impl State {
+    fn frequency_squared(&self) -> f64 {
+        self.0[0].exp()
+    }
+
+    fn shape(&self, count: usize) -> DVector<f64> {
+        self.0.rows(1, count).into_owned()
+    }
+
+    fn logarithm(&self) -> f64 {
+        self.0[self.0.len() - 1]
+    }
+}
+
+struct Problem<'a> {
+    force: &'a Force,
+    harmonics: &'a [usize],
+    count: usize,
+    /// Where the first harmonic stands.
+    first: usize,
+    /// Points of equal steps that are enough for a polynomial, or to begin with.
+    points: usize,
+    polynomial: bool,
+    amplitude: f64,
+    /// Where the force turns fast, up to this distance.
+    cuts: Vec<f64>,
+    reach: f64,
+}
+
+/// Where a sum takes the force, and what stands before its value and before its slope.
+struct Nodes {
+    /// One row of cosines of the harmonics for each point.
+    cosines: DMatrix<f64>,
+    weights: Vec<f64>,
+    /// A jump of the force, over the speed at which it is crossed; `None` at a point of the sum.
+    jumps: Vec<Option<f64>>,
+}
+
+impl<'a> Problem<'a> {
+    fn new(force: &'a Force, degree: Option<u32>, harmonics: &'a [usize], amplitude: f64) -> Option<Self> {
+        let highest = *harmonics.last()?;
+        let reach = 3.0 * amplitude.abs();
+        let cuts = match degree {
+            Some(_) => vec![],
+            None => force.cuts(-reach, reach),
+        };
+        Some(Self {
+            cuts,
+            reach,
+            force,
+            harmonics,
+            count: harmonics.len(),
+            first: harmonics.iter().position(|&k| k == 1)?,
+            points: degree.map_or(8 * highest + 32, |degree| (degree as usize + 1) * highest / 2 + 2),
+            polynomial: degree.is_some(),
+            amplitude: (amplitude.is_finite() && amplitude != 0.0).then_some(amplitude)?,
+        })
+    }
+
+    fn side(&self) -> f64 {
+        self.amplitude.signum()
+    }
+
+    /// The smallest and the largest distance from the equilibrium along a motion.
+    fn range(&self, state: &State) -> (f64, f64) {
+        const SAMPLES: usize = 256;
+        let alpha = state.logarithm().exp();
+        let value = |i: usize| alpha * self.displacement(state, PI * i as f64 / SAMPLES as f64);
+        (0..=SAMPLES)
+            .map(value)
+            .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
+    }
+
+    /// `sum b_k cos(k theta)`.
+    fn displacement(&self, state: &State, theta: f64) -> f64 {
+        let wave = |(j, &k): (usize, &usize)| state.0[j + 1] * (k as f64 * theta).cos();
+        self.harmonics.iter().enumerate().map(wave).sum()
+    }
+
+    fn velocity(&self, state: &State, theta: f64) -> f64 {
+        let wave = |(j, &k): (usize, &usize)| -(k as f64) * state.0[j + 1] * (k as f64 * theta).sin();
+        self.harmonics.iter().enumerate().map(wave).sum()
+    }
+
+    /// The points for sums along this motion, `finer` times as many as usual.
+    fn nodes(&self, state: &State, finer: usize) -> Nodes {
+        let cuts = if self.polynomial {
+            vec![]
+        } else {
+            let (low, high) = self.range(state);
+            let reach = f64::max(high, -low);
+            if reach <= self.reach {
+                self.cuts.clone()
+            } else {
+                self.force.cuts(-1.25 * reach, 1.25 * reach)
+            }
+        };
+        let (angles, weights, jumps) = if cuts.is_empty() {
+            let points = self.points * finer;
+            let angles: Vec<f64> = (0..points).map(|i| PI * (i as f64 + 0.5) / points as f64).collect();
+            (angles, vec![PI / points as f64; points], vec![None; points])
+        } else {
+            self.between_crossings(state, &cuts, finer)
+        };
+        let cosines = DMatrix::from_fn(angles.len(), self.count, |i, j| {
+            (self.harmonics[j] as f64 * angles[i]).cos()
+        });
+        Nodes {
+            cosines,
+            weights,
+            jumps,
+        }
+    }
+
+    /// Gauss points between the instants at which the motion crosses one of the `cuts`, and those instants themselves.
+    fn between_crossings(&self, state: &State, cuts: &[f64], finer: usize) -> (Vec<f64>, Vec<f64>, Vec<Option<f64>>) {
+        let alpha = state.logarithm().exp();
+        let highest = self.harmonics.last().copied().unwrap_or(1);
+        let steps = 8 * highest + 64;
+        let place = |i: usize| PI * i as f64 / steps as f64;
+        let positions: Vec<f64> = (0..=steps)
+            .map(|i| alpha * self.displacement(state, place(i)))
+            .collect();
+        let mut crossings: Vec<(f64, f64)> = Vec::new();
+        for (i, pair) in positions.windows(2).enumerate() {
+            for &cut in cuts.iter().filter(|&&cut| (pair[0] - cut) * (pair[1] - cut) <= 0.0) {
+                let excess = |theta: f64| alpha * self.displacement(state, theta) - cut;
+                if let Ok(theta) = find_root(excess, place(i), place(i + 1)) {
+                    crossings.push((theta, cut));
+                }
+            }
+        }
+        crossings.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut ends: Vec<f64> = crossings.iter().map(|crossing| crossing.0).collect();
+        ends.insert(0, 0.0);
+        ends.push(PI);
+        let (mut angles, mut weights, mut jumps) = (vec![], vec![], vec![]);
+        for pair in ends.windows(2) {
+            let length = pair[1] - pair[0];
+            if length <= 1e-14 {
+                continue;
+            }
+            // Twenty Gauss points for every few waves of the highest harmonic.
+            let pieces = (1 + (length * highest as f64 / 8.0) as usize) * finer;
+            for piece in 0..pieces {
+                let at = |part: usize| part as f64 / pieces as f64;
+                // Points crowd at both ends, where a root or a corner makes the force less than smooth.
+                for (u, weight) in nodes_and_weights(at(piece), at(piece + 1)) {
+                    angles.push(pair[0] + length * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u));
+                    weights.push(weight * length * 30.0 * (u * (1.0 - u)).powi(2));
+                    jumps.push(None);
+                }
+            }
+        }
+        for (theta, cut) in crossings {
+            let step = 1e-9 * alpha;
+            let jump = self.force.at(cut + step) - self.force.at(cut - step);
+            let speed = alpha * self.velocity(state, theta).abs();
+            let size = self.force.at(cut + step).abs().max(self.force.at(cut - step).abs());
+            if jump.abs() > 1e-5 * size && speed > 0.0 {
+                angles.push(theta);
+                weights.push(0.0);
+                jumps.push(Some(jump / speed));
+            }
+        }
+        (angles, weights, jumps)
+    }
+
+    /// The equations and their derivatives by all unknowns, in units of `w`.
+    fn equations(&self, state: &State, nodes: &Nodes) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let count = self.count;
+        let (w, alpha) = (state.frequency_squared(), state.logarithm().exp());
+        let shape = state.shape(count);
+        let position = alpha * (&nodes.cosines * &shape);
+        let unit = alpha * w;
+        let (mut forces, mut slopes) = (position.clone(), position.clone());
+        for (i, &y) in position.iter().enumerate() {
+            match nodes.jumps[i] {
+                Some(jump) => (forces[i], slopes[i]) = (0.0, jump / w),
+                None => {
+                    forces[i] = nodes.weights[i] * self.force.at(y) / unit;
+                    slopes[i] = nodes.weights[i] * self.force.slope(y) / w;
+                }
+            }
+        }
+        if forces.iter().chain(slopes.iter()).any(|value| !value.is_finite()) {
+            return None;
+        }
+        let mut weighted = nodes.cosines.clone();
+        for mut column in weighted.column_iter_mut() {
+            column.component_mul_assign(&slopes);
+        }
+        let projected = nodes.cosines.transpose() * &forces;
+        let products = nodes.cosines.transpose() * &weighted;
+        let mut residual = DVector::zeros(count + 1);
+        let mut jacobian = DMatrix::zeros(count + 1, count + 2);
+        for (row, &k) in self.harmonics.iter().enumerate() {
+            let share = if k == 0 { 1.0 } else { 2.0 } / PI;
+            let inertia = (k * k) as f64;
+            residual[row] = share * projected[row] - inertia * shape[row];
+            jacobian[(row, 0)] = -inertia * shape[row];
+            let mut along = 0.0;
+            for column in 0..count {
+                let entry = share * products[(row, column)];
+                jacobian[(row, column + 1)] = entry;
+                along += entry * shape[column];
+            }
+            jacobian[(row, row + 1)] -= inertia;
+            jacobian[(row, count + 1)] = along - share * projected[row];
+        }
+        residual[count] = shape.sum() - self.side();
+        for column in 0..count {
+            jacobian[(count, column + 1)] = 1.0;
+        }
+        Some((residual, jacobian))
+    }
+
+    /// Newton's iteration from `start`, every step at right angles to `direction`.
+    fn corrected(&self, start: &State, direction: &DVector<f64>, finer: usize, iterations: usize) -> Option<State> {
+        let mut state = start.clone();
+        let size = self.count + 2;
+        let mut last = f64::INFINITY;
+        for _ in 0..iterations {
+            let (residual, jacobian) = self.equations(&state, &self.nodes(&state, finer))?;
+            let mut system = jacobian.insert_row(size - 1, 0.0);
+            system.set_row(size - 1, &direction.transpose());
+            let right = residual.insert_row(size - 1, 0.0);
+            let change = system.lu().solve(&right)?;
+            state.0 -= &change;
+            let moved = change.amax();
+            if !moved.is_finite() || moved > 5.0 {
+                return None;
+            }
+            // Rounding may keep the last digits moving.
+            if moved <= 1e-14 || (moved <= 1e-10 && moved >= 0.5 * last) {
+                return Some(state);
+            }
+            last = moved;
+        }
+        (last <= 1e-9).then_some(state)
+    }
+
+    /// At fixed amplitude.
+    fn at_amplitude(&self, start: &State, finer: usize) -> Option<State> {
+        const ITERATIONS: usize = 40;
+        let mut direction = DVector::zeros(self.count + 2);
+        direction[self.count + 1] = 1.0;
+        self.corrected(start, &direction, finer, ITERATIONS)
+    }
+
+    /// The motion of one term, and how large its first corrections are.
+    fn of_one_term(&self, amplitude: f64) -> Option<(State, f64)> {
+        let mut state = State(DVector::zeros(self.count + 2));
+        state.0[self.first + 1] = self.side();
+        state.0[self.count + 1] = amplitude.abs().ln();
+        let nodes = self.nodes(&state, 1);
+        let position = amplitude.abs() * (&nodes.cosines * state.shape(self.count));
+        let forces = DVector::from_fn(position.len(), |i, _| match nodes.jumps[i] {
+            Some(_) => 0.0,
+            None => nodes.weights[i] * self.force.at(position[i]),
+        });
+        let parts = nodes.cosines.transpose() * forces * (2.0 / PI / amplitude);
+        let w = parts[self.first];
+        if !(w > 0.0 && w.is_finite()) {
+            return None;
+        }
+        state.0[0] = w.ln();
+        let correction = |(part, &k): (&f64, &usize)| (part / (w * (k * k).max(1) as f64)).abs();
+        let all: f64 = parts.iter().zip(self.harmonics).map(correction).sum();
+        Some((state, all - 1.0)).filter(|found| found.1.is_finite())
+    }
+
+    /// A motion of small amplitude: the nearest at which the first harmonic nearly is the whole, or, where there is none, the
+    /// nearest below which nothing changes any more, as for a power of x.
+    fn start(&self) -> Option<State> {
+        /// Corrections so small that the branch is that of rest.
+        const NEARLY_ALONE: f64 = 0.01;
+        const HALVINGS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 13, 17, 25, 40, 60, 100];
+        let mut tried: Vec<(State, f64)> = Vec::new();
+        for halving in HALVINGS {
+            let amplitude = self.amplitude * 0.5_f64.powi(halving);
+            let Some((alone, corrections)) = self.of_one_term(amplitude) else {
+                continue;
+            };
+            if corrections <= NEARLY_ALONE
+                && let Some(found) = self.near(&alone, 0.05)
+            {
+                return Some(found);
+            }
+            tried.push((alone, corrections));
+        }
+        let deepest = tried.last()?.1;
+        let settled = |entry: &&(State, f64)| (entry.1 - deepest).abs() <= 1e-6;
+        let (alone, _) = tried.iter().rev().take_while(settled).last()?;
+        self.near(alone, 0.5)
+    }
+
+    /// A solution close to a guess.
+    fn near(&self, guess: &State, distance: f64) -> Option<State> {
+        self.at_amplitude(guess, 1)
+            .filter(|found| (&found.0 - &guess.0).amax() <= distance)
+    }
+
+    /// The branch from its start to the amplitude.
+    fn followed(&self) -> Result<State, Lost> {
+        const LONGEST: f64 = 0.5;
+        const SHORTEST: f64 = 1e-6;
+        const STEPS: usize = 3000;
+        /// A correction longer than this share of its step leads to another branch, or round a bend too fast.
+        const SHARE: f64 = 0.2;
+        let goal = self.amplitude.abs().ln();
+        let size = self.count + 2;
+        let mut state = self.start().ok_or(Lost::NoStart)?;
+        let mut direction = DVector::zeros(size);
+        direction[size - 1] = 1.0;
+        let begin = state.logarithm();
+        let (mut length, mut farthest) = (LONGEST / 4.0, begin);
+        for _ in 0..STEPS {
+            let before = state.logarithm();
+            if (before - goal).abs() < 1e-12 {
+                return Ok(state);
+            }
+            let Some(tangent) = self.tangent(&state, &direction) else {
+                break;
+            };
+            let left = (goal - before) / tangent[size - 1];
+            let last = left > 0.0 && left <= length;
+            let step = if last { left } else { length };
+            let mut predicted = State(&state.0 + step * &tangent);
+            if last {
+                predicted.0[size - 1] = goal;
+            }
+            let found = if last {
+                self.at_amplitude(&predicted, 1)
+            } else {
+                self.corrected(&predicted, &tangent, 1, 12)
+            };
+            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * step;
+            match found.filter(near) {
+                Some(found) if last => return Ok(found),
+                Some(found) => {
+                    (state, direction) = (found, tangent);
+                    length = f64::min(1.7 * length, LONGEST);
+                    farthest = farthest.max(state.logarithm());
+                }
+                None => length = 0.5 * step,
+            }
+            if length < SHORTEST || state.logarithm() < begin - 1.0 {
+                break;
+            }
+        }
+        Err(Lost::Ends {
+            amplitude: farthest.exp() * self.side(),
+        })
+    }
+
+    /// The direction of the branch, forward.
+    fn tangent(&self, state: &State, before: &DVector<f64>) -> Option<DVector<f64>> {
+        let size = self.count + 2;
+        let (_, jacobian) = self.equations(state, &self.nodes(state, 1))?;
+        let mut system = jacobian.insert_row(size - 1, 0.0);
+        system.set_row(size - 1, &before.transpose());
+        let mut right = DVector::zeros(size);
+        right[size - 1] = 1.0;
+        let tangent = system.lu().solve(&right)?;
+        let norm = tangent.norm();
+        (norm.is_finite() && norm > 0.0).then(|| tangent / norm)
+    }
+
+    /// The same solution by finer and finer sums.
+    fn refined(&self, mut state: State) -> Result<State, Lost> {
+        const FINEST: usize = 64;
+        let mut finer = 1;
+        while finer < FINEST {
+            finer *= 2;
+            let Some(next) = self.at_amplitude(&state, finer) else {
+                break;
+            };
+            let change = (&next.0 - &state.0).amax();
+            state = next;
+            if change < 1e-12 {
+                return Ok(state);
+            }
+        }
+        Ok(state)
+    }
+}

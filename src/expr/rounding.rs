@@ -133,7 +133,7 @@ mod tests {
                 let error = (value - truth).abs();
                 assert!(error <= bound + own, "{cancels} at {amplitude}: {error} {bound}");
                 assert!(
-                    bound < 1e-12 || value.abs() < 1e3 * bound.max(1e-12),
+                    bound <= 1e-14 * value.abs() / amplitude.powi(2),
                     "{cancels} at {amplitude}: {bound}"
                 );
             }

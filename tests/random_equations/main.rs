@@ -238,6 +238,7 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
             Ok(solution) => {
                 let found = numbers::evaluate(&oscillator, &solution, &numbers)
                     .map(|found| found.frequency_squared / unit)
+                    .ok()
                     .filter(|squared| *squared > 0.0);
                 judged(found, expected)
             }

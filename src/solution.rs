@@ -6,7 +6,7 @@ mod branch;
 
 use std::fmt;
 
-use num_traits::One;
+use num_traits::{One, Signed};
 
 pub use branch::Branch;
 
@@ -168,6 +168,23 @@ pub struct Definition {
     pub meaning: Expr,
 }
 
+impl Definition {
+    /// The meaning as people read it.
+    pub fn meaning_in_words(&self) -> String {
+        constant_in_words(&self.meaning)
+    }
+}
+
+/// A constant; a fraction of many digits, which is a rounded number, as a decimal.
+pub fn constant_in_words(value: &Expr) -> String {
+    const MANY: usize = 16;
+    let text = value.to_string();
+    match value.as_number() {
+        Some(number) if !number.is_integer() && text.len() > MANY => crate::decimal::significant(to_f64(number), 15),
+        _ => text,
+    }
+}
+
 /// A law that is no polynomial: `omega^2 = 2*J1(A)/A`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedForm {
@@ -197,6 +214,48 @@ pub struct System {
     pub unknowns: Vec<Symbol>,
     /// Each is equal to zero.
     pub equations: Vec<Expr>,
+}
+
+/// The limit cycle that a solution describes, among those of its equation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitCycle {
+    /// The amplitude, in the convention of the solution.
+    pub amplitude: Polynomial,
+    /// Which of the cycles it is, counted from one.
+    pub number: usize,
+    /// All limit cycles of the equation that start from a harmonic motion, smallest first.
+    pub cycles: Vec<LeadingCycle>,
+    /// Parameters that are small together with the small parameter of the solution.
+    pub small_with: Vec<Symbol>,
+}
+
+/// A limit cycle to leading order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadingCycle {
+    /// Its amplitude where the small parameter vanishes.
+    pub amplitude: Expr,
+    /// Where this is positive the cycle attracts, and repels where it is negative; `None` at a multiple root of the equation
+    /// for the amplitude, which says neither.
+    pub attracts_where: Option<Expr>,
+}
+
+impl LeadingCycle {
+    /// Whether it attracts or repels, in words: `attracts for mu > 0 and repels for mu < 0`.
+    pub fn stability(&self) -> String {
+        match &self.attracts_where {
+            None => "is at a multiple root: attracts on one side at most".to_owned(),
+            Some(condition) => match condition.as_number() {
+                Some(number) if number.is_positive() => "attracts".to_owned(),
+                Some(_) => "repels".to_owned(),
+                None => {
+                    let negative = condition.has_leading_minus();
+                    let scale = if negative { -condition } else { condition.clone() };
+                    let (stable, unstable) = if negative { ('<', '>') } else { ('>', '<') };
+                    format!("attracts for {scale} {stable} 0 and repels for {scale} {unstable} 0")
+                }
+            },
+        }
+    }
 }
 
 /// A closed-form approximation of a periodic motion.
@@ -237,8 +296,8 @@ pub struct Solution {
     pub system: Option<System>,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomial>,
-    /// Self-excited oscillators: the amplitude (in the convention above) that the equation itself determines.
-    pub limit_cycle: Option<Polynomial>,
+    /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
+    pub limit_cycle: Option<LimitCycle>,
     /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
     pub numerical: bool,
     /// What is known of where the formula holds.
@@ -296,6 +355,23 @@ impl Solution {
         self.equation.split('\'').next().unwrap_or("x")
     }
 
+    /// The small parameter, and those that are small together with it.
+    pub fn small_parameters(&self) -> impl Iterator<Item = Symbol> + '_ {
+        let others = self.limit_cycle.iter().flat_map(|cycle| &cycle.small_with);
+        std::iter::once(self.small_parameter).chain(others.copied())
+    }
+
+    /// The power of the small parameters in a term.
+    pub fn order_of(&self, monomial: &Monomial) -> i32 {
+        self.small_parameters().map(|name| monomial.exponent(name)).sum()
+    }
+
+    /// The terms of a polynomial without small parameters.
+    pub fn leading(&self, polynomial: &Polynomial) -> Polynomial {
+        self.small_parameters()
+            .fold(polynomial.clone(), |rest, name| rest.truncated(name, 0))
+    }
+
     fn defines(&self, symbol: Symbol) -> bool {
         self.definitions.iter().any(|definition| definition.symbol == symbol)
     }
@@ -304,13 +380,11 @@ impl Solution {
     pub fn round_coefficients(&mut self) {
         let round = |number: &Rational| crate::decimal::rounded(to_f64(number));
         let rounded = |polynomial: &Polynomial| polynomial.map(round);
-        for law in [
-            &mut self.frequency,
-            &mut self.frequency_squared,
-            &mut self.relation,
-            &mut self.limit_cycle,
-        ] {
+        for law in [&mut self.frequency, &mut self.frequency_squared, &mut self.relation] {
             *law = law.as_ref().map(rounded);
+        }
+        if let Some(cycle) = &mut self.limit_cycle {
+            cycle.amplitude = rounded(&cycle.amplitude);
         }
         self.displacement = self.displacement.map(|coefficient, _| rounded(coefficient));
         for step in &mut self.steps {
@@ -335,7 +409,10 @@ impl Solution {
                 let (numerator, denominator) = self.degrees.unwrap_or((order, 0));
                 format!("[{numerator}/{denominator}]")
             }
-            Method::LindstedtPoincare => format!("to order {order} in {}", self.small_parameter),
+            Method::LindstedtPoincare => {
+                let names: Vec<&str> = self.small_parameters().map(|symbol| symbol.name()).collect();
+                format!("to order {order} in {}", names.join(" and "))
+            }
             Method::HomotopyPerturbation | Method::ParameterExpansion => format!("to order {order} in p"),
             Method::HomotopyAnalysis => format!("to order {order} in q"),
             Method::IterationPerturbation if order == 1 => "after one pass".to_owned(),
@@ -385,7 +462,7 @@ impl Solution {
     /// A polynomial with the lowest power of the small parameter first.
     fn lowest_first(&self, law: &Polynomial) -> String {
         let mut terms: Vec<_> = law.terms().collect();
-        terms.sort_by_key(|(monomial, _)| monomial.exponent(self.small_parameter));
+        terms.sort_by_key(|(monomial, _)| self.order_of(monomial));
         let mut text = String::new();
         for (monomial, number) in terms {
             let term = match (self.numerical && !number.is_integer(), monomial.factors().is_empty()) {

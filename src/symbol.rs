@@ -55,6 +55,24 @@ impl Symbol {
     }
 }
 
+/// A name for something that the program introduces: `wanted` where nothing in `taken` is called so, else the first of
+/// `wanted_`, `wanted__`, ... that is free.
+///
+/// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
+///
+/// ```
+/// use lindstedt::symbol::{Symbol, fresh};
+/// assert_eq!(fresh("hbar", &[]).name(), "hbar");
+/// assert_eq!(fresh("hbar", &["hbar".into(), "hbar_".into()]).name(), "hbar__");
+/// ```
+pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
+    let mut name = wanted.to_owned();
+    while taken.iter().any(|symbol| symbol.name() == name) {
+        name.push('_');
+    }
+    Symbol::new(&name)
+}
+
 impl fmt::Display for Symbol {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.0)

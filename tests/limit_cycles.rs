@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use lindstedt::Oscillator;
+use lindstedt::exact::Polynomial;
 use lindstedt::expr::parse_expression;
-use lindstedt::method::{Options, solve};
+use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::solution::Solution;
 use lindstedt::verify::{Values, Verdict, Verification, judge};
 
@@ -12,6 +13,11 @@ fn derive(equation: &str, options: &Options) -> (Oscillator, Solution) {
     let oscillator = Oscillator::parse(equation).expect(equation);
     let solution = solve(&oscillator, options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
     (oscillator, solution)
+}
+
+fn polynomial(text: &str) -> Polynomial {
+    let polynomial = parse_expression(text).unwrap().to_polynomial(&mut |_| None);
+    polynomial.unwrap().expect(text)
 }
 
 fn judged((oscillator, solution): &(Oscillator, Solution), at: &[(&str, &str)]) -> Verification {
@@ -39,4 +45,285 @@ fn cycles_are_judged_at_any_strength() {
         // omega^2 = 1 - mu^2/8 is not positive at 10 and 20, and the verdict says so.
         assert_eq!(judged.verdict == Verdict::Pass, mu == "-3/10");
     }
+}
+
+/// `int x' f_d(x, x') dtheta` over a harmonic motion of amplitude `a`: what the damping terms take in one period, by quadrature.
+fn work(damping: &dyn Fn(f64, f64) -> f64, a: f64, omega: f64) -> f64 {
+    const POINTS: i32 = 64;
+    let power = |k: i32| {
+        let theta = TAU * f64::from(k) / f64::from(POINTS);
+        let (x, v) = (a * theta.cos(), -a * omega * theta.sin());
+        v * damping(x, v)
+    };
+    (0..POINTS).map(power).sum::<f64>() / f64::from(POINTS)
+}
+
+/// Every cycle is named, its work over a period balances, and it attracts where the work grows with the amplitude.
+#[test]
+fn all_cycles_balance_and_attract_as_said() {
+    type Damping = fn(f64, f64) -> f64;
+    let cases: [(&str, Damping, f64, usize); 12] = [
+        ("x'' - mu*(1 - x^2)*x' + x", |x, v| (x * x - 1.0) * v, 1.0, 1),
+        ("x'' + mu*(1 - x^2)*x' + x", |x, v| (1.0 - x * x) * v, 1.0, 1),
+        ("x'' - mu*(1 - x^4)*x' + x", |x, v| (x.powi(4) - 1.0) * v, 1.0, 1),
+        ("x'' - mu*(1 - x^6)*x' + 4*x", |x, v| (x.powi(6) - 1.0) * v, 2.0, 1),
+        ("x'' - mu*(x' - x'^5) + x", |_, v| v.powi(5) - v, 1.0, 1),
+        (
+            "x'' - mu*(1 - x^2 - x'^2)*x' + 2*x",
+            |x, v| (x * x + v * v - 1.0) * v,
+            2f64.sqrt(),
+            1,
+        ),
+        (
+            "x'' + mu*(x' - 3*x^2*x' + x^4*x') + x",
+            |x, v| (1.0 - 3.0 * x * x + x.powi(4)) * v,
+            1.0,
+            2,
+        ),
+        (
+            "x'' - mu*(-4 + 20*x^2 - 8*x^4)*x' + x",
+            |x, v| (4.0 - 20.0 * x * x + 8.0 * x.powi(4)) * v,
+            1.0,
+            2,
+        ),
+        (
+            "x'' - mu*(1 - x^2 + x^4/12)*x' + x",
+            |x, v| (x * x - 1.0 - x.powi(4) / 12.0) * v,
+            1.0,
+            2,
+        ),
+        (
+            "x'' - mu*(1 - x^2 + x^4/10 - x^6/700)*x' + x",
+            |x, v| (x * x - 1.0 - x.powi(4) / 10.0 + x.powi(6) / 700.0) * v,
+            1.0,
+            3,
+        ),
+        ("x'' - mu*(x^2 - x^4)*x' + x", |x, v| (x.powi(4) - x * x) * v, 1.0, 1),
+        (
+            "x'' - mu*(1 - x^2/2)*x' + x + mu*x^2",
+            |x, v| (0.5 * x * x - 1.0) * v,
+            1.0,
+            1,
+        ),
+    ];
+    for (equation, damping, omega, count) in cases {
+        let (_, solution) = derive(equation, &Options::default());
+        let cycle = solution.limit_cycle.as_ref().expect(equation);
+        assert_eq!(cycle.cycles.len(), count, "{equation}: {:?}", cycle.cycles);
+        for leading in &cycle.cycles {
+            let a = leading.amplitude.evaluate(&Default::default()).expect(equation);
+            let [inside, here, outside] = [0.99, 1.0, 1.01].map(|part| work(&damping, part * a, omega));
+            assert!(
+                here.abs() < 1e-10 * (inside.abs() + outside.abs()),
+                "{equation} at {a}: {here}"
+            );
+            let condition = leading.attracts_where.as_ref().expect(equation);
+            let positive = condition.evaluate(&[("mu".into(), 1.0)].into()).expect(equation) > 0.0;
+            assert_eq!(
+                positive,
+                inside < 0.0 && outside > 0.0,
+                "{equation} at {a}: {condition}"
+            );
+            assert!(positive || (inside > 0.0 && outside < 0.0), "{equation} at {a}");
+        }
+    }
+}
+
+/// Each cycle that can be asked for has the frequency of the true one: the error vanishes with the next power.
+#[test]
+fn every_cycle_is_expanded_right() {
+    let mut measured = 0;
+    for (equation, count, mu) in [
+        ("x'' - mu*(1 - x^4)*x' + x", 1, "1/5"),
+        ("x'' - mu*(1 - x^6)*x' + 4*x", 1, "1/5"),
+        ("x'' - mu*(1 - x^2 - x'^2)*x' + 2*x", 1, "1/2"),
+        ("x'' + mu*(x' - 3*x^2*x' + x^4*x') + x", 2, "1/3"),
+        ("x'' - mu*(1 - x^2 + x^4/12)*x' + x", 2, "1/8"),
+        ("x'' - mu*(1 - x^2 + x^4/10 - x^6/700)*x' + x", 3, "1/50"),
+        ("x'' - mu*(x^2 - x^4)*x' + x", 1, "1/5"),
+    ] {
+        for number in 1..=count {
+            let options = Options {
+                cycle: Some(number),
+                ..Options::default()
+            };
+            let problem = derive(equation, &options);
+            let cycle = problem.1.limit_cycle.as_ref().expect(equation);
+            assert_eq!(cycle.number, number as usize);
+            // Backward in the parameter the cycle is the same, and repels where it attracted.
+            for sign in ["", "-"] {
+                let verification = judged(&problem, &[("mu", &format!("{sign}{mu}"))]);
+                assert_eq!(verification.verdict, Verdict::Pass, "{equation}, cycle {number}");
+                // The slope is measured where the error stands well above that of Runge-Kutta, 1e-8.
+                let error = verification.relative_error.expect(equation).abs();
+                let slope = verification.slope.filter(|_| error > 1e-6);
+                assert!(slope.is_some() || error < 1e-6, "{equation}, cycle {number}: {error}");
+                assert!(
+                    slope.is_none_or(|slope| (slope - 4.0).abs() < 0.25),
+                    "{equation}, cycle {number}: {slope:?}"
+                );
+                measured += usize::from(slope.is_some());
+                let attracts = verification.ranges[0].text.ends_with("attracts");
+                let condition = cycle.cycles[number as usize - 1]
+                    .attracts_where
+                    .as_ref()
+                    .expect(equation);
+                let positive = condition.evaluate(&[("mu".into(), 1.0)].into()).expect(equation) > 0.0;
+                assert_eq!(
+                    attracts,
+                    positive == sign.is_empty(),
+                    "{equation}: {:?}",
+                    verification.ranges
+                );
+            }
+        }
+        let beyond = Options {
+            cycle: Some(count + 1),
+            ..Options::default()
+        };
+        let refusal = solve(&Oscillator::parse(equation).unwrap(), &beyond).expect_err(equation);
+        assert!(matches!(refusal, Refusal::NoSuchCycle { .. }), "{refusal}");
+    }
+    // Most of them do.
+    assert!(measured >= 12, "{measured} of 22");
+}
+
+/// Irrational roots are exact: the law of a cycle at sqrt(2) is that of the equation scaled so that it lies at 1.
+#[test]
+fn an_irrational_amplitude_is_a_matter_of_units() {
+    let derived = |equation: &str, order, number| {
+        let options = Options {
+            order: Some(order),
+            cycle: Some(number),
+            ..Options::default()
+        };
+        derive(equation, &options).1
+    };
+    // x = sqrt(2) y: 1 - 3 x^2 + x^4 = 1 - 6 y^2 + 4 y^4.
+    let irrational = derived("x'' + mu*(x' - 3*x^2*x' + x^4*x') + x", 6, 1);
+    let rational = derived("y'' + mu*(y' - 6*y^2*y' + 4*y^4*y') + y", 6, 1);
+    assert_eq!(irrational.frequency, rational.frequency);
+    // With two irrational squares the symbol stands for either root, and both laws come from one polynomial in it.
+    let value = |solution: &Solution| {
+        let law = solution.frequency.as_ref().expect("a law");
+        solution.evaluate(law, &|_| Some(0.05)).expect("a number")
+    };
+    let [small, large] = [1, 2].map(|number| derived("x'' - mu*(1 - x^2 + x^4/10)*x' + x", 4, number));
+    assert_eq!(small.frequency, large.frequency);
+    assert!(value(&small) != value(&large));
+}
+
+/// Parameters of different terms that are small together, and numbers in place of a letter.
+#[test]
+fn what_is_small_together() {
+    let both = derive("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0", &Options::default());
+    let law = both.1.frequency_squared.clone().expect("a law");
+    // eps = 0 leaves van der Pol; first order in eps is Duffing at the amplitude 2.
+    let text = law.to_string();
+    assert_eq!(law, polynomial("1 + 3*eps - 9*eps^2/8 - mu^2/8"), "{text}");
+    assert!(
+        both.1.title().ends_with("to order 2 in eps and mu"),
+        "{}",
+        both.1.title()
+    );
+    let verification = judged(&both, &[("mu", "1/5"), ("eps", "1/10")]);
+    assert_eq!(verification.verdict, Verdict::Pass);
+    assert!(
+        (verification.slope.expect("a slope") - 3.0).abs() < 0.2,
+        "{:?}",
+        verification.slope
+    );
+    // The same with kappa = eps/mu in one parameter, which needs no joint expansion.
+    let single = derive(
+        "x'' - mu*(1 - x^2)*x' + x + kappa*mu*x^3 = 0",
+        &Options {
+            small: Some("mu".into()),
+            ..Options::default()
+        },
+    );
+    let eps = polynomial("kappa*mu");
+    assert_eq!(law.substitute("eps".into(), &eps), single.1.frequency_squared);
+    assert_eq!(single.1.limit_cycle.as_ref().map(|cycle| cycle.amplitude.clone()), {
+        let amplitude = both.1.limit_cycle.as_ref().map(|cycle| cycle.amplitude.clone());
+        amplitude.and_then(|amplitude| amplitude.substitute("eps".into(), &eps))
+    });
+    // Asked for the other way round, and with letters of one's own.
+    for (equation, small) in [
+        ("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0", Some("mu")),
+        ("x'' - b*(1 - x^2)*x' + x + c*x^3 = 0", None),
+        ("x'' - b*x' + c*x^2*x' + x = 0", None),
+    ] {
+        let options = Options {
+            small: small.map(str::to_owned),
+            ..Options::default()
+        };
+        let (_, solution) = derive(equation, &options);
+        assert_eq!(
+            solution.limit_cycle.map(|cycle| cycle.small_with.len()),
+            Some(1),
+            "{equation}"
+        );
+    }
+}
+
+#[test]
+fn a_number_in_place_of_the_small_parameter() {
+    let letter = derive("x'' - mu*(1 - x^2)*x' + x = 0", &Options::default());
+    let expected = judged(&letter, &[("mu", "1/10")]);
+    for (equation, value) in [
+        ("x'' - 0.1*(1 - x^2)*x' + x = 0", "1/10"),
+        ("x'' - (1 - x^2)*x' + x = 0", "1"),
+        ("x'' - x'/10 + x^2*x'/10 + x = 0", "1/10"),
+    ] {
+        let problem = derive(equation, &Options::default());
+        let solution = &problem.1;
+        assert_eq!(solution.small_parameter.name(), "delta");
+        assert_eq!(
+            solution.frequency_squared,
+            Some(polynomial("1 - delta^2/8")),
+            "{equation}"
+        );
+        assert_eq!(
+            solution.definitions.last().map(|it| it.meaning.to_string()),
+            Some(value.to_owned())
+        );
+        let verification = judged(&problem, &[]);
+        if value == "1/10" {
+            assert_eq!(verification.frequency, expected.frequency);
+            assert!((verification.true_frequency / expected.true_frequency - 1.0).abs() < 1e-10);
+        }
+        let slope = verification.slope.expect(equation);
+        assert!((slope - 4.0).abs() < 0.2, "{equation}: {slope}");
+    }
+    // A parameter called delta is not touched.
+    let (_, solution) = derive("x'' - 0.1*(1 - delta*x^2)*x' + x = 0", &Options::default());
+    assert_eq!(solution.small_parameter.name(), "delta_");
+}
+
+/// Damping alone is still refused, and so is what is fed at every amplitude.
+#[test]
+fn without_a_balance_there_is_no_cycle() {
+    let refused =
+        |equation: &str| solve(&Oscillator::parse(equation).unwrap(), &Options::default()).expect_err(equation);
+    for equation in [
+        "x'' + 0.1*x' + x + x^3",
+        "x'' - mu*x' + x",
+        "x'' + 2*zeta*x' + x + eps*x^3",
+    ] {
+        assert!(
+            matches!(refused(equation), Refusal::Damping { .. }),
+            "{equation}: {}",
+            refused(equation)
+        );
+    }
+    for equation in ["x'' - mu*(1 - x^2/4 + x^4/80)*x' + x", "x'' + 0.1*x' + 0.2*x'^3 + x"] {
+        assert!(
+            matches!(refused(equation), Refusal::NoLimitCycle { .. }),
+            "{equation}: {}",
+            refused(equation)
+        );
+    }
+    // A double root is no start: 1 - z/2 + z^2/16 = (1 - z/4)^2.
+    let refusal = refused("x'' - mu*(1 - 2*x^2 + x^4/2)*x' + x");
+    assert!(refusal.to_string().contains("multiple root"), "{refusal}");
 }

@@ -7,7 +7,7 @@ use lindstedt::catalog;
 use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
-use lindstedt::method::{self, Options};
+use lindstedt::method::{self, Options, Refusal};
 use lindstedt::oscillator::OscillatorError;
 use lindstedt::problem::{self, Problem};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
@@ -41,6 +41,9 @@ pub struct Arguments {
     /// The convergence-control parameter of homotopy-analysis, exact; without it the best one is chosen at the values
     #[arg(long, allow_hyphen_values = true, value_name = "VALUE")]
     hbar: Option<String>,
+    /// Which limit cycle of a self-excited equation, counted from 1 by amplitude; without it the smallest that attracts
+    #[arg(long, value_name = "N")]
+    cycle: Option<u32>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -92,8 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let options = options(arguments, &problem)?;
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
-    let solution =
-        method::solve(&oscillator, &options).map_err(|refusal| Failure::refused(&refusal, refusal.help()))?;
+    let (oscillator, values, solution) = solve_at(oscillator, values, &options)?;
     let tolerance = tolerance(&arguments.common);
     let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
     let verification = match judged {
@@ -143,6 +145,30 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         note: None,
         verdict: verification.map(|verification| verification.verdict),
     })
+}
+
+/// The solution; where a limit cycle depends on the values of parameters and they are given, that of the equation with those
+/// numbers in it.
+fn solve_at(
+    oscillator: Oscillator,
+    values: Option<Values>,
+    options: &Options,
+) -> Result<(Oscillator, Option<Values>, Solution), Failure> {
+    let refused = |refusal: Refusal| Failure::refused(&refusal, refusal.help());
+    match (method::solve(&oscillator, options), values) {
+        (Ok(solution), values) => Ok((oscillator, values, solution)),
+        (Err(Refusal::LimitCycle { equation, .. }), Some(values)) => {
+            let names: Vec<Symbol> =
+                parse_expression(&equation).map_or_else(|_| vec![], |it| it.symbols().into_iter().collect());
+            let (known, rest) = values.split(&names);
+            let oscillator = oscillator
+                .with_values(&known)
+                .map_err(|error| Failure::refused(&error, error.help()))?;
+            let solution = method::solve(&oscillator, options).map_err(refused)?;
+            Ok((oscillator, Some(rest), solution))
+        }
+        (Err(refusal), None) | (Err(refusal), Some(_)) => Err(refused(refusal)),
+    }
 }
 
 /// The oscillator of a problem that has an equation.
@@ -281,6 +307,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
         taylor: arguments.taylor,
         pade,
         hbar,
+        cycle: arguments.cycle,
     })
 }
 

@@ -5,6 +5,7 @@
 
 pub mod polynomial;
 pub mod rational;
+pub mod real_roots;
 pub mod ring;
 
 pub use polynomial::Polynomial;

@@ -18,7 +18,9 @@ use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::{Impact, Setup};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Method, Solution, System};
+use crate::solution::{
+    AmplitudeConvention, ClosedForm, Definition, LeadingCycle, LimitCycle, Method, Solution, System,
+};
 use crate::symbol::Symbol;
 use crate::verify::comparison::{Comparison, Refused, Row};
 use crate::verify::validity::Reach;
@@ -63,10 +65,10 @@ pub fn constant(value: &Expr) -> Value {
     json!({ "exact": value.to_string(), "value": decimal })
 }
 
-/// A polynomial, lowest order in `small` first.
-pub fn polynomial(polynomial: &Polynomial, small: Symbol) -> Value {
+/// A polynomial, lowest order in the small parameters of `solution` first.
+fn polynomial(polynomial: &Polynomial, solution: &Solution) -> Value {
     let mut terms: Vec<_> = polynomial.terms().collect();
-    terms.sort_by_key(|(monomial, _)| monomial.exponent(small));
+    terms.sort_by_key(|(monomial, _)| solution.order_of(monomial));
     let term = |(monomial, coefficient): (&Monomial, &Rational)| {
         let powers: Map<String, Value> = monomial
             .factors()
@@ -81,8 +83,8 @@ pub fn polynomial(polynomial: &Polynomial, small: Symbol) -> Value {
 /// The document of kind `solution`; `verification` is null unless the formula was judged.
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Value {
     let small = solution.small_parameter;
-    let optional = |law: &Option<Polynomial>| law.as_ref().map(|law| polynomial(law, small));
-    let harmonic = |(k, cosine, sine): (usize, Polynomial, Polynomial)| json!({ "harmonic": k, "cos": polynomial(&cosine, small), "sin": polynomial(&sine, small) });
+    let optional = |law: &Option<Polynomial>| law.as_ref().map(|law| polynomial(law, solution));
+    let harmonic = |(k, cosine, sine): (usize, Polynomial, Polynomial)| json!({ "harmonic": k, "cos": polynomial(&cosine, solution), "sin": polynomial(&sine, solution) });
     let names: Vec<&str> = solution.parameters.iter().map(|name| name.name()).collect();
     let definitions: Map<String, Value> = solution
         .definitions
@@ -110,12 +112,30 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Val
             "variable": "theta",
             "harmonics": solution.displacement.harmonics().into_iter().map(harmonic).collect::<Vec<_>>(),
         },
-        "limit_cycle": solution.limit_cycle.as_ref().map(|amplitude| json!({ "amplitude": polynomial(amplitude, small) })),
+        "limit_cycle": solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
         "modulation": null,
         "response": null,
         "numerical": solution.numerical,
         "validity": solution.validity,
         "verification": verification.map(self::verification),
+    })
+}
+
+/// The cycle of the solution and, to leading order, all of its equation.
+fn limit_cycle(cycle: &LimitCycle, solution: &Solution) -> Value {
+    let leading = |leading: &LeadingCycle| {
+        json!({
+            "amplitude": constant(&leading.amplitude),
+            "attracts_where_positive": leading.attracts_where.as_ref().map(ToString::to_string),
+            "stability": leading.stability(),
+        })
+    };
+    let small_with: Vec<&str> = cycle.small_with.iter().map(|name| name.name()).collect();
+    json!({
+        "amplitude": polynomial(&cycle.amplitude, solution),
+        "number": cycle.number,
+        "cycles": cycle.cycles.iter().map(leading).collect::<Vec<_>>(),
+        "small_with": small_with,
     })
 }
 
@@ -370,7 +390,7 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
     };
     let limit_cycle = match &document["limit_cycle"] {
         Value::Null => None,
-        value => Some(read_polynomial(&value["amplitude"], "limit_cycle")?),
+        value => Some(read_limit_cycle(value)?),
     };
     Ok(Solution {
         equation: text(document, "equation")?.to_owned(),
@@ -396,6 +416,33 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         validity: strings("validity")?,
         steps: vec![],
         derivation: vec![],
+    })
+}
+
+fn read_limit_cycle(value: &Value) -> Result<LimitCycle, JsonError> {
+    let leading = |value: &Value| {
+        let attracts_where = value["attracts_where_positive"].as_str();
+        Ok(LeadingCycle {
+            amplitude: expression(text(&value["amplitude"], "exact")?, "amplitude")?,
+            attracts_where: attracts_where
+                .map(|text| expression(text, "attracts_where_positive"))
+                .transpose()?,
+        })
+    };
+    let list = |key: &'static str| value[key].as_array().map_or_else(|| unexpected(key, "a list"), Ok);
+    let symbol = |value: &Value| match value.as_str() {
+        Some(name) => Ok(Symbol::new(name)),
+        None => unexpected("small_with", "a list of strings"),
+    };
+    let number = value["number"].as_u64().and_then(|number| usize::try_from(number).ok());
+    Ok(LimitCycle {
+        amplitude: read_polynomial(&value["amplitude"], "limit_cycle")?,
+        number: number.map_or_else(|| unexpected("number", "a whole number"), Ok)?,
+        cycles: list("cycles")?.iter().map(leading).collect::<Result<_, JsonError>>()?,
+        small_with: list("small_with")?
+            .iter()
+            .map(symbol)
+            .collect::<Result<_, JsonError>>()?,
     })
 }
 

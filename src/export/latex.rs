@@ -17,7 +17,7 @@ use crate::expr::{Expr, Function, Node, parse_expression};
 use crate::impact::Impact;
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
-use crate::solution::Solution;
+use crate::solution::{LimitCycle, Solution};
 use crate::symbol::Symbol;
 use crate::verify::comparison::Comparison;
 use crate::verify::{Verdict, Verification};
@@ -173,7 +173,7 @@ pub fn symbol(symbol: Symbol) -> String {
 pub(super) fn law(polynomial: &Polynomial, solution: &Solution) -> String {
     terms::polynomial(
         polynomial,
-        |monomial| monomial.exponent(solution.small_parameter),
+        |monomial| solution.order_of(monomial),
         |monomial, coefficient| coefficient_term(monomial, coefficient, solution.numerical),
     )
 }
@@ -228,7 +228,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
     for equation in solution.system.iter().flat_map(|system| &system.equations) {
         lines.push(format!("0 &= {}", expression(equation)));
     }
-    if let Some(amplitude) = &solution.limit_cycle {
+    if let Some(LimitCycle { amplitude, .. }) = &solution.limit_cycle {
         lines.push(format!(
             "{} &= {}",
             symbol(solution.amplitude.symbol()),
@@ -242,12 +242,19 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
         lines.push(format!(
             "{} &= {}",
             symbol(definition.symbol),
-            expression(&definition.meaning)
+            equation(&definition.meaning_in_words())
         ));
     }
     let mut text = String::new();
     let _ = writeln!(text, "% {}; {}", solution.title(), solution.amplitude);
     for line in &solution.validity {
+        let _ = writeln!(text, "% {line}");
+    }
+    for line in solution
+        .limit_cycle
+        .iter()
+        .flat_map(|cycle| super::text::other_cycles(cycle, solution))
+    {
         let _ = writeln!(text, "% {line}");
     }
     if let Some(verification) = verification {
@@ -462,7 +469,7 @@ fn formula(solution: &Solution) -> String {
         format!(
             ", \\; {} = {}",
             symbol(definition.symbol),
-            expression(&definition.meaning)
+            equation(&definition.meaning_in_words())
         )
     });
     format!("${text}{}$", definitions.collect::<String>())

@@ -15,7 +15,7 @@ use crate::impact::Impact;
 use crate::method::homotopy_analysis::HBAR;
 use crate::series::FourierSeries;
 use crate::series::terms;
-use crate::solution::Solution;
+use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
 use crate::symbol::Symbol;
 use crate::verify::comparison::{Comparison, Row};
 use crate::verify::validity::Reach;
@@ -61,13 +61,16 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
     if let Some(closed_form) = &solution.closed_form {
         let _ = writeln!(text, "  {closed_form}");
     }
-    if let Some(amplitude) = &solution.limit_cycle {
+    if let Some(cycle) = &solution.limit_cycle {
         let _ = writeln!(
             text,
             "\n  limit cycle of amplitude {} = {}",
             solution.amplitude.symbol(),
-            by_order(amplitude, solution)
+            by_order(&cycle.amplitude, solution)
         );
+        for line in other_cycles(cycle, solution) {
+            let _ = writeln!(text, "  {line}");
+        }
     }
     for line in solution.by_quadrature.iter().flatten() {
         let _ = writeln!(text, "  {line}");
@@ -86,7 +89,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
         }
     }
     for definition in &solution.definitions {
-        let _ = writeln!(text, "  {} = {}", definition.symbol, definition.meaning);
+        let _ = writeln!(text, "  {} = {}", definition.symbol, definition.meaning_in_words());
     }
     text.push_str("\nValidity\n");
     for line in &solution.validity {
@@ -99,11 +102,40 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
     text
 }
 
+/// Where an equation has several limit cycles: all of them, to leading order.
+pub fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
+    if cycle.cycles.len() < 2 {
+        return vec![];
+    }
+    let symbol = solution.amplitude.symbol();
+    let small: Vec<&str> = solution.small_parameters().map(|name| name.name()).collect();
+    let head = format!(
+        "cycle {} of {}; for {} -> 0:",
+        cycle.number,
+        cycle.cycles.len(),
+        small.join(", ")
+    );
+    let line = |(k, each): (usize, &LeadingCycle)| {
+        let own = if k + 1 == cycle.number { "*" } else { " " };
+        let amplitude = &each.amplitude;
+        let value = match amplitude.as_number() {
+            Some(_) => String::new(),
+            None => {
+                let value = amplitude.evaluate(&std::collections::BTreeMap::new());
+                value.map_or_else(|_| String::new(), |value| format!(" = {}", decimal(value)))
+            }
+        };
+        let exact = constant_in_words(amplitude);
+        format!("{own} {}  {symbol} = {exact}{value}, {}", k + 1, each.stability())
+    };
+    std::iter::once(head)
+        .chain(cycle.cycles.iter().enumerate().map(line))
+        .collect()
+}
+
 /// A polynomial with the lowest power of the small parameter first.
 pub fn by_order(polynomial: &Polynomial, solution: &Solution) -> String {
-    ordered(polynomial, solution.numerical, |monomial| {
-        monomial.exponent(solution.small_parameter)
-    })
+    ordered(polynomial, solution.numerical, |monomial| solution.order_of(monomial))
 }
 
 fn ordered(polynomial: &Polynomial, numerical: bool, key: impl Fn(&Monomial) -> i32) -> String {

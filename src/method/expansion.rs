@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, Scheme, SecularError, expand};
+use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, Scheme, SecularError, expand, expand_from_root};
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -31,8 +31,30 @@ pub struct ExactSeries {
     pub steps: Vec<Step>,
 }
 
+impl ExactSeries {
+    /// Rewrites every coefficient.
+    pub fn change_coefficients(&mut self, change: &dyn Fn(&Polynomial) -> Polynomial) {
+        let series = |series: &FourierSeries<Polynomial>| series.map(|coefficient, _| change(coefficient));
+        self.frequency = change(&self.frequency);
+        self.frequency_squared = change(&self.frequency_squared);
+        self.displacement = series(&self.displacement);
+        for step in &mut self.steps {
+            step.right_side = series(&step.right_side);
+            step.displacement = series(&step.displacement);
+            step.resonance = change(&step.resonance);
+            step.correction = change(&step.correction);
+            if let Some(condition) = &mut step.amplitude {
+                condition.sine = change(&condition.sine);
+                if let Ok(Some(value)) = condition.value.to_polynomial(&mut |_| None) {
+                    condition.value = Expr::from(&change(&value));
+                }
+            }
+        }
+    }
+}
+
 /// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
-/// term of the result.
+/// term of the result, `inverse_slope` is as for [`expand_from_root`].
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -41,6 +63,7 @@ pub fn expand_exactly(
     order: u32,
     scheme: &Scheme,
     delta: Option<Symbol>,
+    inverse_slope: Option<&Polynomial>,
 ) -> Result<ExactSeries, SecularError> {
     let scales = scales(terms);
     let reduced: Vec<Term> = terms
@@ -63,7 +86,7 @@ pub fn expand_exactly(
     };
     let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
     match numbers {
-        Some(numbers) => {
+        Some(numbers) if inverse_slope.is_none() => {
             let constant = |number: Rational| FourierSeries::constant(number.numer().clone(), number.denom().clone());
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
             let expansion = expand::<Integer>(&force, order as usize, scheme)?;
@@ -72,9 +95,10 @@ pub fn expand_exactly(
             };
             Ok(collect(&expansion, scheme, polynomial, restore))
         }
-        None => {
+        _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
-            let expansion = expand::<Polynomial<Integer>>(&force, order as usize, scheme)?;
+            let inverse_slope = inverse_slope.map(|inverse| over_integers(&without(inverse, &scales)));
+            let expansion = expand_from_root::<Polynomial<Integer>>(&force, order as usize, scheme, inverse_slope)?;
             let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
                 numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
             };

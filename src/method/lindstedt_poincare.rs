@@ -13,7 +13,7 @@
 //! `eps*A^2` alone) and over polynomials otherwise.
 //!
 //! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the first order,
-//! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`.
+//! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`, as [`limit_cycle`](super::limit_cycle) finds it.
 //!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
@@ -27,17 +27,18 @@
 use num_traits::{One, Zero};
 
 use super::expansion::expand_exactly;
-use super::limit_cycle::{LEADING, leading_amplitude, limit_cycle, limit_cycle_amplitude, stability};
+use super::joint_expansion::expand_jointly;
+use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
 use super::{Options, Refusal, first_term};
 use crate::derivation::Line;
-use crate::exact::{Polynomial, Rational, Ring};
+use crate::exact::{Polynomial, Ring};
 use crate::expr::Expr;
-use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter, Term};
-use crate::solution::{AmplitudeConvention, Definition, Method, Solution};
-use crate::symbol::Symbol;
+use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
+use crate::solution::{AmplitudeConvention, Definition, LimitCycle, Method, Solution};
+use crate::symbol::{Symbol, fresh};
 
-pub(super) const TITLE: &str = "the method of Lindstedt and Poincare";
+const TITLE: &str = "the method of Lindstedt and Poincare";
 
 /// Derives frequency and motion as power series in the small parameter.
 ///
@@ -51,52 +52,75 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             term: first_term(&parts.forcing),
         });
     }
-    let small = oscillator.small_parameter(options.small.as_deref())?;
-    let order = options
-        .order
-        .unwrap_or(if small == SmallParameter::Amplitude { 4 } else { 2 });
-    let force = match oscillator.expand(small, order) {
-        // What stops the expansion is named as what it is.
-        Err(OscillatorError::NotSmall { .. }) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
-            return Err(damping_or_excitation(&parts));
-        }
-        Err(OscillatorError::NotSmall { term, .. })
-            if parts.damping.terms().iter().any(|part| part.to_string() == term) =>
-        {
-            return Err(Refusal::Damping { method: TITLE, term });
-        }
-        expanded => expanded?,
-    };
+    let Perturbation {
+        force,
+        marker,
+        small,
+        small_with,
+        order,
+        bookkeeping,
+    } = perturbation(oscillator, &parts, options)?;
     let (linear_frequency, definition) = force.linear_frequency();
     let mut definitions: Vec<Definition> = definition.into_iter().chain(force.definitions.clone()).collect();
+    let mut taken = oscillator.parameters.clone();
+    taken.extend(definitions.iter().map(|definition| definition.symbol));
 
-    let cycle = match limit_cycle_amplitude(&force, &linear_frequency, &parts)? {
-        Some(_) if small == SmallParameter::Amplitude => {
-            return Err(Refusal::AmplitudeNotFree {
-                term: first_term(&parts.damping),
-            });
+    let units = Units::new(&force, linear_frequency.clone());
+    let equation = AmplitudeEquation::new(&force, &units);
+    let cycles = match &equation {
+        None => None,
+        Some(equation) => {
+            let cycles = equation
+                .cycles(marker.unwrap_or(small), &linear_frequency, &taken)
+                .map_err(|reason| {
+                    let equation = equation.text(fresh("z", &taken));
+                    Refusal::LimitCycle { equation, reason }
+                })?;
+            if marker.is_none() {
+                return Err(Refusal::AmplitudeNotFree {
+                    term: first_term(&parts.damping),
+                });
+            }
+            let number = chosen(&cycles, options.cycle, || match equation.is_single_term() {
+                true => Refusal::Damping {
+                    method: TITLE,
+                    term: first_term(&parts.damping),
+                },
+                false => Refusal::NoLimitCycle {
+                    equation: equation.text(fresh("z", &taken)),
+                },
+            })?;
+            Some((cycles, number))
         }
-        cycle => cycle,
     };
+    if let (None, Some(asked)) = (&cycles, options.cycle) {
+        return Err(Refusal::NoSuchCycle { asked, count: 0 });
+    }
+    let cycle = cycles.as_ref().map(|(cycles, number)| &cycles[number - 1]);
+    if let (
+        Some(Cycle {
+            attracts_where: None, ..
+        }),
+        Some(equation),
+    ) = (cycle, &equation)
+    {
+        return Err(Refusal::LimitCycle {
+            equation: equation.text(fresh("z", &taken)),
+            reason: "a multiple root: no expansion in powers begins there",
+        });
+    }
     let convention = options.amplitude.unwrap_or(match cycle {
         Some(_) => AmplitudeConvention::FirstHarmonic,
         None => AmplitudeConvention::Initial,
     });
     let symbol = convention.symbol();
-    let (unit, amplitude) = match &cycle {
+    let (unit, amplitude) = match cycle {
         None => (Polynomial::symbol(symbol), Amplitude::Free),
-        Some(squared) => {
-            let root = squared.single_term_root().unwrap_or_else(|| {
-                let name = Symbol::new(LEADING);
-                definitions.push(Definition {
-                    symbol: name,
-                    meaning: Expr::from(squared).sqrt().unwrap_or_else(|_| Expr::from(squared)),
-                });
-                Polynomial::symbol(name)
-            });
-            (root, Amplitude::Determined)
-        }
+        Some(cycle) => (cycle.unit.clone(), Amplitude::Determined),
     };
+    definitions.extend(cycle.and_then(|cycle| cycle.definition.clone()));
+    let positive = definitions.clone();
+    definitions.extend(bookkeeping.clone());
     let normalisation = match convention {
         AmplitudeConvention::Initial => Normalisation::Initial,
         AmplitudeConvention::FirstHarmonic => Normalisation::FirstHarmonic,
@@ -106,40 +130,79 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         amplitude,
         detuning: Detuning::Acceleration,
     };
-    let scaled = scaled_terms(&force.terms, &unit, cycle.as_ref(), &linear_frequency);
-    let delta = match small {
-        SmallParameter::Parameter(name) => name,
-        SmallParameter::Amplitude => symbol,
+    let reduced = |polynomial: Polynomial| match cycle {
+        Some(cycle) => cycle.reduced(&polynomial),
+        None => polynomial,
     };
-    let series = expand_exactly(&scaled, order, &scheme, Some(delta)).map_err(|error| {
+    let scaled: Vec<Term> = scaled_terms(&force.terms, &unit, &units)
+        .into_iter()
+        .map(|term| Term {
+            coefficient: reduced(term.coefficient),
+            ..term
+        })
+        .collect();
+    let delta = marker.unwrap_or(symbol);
+    let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
+    let mut series = expand_exactly(&scaled, order, &scheme, Some(delta), inverse_slope).map_err(|error| {
         if parts.damping.is_zero() {
             error.into()
         } else {
             damping_or_excitation(&parts)
         }
     })?;
+    if cycle.is_some() {
+        // What marked the order of a term is one where it is no parameter of the answer.
+        let unmarked = |polynomial: &Polynomial| match (
+            delta == small,
+            polynomial.substitute(delta, &Polynomial::constant(One::one())),
+        ) {
+            (false, Some(unmarked)) => reduced(unmarked),
+            _ => reduced(polynomial.clone()),
+        };
+        series.change_coefficients(&unmarked);
+    }
+    let small = marker.map_or(symbol, |_| small);
 
     let mut steps = series.steps;
-    if let (Some(squared), Some(start)) = (&cycle, steps.first_mut()) {
-        start.amplitude = Some(leading_amplitude(&force, &linear_frequency, delta, squared));
+    if let (Some(equation), Some(cycle), Some(start)) = (&equation, cycle, steps.first_mut()) {
+        let marked = (delta == small).then_some(delta);
+        start.amplitude = Some(equation.condition(cycle, fresh("a0", &taken), marked));
     }
     let times = |series: Polynomial, factor: &Polynomial| series.product(factor);
     let squared_unit = times(linear_frequency.clone(), &linear_frequency);
-    let displacement = series.displacement.map(|coefficient, _| coefficient.product(&unit));
-    let limit_cycle = cycle.is_some().then(|| limit_cycle(&displacement, convention));
-    let mut validity = vec![format!(
-        "truncated after {delta}^{order}; an expansion for small {delta}"
-    )];
-    if cycle.is_some() {
-        validity.extend(stability(&force, &linear_frequency, delta));
+    let displacement = series
+        .displacement
+        .map(|coefficient, _| reduced(coefficient.product(&unit)));
+    let limit_cycle = cycles.as_ref().map(|(cycles, number)| LimitCycle {
+        amplitude: amplitude_of(&displacement, convention),
+        number: *number,
+        cycles: cycles.iter().map(|cycle| cycle.to_leading(delta, small)).collect(),
+        small_with: small_with.clone(),
+    });
+    let mut validity = vec![match (&bookkeeping, small_with.as_slice()) {
+        (None, []) => format!("truncated after {small}^{order}; an expansion for small {small}"),
+        (None, others) => {
+            let names: Vec<&str> = others.iter().map(|name| name.name()).collect();
+            let names = format!("{small} and {}", names.join(" and "));
+            format!("truncated after order {order} in {names} together; an expansion for small {names}")
+        }
+        (Some(definition), _) => format!(
+            "truncated after {small}^{order}; {small} marks all terms but the linear one, {small} = {} in this equation; an expansion for small {small}",
+            definition.meaning
+        ),
+    }];
+    if let (Some(cycle), Some(limit_cycle)) = (cycle, &limit_cycle) {
+        let own = &limit_cycle.cycles[limit_cycle.number - 1];
+        validity.push(format!("the limit cycle {}", own.stability()));
+        validity.extend(cycle.remark.clone());
     }
-    validity.extend(next_terms(&definitions));
+    validity.extend(next_terms(&positive));
     Ok(Solution {
         equation: oscillator.equation(),
         method: Method::LindstedtPoincare,
         order,
         degrees: None,
-        small_parameter: delta,
+        small_parameter: small,
         amplitude: convention,
         parameters: oscillator.parameters.clone(),
         definitions,
@@ -159,10 +222,99 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     })
 }
 
+/// What is expanded, and in what.
+struct Perturbation {
+    force: PerturbedForce,
+    /// The parameter that marks the orders; `None` where it is the amplitude.
+    marker: Option<Symbol>,
+    /// The small parameter of the answer.
+    small: Symbol,
+    /// Parameters that are small together with it.
+    small_with: Vec<Symbol>,
+    order: u32,
+    /// The value of a small parameter that the equation does not have.
+    bookkeeping: Option<Definition>,
+}
+
+/// The force in powers of the small parameter; of a self-excited equation that has none, in powers of one that marks all
+/// terms but the linear one.
+fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Perturbation, Refusal> {
+    let small = oscillator.small_parameter(options.small.as_deref())?;
+    let default = if small == SmallParameter::Amplitude { 4 } else { 2 };
+    let order = options.order.unwrap_or(default);
+    let expanded = oscillator.expand(small, order);
+    let excited = match &expanded {
+        Ok(force) => small == SmallParameter::Amplitude && has_drift(force),
+        Err(error) => matches!(error, OscillatorError::NotSmall { .. }),
+    };
+    let in_amplitude = options.small.is_some() && small == SmallParameter::Amplitude;
+    if excited && !parts.damping.is_zero() && !in_amplitude {
+        let order = options.order.unwrap_or(2);
+        let joint = expand_jointly(oscillator, parts, small, order);
+        if let Some(joint) = joint.filter(|joint| may_balance(&joint.force)) {
+            let bookkeeping = joint.value.map(|value| Definition {
+                symbol: joint.delta,
+                meaning: Expr::number(value),
+            });
+            let mut parameters = joint.parameters.into_iter();
+            let first = match bookkeeping {
+                None => parameters.next(),
+                Some(_) => None,
+            };
+            return Ok(Perturbation {
+                force: joint.force,
+                marker: Some(joint.delta),
+                small: first.unwrap_or(joint.delta),
+                small_with: parameters.collect(),
+                order,
+                bookkeeping,
+            });
+        }
+    }
+    let force = match expanded {
+        // What stops the expansion is named as what it is.
+        Err(OscillatorError::NotSmall { .. }) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
+            return Err(damping_or_excitation(parts));
+        }
+        Err(OscillatorError::NotSmall { term, .. })
+            if parts.damping.terms().iter().any(|part| part.to_string() == term) =>
+        {
+            return Err(Refusal::Damping { method: TITLE, term });
+        }
+        expanded => expanded?,
+    };
+    let marker = match small {
+        SmallParameter::Parameter(name) => Some(name),
+        SmallParameter::Amplitude => None,
+    };
+    Ok(Perturbation {
+        force,
+        marker,
+        small: marker.unwrap_or(AmplitudeConvention::Initial.symbol()),
+        small_with: vec![],
+        order,
+        bookkeeping: None,
+    })
+}
+
+/// Whether the amplitude changes at first order.
+fn has_drift(force: &PerturbedForce) -> bool {
+    drift(force).is_some()
+}
+
+/// Whether terms feed energy at some amplitudes that others drain, or may do so.
+fn may_balance(force: &PerturbedForce) -> bool {
+    drift(force).is_some_and(|equation| !equation.is_single_term())
+}
+
+fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
+    AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency().0))
+}
+
 fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {
     definitions
         .iter()
-        .map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning))
+        .map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning_in_words()))
 }
 
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
@@ -178,32 +330,12 @@ fn damping_or_excitation(parts: &Parts) -> Refusal {
     }
 }
 
-pub(super) fn inverse_power(single_term: &Polynomial, exponent: i32) -> Polynomial {
-    single_term.power(exponent).unwrap_or_else(Polynomial::zero)
-}
-
 /// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this file.
-fn scaled_terms(
-    terms: &[Term],
-    unit: &Polynomial,
-    unit_squared: Option<&Polynomial>,
-    linear_frequency: &Polynomial,
-) -> Vec<Term> {
+fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
     let scale = |term: &Term| {
         let exponent = (term.position + term.velocity) as i32 - 1;
-        // Even powers of a limit cycle's amplitude are known even where the amplitude itself is a root.
-        let unit = match unit_squared {
-            Some(squared) if exponent > 0 => {
-                let odd = if exponent % 2 == 1 {
-                    unit.clone()
-                } else {
-                    Polynomial::constant(Rational::one())
-                };
-                inverse_power(squared, exponent / 2).product(&odd)
-            }
-            _ => inverse_power(unit, exponent),
-        };
-        let frequency = inverse_power(linear_frequency, term.velocity as i32 - 2);
+        let unit = unit.power(exponent).unwrap_or_else(Polynomial::zero);
+        let frequency = units.power_of_frequency(term.velocity as i32 - 2);
         Term {
             coefficient: term.coefficient.product(&unit).product(&frequency),
             ..term.clone()

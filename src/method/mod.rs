@@ -14,6 +14,7 @@ pub mod harmonic_balance;
 pub mod homotopy_analysis;
 pub mod homotopy_perturbation;
 pub mod iteration_perturbation;
+pub mod joint_expansion;
 pub mod limit_cycle;
 pub mod lindstedt_poincare;
 pub mod max_min;
@@ -55,6 +56,8 @@ pub struct Options {
     pub pade: Option<(u32, u32)>,
     /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for where it is not given.
     pub hbar: Option<Expr>,
+    /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the smallest that attracts.
+    pub cycle: Option<u32>,
 }
 
 /// Why a method does not answer, and what to do instead.
@@ -106,6 +109,20 @@ pub enum Refusal {
         equation: String,
         /// Why that is not possible.
         reason: &'static str,
+    },
+    /// A self-excited oscillator without a limit cycle.
+    #[error("no limit cycle to first order: `{equation} = 0` has no positive root z = amplitude^2")]
+    NoLimitCycle {
+        /// The polynomial in z.
+        equation: String,
+    },
+    /// A limit cycle that the equation does not have.
+    #[error("there is no limit cycle number {asked}: the equation has {count} to leading order")]
+    NoSuchCycle {
+        /// The number asked for.
+        asked: u32,
+        /// How many there are.
+        count: usize,
     },
     /// The periodic expansion breaks down.
     #[error("no periodic expansion: {0}")]
@@ -202,13 +219,18 @@ impl Refusal {
             Self::Pade { .. } => Some("try other degrees, such as --order 1,1".to_owned()),
             Self::TooLong { .. } => Some("try a lower order".to_owned()),
             Self::Convention { .. } => Some("leave out --amplitude first-harmonic".to_owned()),
-            Self::AmplitudeNotFree { .. } => {
-                Some("give the term a small factor, as in eps*(1 - x^2)*x', and expand in that".to_owned())
-            }
+            Self::AmplitudeNotFree { .. } => Some(
+                "limit cycles start from x'' + omega0^2*x with all other terms small: do not ask for `--small A`, and write a polynomial such as x - eps*x^3/6 for sin(x)"
+                    .to_owned(),
+            ),
+            Self::NoLimitCycle { .. } => Some(
+                "energy is fed at every amplitude or drained at every amplitude: no motion repeats".to_owned(),
+            ),
+            Self::NoSuchCycle { .. } => Some("they are counted from 1, the smallest first".to_owned()),
             Self::LimitCycle { equation, .. } => {
                 // Numbers alone do not help where there are numbers already.
                 let symbols = parse_expression(equation).map(|equation| equation.symbols().len());
-                symbols.is_ok_and(|count| count > 1).then(|| "give numbers for the parameters in it".to_owned())
+                symbols.is_ok_and(|count| count > 1).then(|| "give numbers for the parameters in it, in the equation or by `--at`".to_owned())
             }
             Self::Order { .. } | Self::Secular(_) => Some("try a lower order".to_owned()),
             Self::Expression(_) => None,

@@ -123,7 +123,21 @@ pub enum SecularError {
 /// # Errors
 /// See [`SecularError`].
 pub fn expand<C: Ring>(force: &[ForceTerm<C>], highest: usize, scheme: &Scheme) -> Result<Expansion<C>, SecularError> {
-    let mut order_by_order = OrderByOrder::new(force, highest, *scheme);
+    expand_from_root(force, highest, scheme, None)
+}
+
+/// As [`expand`], about a limit cycle whose amplitude is a symbol for a root: `inverse_slope` is `1/J`, a constant series.
+/// Secular sines vanish by the equation of that root, which the ring does not know, so none is looked for.
+///
+/// # Errors
+/// See [`SecularError`].
+pub fn expand_from_root<C: Ring>(
+    force: &[ForceTerm<C>],
+    highest: usize,
+    scheme: &Scheme,
+    inverse_slope: Option<FourierSeries<C>>,
+) -> Result<Expansion<C>, SecularError> {
+    let mut order_by_order = OrderByOrder::new(force, highest, *scheme, inverse_slope);
     for order in 1..=highest {
         order_by_order.solve_order(order)?;
     }
@@ -138,6 +152,8 @@ struct OrderByOrder<'a, C> {
     position: Node,
     velocity: Node,
     scheme: Scheme,
+    /// `1/J`, where it was given.
+    inverse_slope: Option<FourierSeries<C>>,
     /// How each series changes when the amplitude of `y_0` does.
     variations: Vec<FourierSeries<C>>,
     /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
@@ -146,7 +162,7 @@ struct OrderByOrder<'a, C> {
 }
 
 impl<'a, C: Ring> OrderByOrder<'a, C> {
-    fn new(force: &'a [ForceTerm<C>], highest: usize, scheme: Scheme) -> Self {
+    fn new(force: &'a [ForceTerm<C>], highest: usize, scheme: Scheme, inverse_slope: Option<FourierSeries<C>>) -> Self {
         let mut convolutions = Convolutions::new();
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
@@ -193,6 +209,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             position,
             velocity,
             scheme,
+            inverse_slope,
             variations,
             detuned,
             result,
@@ -205,7 +222,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             right_side = self.fix_amplitude(order, right_side)?;
         }
         let (particular, resonance) = right_side.solve_oscillator();
-        if !resonance.sine.is_zero() {
+        if !resonance.sine.is_zero() && self.inverse_slope.is_none() {
             return Err(SecularError::Growth { order });
         }
         let frequency_squared = resonance.cosine.times(-1);
@@ -261,10 +278,11 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         }
         let change = sum_of_products(&terms);
         let (sine, slope) = (right_side.sine(1), change.sine(1));
-        let correction = match sine.is_zero() {
-            true => FourierSeries::zero(),
-            false => sine
-                .times(-1)
+        let needed = sine.times(-1);
+        let correction = match &self.inverse_slope {
+            _ if needed.is_zero() => FourierSeries::zero(),
+            Some(inverse) => needed.product(inverse),
+            None => needed
                 .divided_by_constant(&slope)
                 .ok_or(SecularError::Degenerate { order })?,
         };

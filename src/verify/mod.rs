@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::conservative::is_smooth;
+use crate::decimal::decimal;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::numbers::{evaluate, frequency_squared_of};
@@ -238,7 +239,11 @@ pub fn judge(
         max_deviation: max_deviation.filter(|value| value.is_finite()),
         residual: residual.filter(|value| value.is_finite()),
         slope: slope(oscillator, solution, &numbers),
-        ranges: validity::ranges(oscillator, solution, &numbers, tolerance),
+        ranges: truth
+            .about_the_cycle()
+            .into_iter()
+            .chain(validity::ranges(oscillator, solution, &numbers, tolerance))
+            .collect(),
         chosen: evaluate(oscillator, solution, &numbers).map_or_else(|_| vec![], |found| found.chosen),
         verdict: if pass { Verdict::Pass } else { Verdict::Fail },
     })
@@ -424,6 +429,21 @@ impl TrueMotion {
         }
     }
 
+    /// Where a true limit cycle lies and what it does to its neighbours.
+    fn about_the_cycle(&self) -> Option<validity::Range> {
+        let Orbit::LimitCycle(cycle) = &self.orbit else {
+            return None;
+        };
+        let does = if cycle.attracts() { "attracts" } else { "repels" };
+        Some(validity::Range {
+            text: format!(
+                "the true limit cycle turns at x = {} and {does}",
+                decimal(cycle.at(0.0).0)
+            ),
+            outside: false,
+        })
+    }
+
     /// The true motion at the time `t` of the formula.
     fn sample(&self, t: f64) -> Sample {
         let (x, v) = self.orbit.at((t + self.shift).rem_euclid(self.orbit.period()));
@@ -492,7 +512,7 @@ impl Physics {
         let at_rest = solution
             .limit_cycle
             .as_ref()
-            .map(|law| law.truncated(solution.small_parameter, 0));
+            .map(|cycle| solution.leading(&cycle.amplitude));
         let amplitude = at_rest.and_then(|law| solution.evaluate(&law, &|symbol| numbers.get(&symbol).copied()).ok());
         let amplitude = amplitude.map(f64::abs).filter(|size| size.is_normal()).unwrap_or(1.0);
         let force = |x: f64| self.force.call(&[self.equilibrium + x, 0.0]);
@@ -504,7 +524,14 @@ impl Physics {
             amplitude,
             frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
         };
-        Ok(nearest_limit_cycle(&equation, None)?)
+        // Of cycles close to each other it is the one that attracts as the formula says.
+        let own = solution
+            .limit_cycle
+            .as_ref()
+            .and_then(|cycle| cycle.cycles.get(cycle.number.wrapping_sub(1)));
+        let condition = own.and_then(|cycle| cycle.attracts_where.as_ref()?.evaluate(numbers).ok());
+        let attracts = condition.filter(|value| *value != 0.0).map(|value| value > 0.0);
+        Ok(nearest_limit_cycle(&equation, attracts)?)
     }
 
     /// The turning point to start from: given, or found so that the first harmonic of the
@@ -580,6 +607,11 @@ fn residual(
 /// matter, and the slopes between halvings, which approach their limit linearly, are carried on to zero.
 fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     const HALVINGS: i32 = 12;
+    let varied = with_small_parameter(oscillator, solution, numbers);
+    let (oscillator, solution, numbers) = match &varied {
+        Some((oscillator, solution, numbers)) => (oscillator, solution, numbers),
+        None => (oscillator, solution, numbers),
+    };
     // The truth is good to 1e-15 by quadrature and 1e-11 by Runge-Kutta: an error hundreds of times that is measured to
     // less than a per cent.
     let conservative = oscillator
@@ -590,7 +622,9 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
     let floor = if by_energy { 2e-13 } else { 1e-8 };
     let formula_at = |factor: f64| {
         let mut numbers = numbers.clone();
-        *numbers.get_mut(&solution.small_parameter)? *= factor;
+        for small in solution.small_parameters() {
+            *numbers.get_mut(&small)? *= factor;
+        }
         Some((formula_frequency(oscillator, solution, &numbers)?, numbers))
     };
     let error = |halving: i32| {
@@ -617,6 +651,35 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         [.., last] => Some(last),
         [] => None,
     }
+}
+
+/// Where the small parameter marks terms with numbers before them: the equation with that parameter in it, so that it can be
+/// varied. What is not the linear restoring force is multiplied by `delta / value`.
+fn with_small_parameter(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<(Oscillator, Solution, BTreeMap<Symbol, f64>)> {
+    let delta = solution.small_parameter;
+    let own = solution
+        .definitions
+        .iter()
+        .find(|definition| definition.symbol == delta)?;
+    let known = solution.definitions.iter();
+    let known = known
+        .map(|definition| (definition.symbol, definition.meaning.clone()))
+        .collect();
+    let stiffness = Expr::from(&solution.leading(solution.frequency_squared.as_ref()?));
+    let stiffness = stiffness.substitute_all(&known).ok()?;
+    let linear = &stiffness * &(&Expr::from(oscillator.coordinate) - &solution.equilibrium);
+    let factor = Expr::divide(&Expr::from(delta), &own.meaning).ok()?;
+    let (mut oscillator, mut varied, mut numbers) = (oscillator.clone(), solution.clone(), numbers.clone());
+    oscillator.force = &linear + &(&factor * &(&oscillator.force - &linear));
+    oscillator.parameters.push(delta);
+    varied.definitions.retain(|definition| definition.symbol != delta);
+    varied.parameters.push(delta);
+    numbers.insert(delta, own.meaning.evaluate(&BTreeMap::new()).ok()?);
+    Some((oscillator, varied, numbers))
 }
 
 /// omega of the true motion, without its path where energy alone gives it.

@@ -1,0 +1,277 @@
+//! Positive roots of polynomials with rational coefficients.
+//!
+//! Reference: D. E. Knuth, *The Art of Computer Programming* 2, 3rd ed., section 4.6.1 (greatest common divisors) and exercise
+//! 4.6.1-22 (Sturm's theorem).
+//!
+//! Roots that occur once are told from others by `gcd(p, p')`, fractions are found as quotients of divisors, and what is left
+//! is isolated by Sturm's chain: `V(a) - V(b)` roots lie in `(a, b]`, `V` the number of sign changes of the chain.
+//! A polynomial is the list of its coefficients, lowest first.
+
+use num_integer::Integer as _;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+use super::rational::{ratio, to_f64};
+use super::{Integer, Rational};
+
+/// A positive root.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RealRoot {
+    /// The root, rounded.
+    pub value: f64,
+    /// The root, where it was found to be a fraction.
+    pub exact: Option<Rational>,
+    /// A polynomial without multiple roots that has this root, and no fraction unless the root is one.
+    pub factor: Vec<Rational>,
+    /// Whether the polynomial asked for has it once, so that its slope there is not zero.
+    pub simple: bool,
+}
+
+/// All positive roots of a polynomial that is not zero, smallest first.
+pub fn positive_roots(polynomial: &[Rational]) -> Vec<RealRoot> {
+    let polynomial = trimmed(polynomial.to_vec());
+    let shared = gcd(&polynomial, &derivative(&polynomial));
+    let distinct = quotient(&polynomial, &shared);
+    let multiple = gcd(&distinct, &shared);
+    let mut roots = Vec::new();
+    for (part, simple) in [(quotient(&distinct, &multiple), true), (multiple, false)] {
+        let mut rest = part;
+        for exact in fractions(&rest) {
+            let factor = vec![-exact.clone(), One::one()];
+            rest = quotient(&rest, &factor);
+            roots.push(RealRoot {
+                value: to_f64(&exact),
+                exact: Some(exact),
+                factor,
+                simple,
+            });
+        }
+        roots.extend(irrational(&rest).into_iter().map(|value| RealRoot {
+            value,
+            exact: None,
+            factor: rest.clone(),
+            simple,
+        }));
+    }
+    roots.sort_by(|a, b| a.value.total_cmp(&b.value));
+    roots
+}
+
+/// The value of a polynomial.
+pub fn value(polynomial: &[Rational], x: &Rational) -> Rational {
+    polynomial.iter().rev().fold(Rational::zero(), |sum, c| sum * x + c)
+}
+
+/// The derivative of a polynomial.
+pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
+    let powers = polynomial.iter().enumerate().skip(1);
+    powers.map(|(k, c)| c * Rational::from_integer(k.into())).collect()
+}
+
+/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` where they have a factor in common.
+pub fn inverse_modulo(a: &[Rational], modulus: &[Rational]) -> Option<Vec<Rational>> {
+    let (mut r, mut next_r) = (trimmed(modulus.to_vec()), remainder(a, modulus));
+    let (mut u, mut next_u) = (vec![], vec![Rational::one()]);
+    while !next_r.is_empty() {
+        let q = quotient(&r, &next_r);
+        let new_u = difference(&u, &product(&q, &next_u));
+        let new_r = remainder(&r, &next_r);
+        (r, next_r) = (next_r, new_r);
+        (u, next_u) = (next_u, new_u);
+    }
+    match r.as_slice() {
+        [unit] => Some(remainder(&u.iter().map(|c| c / unit).collect::<Vec<_>>(), modulus)),
+        _ => None,
+    }
+}
+
+/// The remainder of a division.
+pub fn remainder(dividend: &[Rational], divisor: &[Rational]) -> Vec<Rational> {
+    divide(dividend, divisor).1
+}
+
+fn quotient(dividend: &[Rational], divisor: &[Rational]) -> Vec<Rational> {
+    divide(dividend, divisor).0
+}
+
+fn divide(dividend: &[Rational], divisor: &[Rational]) -> (Vec<Rational>, Vec<Rational>) {
+    let mut rest = trimmed(dividend.to_vec());
+    let Some((leading, _)) = divisor.split_last() else {
+        return (vec![], rest);
+    };
+    let mut quotient = vec![Rational::zero(); (rest.len() + 1).saturating_sub(divisor.len())];
+    while rest.len() >= divisor.len() {
+        let shift = rest.len() - divisor.len();
+        let factor = &rest[rest.len() - 1] / leading;
+        for (k, coefficient) in divisor.iter().enumerate() {
+            rest[shift + k] -= &factor * coefficient;
+        }
+        quotient[shift] = factor;
+        rest.pop();
+        rest = trimmed(rest);
+    }
+    (trimmed(quotient), rest)
+}
+
+/// The monic greatest common divisor.
+fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    let (mut a, mut b) = (trimmed(a.to_vec()), trimmed(b.to_vec()));
+    while !b.is_empty() {
+        let next = remainder(&a, &b);
+        (a, b) = (b, next);
+    }
+    match a.last().cloned() {
+        Some(leading) => a.iter().map(|c| c / &leading).collect(),
+        None => a,
+    }
+}
+
+fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    let mut sum = vec![Rational::zero(); (a.len() + b.len()).saturating_sub(1)];
+    for (i, left) in a.iter().enumerate() {
+        for (k, right) in b.iter().enumerate() {
+            sum[i + k] += left * right;
+        }
+    }
+    trimmed(sum)
+}
+
+fn difference(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    let at = |list: &[Rational], k: usize| list.get(k).cloned().unwrap_or_else(Rational::zero);
+    trimmed((0..a.len().max(b.len())).map(|k| at(a, k) - at(b, k)).collect())
+}
+
+fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
+    while polynomial.last().is_some_and(Zero::is_zero) {
+        polynomial.pop();
+    }
+    polynomial
+}
+
+/// The positive fractions among the roots of a polynomial without multiple roots, as far as divisors are found by trial.
+fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
+    let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
+    let whole: Vec<Integer> = polynomial.iter().map(|c| (c * &common).to_integer()).collect();
+    let (Some(lowest), Some(highest)) = (whole.iter().find(|c| !c.is_zero()), whole.last()) else {
+        return vec![];
+    };
+    let mut roots: Vec<Rational> = Vec::new();
+    for p in divisors(lowest) {
+        for q in divisors(highest) {
+            let candidate = Rational::new(p.clone(), q);
+            if !roots.contains(&candidate) && value(polynomial, &candidate).is_zero() {
+                roots.push(candidate);
+            }
+        }
+    }
+    roots
+}
+
+/// All positive divisors of a number small enough for trial division; of any other, one alone.
+fn divisors(number: &Integer) -> Vec<Integer> {
+    let Some(number) = number.abs().to_u64().filter(|number| *number < 1 << 40) else {
+        return vec![One::one()];
+    };
+    let small = (1..).take_while(|d| d * d <= number).filter(|d| number % d == 0);
+    small.flat_map(|d| [d, number / d]).map(Integer::from).collect()
+}
+
+/// The positive roots of a polynomial without multiple roots, rounded.
+fn irrational(polynomial: &[Rational]) -> Vec<f64> {
+    let Some((leading, rest)) = polynomial.split_last().filter(|(_, rest)| !rest.is_empty()) else {
+        return vec![];
+    };
+    let mut chain = vec![polynomial.to_vec(), derivative(polynomial)];
+    while let [.., before, last] = chain.as_slice() {
+        let next: Vec<Rational> = remainder(before, last).iter().map(|c| -c).collect();
+        if next.is_empty() {
+            break;
+        }
+        chain.push(next);
+    }
+    let changes = |x: &Rational| {
+        let signs: Vec<bool> = chain
+            .iter()
+            .map(|entry| value(entry, x))
+            .filter(|value| !value.is_zero())
+            .map(|value| value.is_positive())
+            .collect();
+        signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
+    };
+    // All roots are below 1 + max |c_k / c_n|.
+    let bound = rest
+        .iter()
+        .map(|c| (c / leading).abs())
+        .max()
+        .unwrap_or_else(Rational::zero)
+        + Rational::one();
+    let mut intervals = vec![(Rational::zero(), bound)];
+    let mut roots = Vec::new();
+    while let Some((low, high)) = intervals.pop() {
+        let count = changes(&low).saturating_sub(changes(&high));
+        let middle = (&low + &high) * ratio(1, 2);
+        // A root between neighbouring doubles is known as well as it can be told.
+        let settled =
+            to_f64(&low) == to_f64(&high) || to_f64(&middle) == to_f64(&low) || to_f64(&middle) == to_f64(&high);
+        match count {
+            0 => {}
+            1 if settled => roots.push(to_f64(&middle)),
+            _ => intervals.extend([(low, middle.clone()), (middle, high)]),
+        }
+    }
+    roots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polynomial(coefficients: &[i64]) -> Vec<Rational> {
+        coefficients.iter().map(|&c| ratio(c, 1)).collect()
+    }
+
+    /// (z - 2)(z - 1/3)(z^2 - 6 z + 4)(z + 1)(z - 5)^2: fractions, quadratic roots 3 -+ sqrt 5, a double root.
+    #[test]
+    fn roots_of_every_kind() {
+        let factors: [&[i64]; 6] = [&[-2, 1], &[-1, 3], &[4, -6, 1], &[1, 1], &[-5, 1], &[-5, 1]];
+        let all = factors
+            .iter()
+            .fold(polynomial(&[1]), |all, factor| product(&all, &polynomial(factor)));
+        let roots = positive_roots(&all);
+        let expected = [1.0 / 3.0, 3.0 - 5f64.sqrt(), 2.0, 5.0, 3.0 + 5f64.sqrt()];
+        assert_eq!(roots.len(), 5);
+        for (root, expected) in roots.iter().zip(expected) {
+            assert!((root.value - expected).abs() < 1e-15 * 8.0, "{root:?} {expected}");
+            assert_eq!(root.simple, expected != 5.0);
+        }
+        assert_eq!(roots[0].exact, Some(ratio(1, 3)));
+        assert!(roots[1].exact.is_none() && roots[1].factor.len() == 4);
+    }
+
+    #[test]
+    fn close_and_distant_roots_are_told_apart() {
+        // (z^2 - 2)(z^2 - 2 - 1e-9)(z^2 - 2e20) and one without positive roots.
+        let near: Vec<Rational> = vec![-(ratio(2, 1) + ratio(1, 1_000_000_000)), Zero::zero(), One::one()];
+        let far = vec![
+            -ratio(2, 1) * num_traits::pow(ratio(10, 1), 20),
+            Zero::zero(),
+            One::one(),
+        ];
+        let all = product(&product(&polynomial(&[-2, 0, 1]), &near), &far);
+        let roots: Vec<f64> = positive_roots(&all).iter().map(|root| root.value).collect();
+        assert_eq!(roots.len(), 3);
+        assert!(
+            (roots[1] - roots[0] - 1e-9 / 8f64.sqrt()).abs() < 1e-15 && (roots[2] / 2e20f64.sqrt() - 1.0).abs() < 1e-15
+        );
+        assert!(positive_roots(&polynomial(&[1, 1, 1])).is_empty());
+        assert!(positive_roots(&polynomial(&[7])).is_empty());
+    }
+
+    #[test]
+    fn inverses_modulo_a_polynomial() {
+        let modulus = polynomial(&[1, -3, 0, 2, 1]);
+        let a = polynomial(&[2, 5, -1]);
+        let inverse = inverse_modulo(&a, &modulus).unwrap();
+        assert_eq!(remainder(&product(&a, &inverse), &modulus), polynomial(&[1]));
+        assert_eq!(inverse_modulo(&product(&a, &modulus), &modulus), None);
+    }
+}

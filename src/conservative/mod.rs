@@ -11,20 +11,14 @@
 
 pub mod features;
 pub mod force;
+pub mod parity;
 pub mod potential;
 pub mod projection;
 
+pub use parity::is_odd;
+
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
-
-/// Whether `f(-x) = -f(x)`, as far as the normal form can tell.
-///
-/// # Errors
-/// A force that cannot be written out.
-pub fn is_odd(force: &Expr, coordinate: Symbol) -> Result<bool, ExprError> {
-    let mirrored = force.substitute(coordinate, &-&Expr::from(coordinate))?;
-    Ok((&mirrored + force).expand()?.is_zero())
-}
 
 /// Whether a force has no corners: neither `abs`, `sgn`, `max`, `min` or `H`, nor a root of something linear in the coordinate.
 /// Quadrature converges fast then, and only then.

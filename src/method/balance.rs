@@ -10,8 +10,8 @@
 //! ```
 //!
 //! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish, or, for a force without
-//! linear part such as `x^3`, keep the values that belong to its lowest power. A branch that turns back in the amplitude is
-//! followed round the turn; one that never reaches the amplitude asked for is refused in words.
+//! linear part such as `x^3`, keep the values that belong to its lowest power. A branch that turns back before it reaches the
+//! amplitude asked for is refused in words.
 //!
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
@@ -407,14 +407,15 @@ impl<'a> Problem<'a> {
         let mut state = self.start().ok_or(Lost::NoStart)?;
         let mut direction = DVector::zeros(size);
         direction[size - 1] = 1.0;
-        let begin = state.logarithm();
-        let (mut length, mut farthest) = (LONGEST / 4.0, begin);
+        let mut length = LONGEST / 4.0;
         for _ in 0..STEPS {
             let before = state.logarithm();
             if (before - goal).abs() < 1e-12 {
                 return Ok(state);
             }
-            let Some(tangent) = self.tangent(&state, &direction) else {
+            // Round a turn the branch would come back to amplitudes that it has passed, with another motion.
+            let tangent = self.tangent(&state, &direction);
+            let Some(tangent) = tangent.filter(|tangent| tangent[size - 1] > 0.0) else {
                 break;
             };
             let left = (goal - before) / tangent[size - 1];
@@ -435,16 +436,15 @@ impl<'a> Problem<'a> {
                 Some(found) => {
                     (state, direction) = (found, tangent);
                     length = f64::min(1.7 * length, LONGEST);
-                    farthest = farthest.max(state.logarithm());
                 }
                 None => length = 0.5 * step,
             }
-            if length < SHORTEST || state.logarithm() < begin - 1.0 {
+            if length < SHORTEST {
                 break;
             }
         }
         Err(Lost::Ends {
-            amplitude: farthest.exp() * self.side(),
+            amplitude: state.logarithm().exp() * self.side(),
         })
     }
 

@@ -202,11 +202,11 @@ fn frequency_squared(
     let value = solution.frequency_squared_at(&value_of);
     if let Some(form) = &solution.closed_form {
         let value_of = |name| rounded(solution, name, &value_of);
-        let lost = match form.value.evaluate_rounded(&value_of) {
-            Some((value, error)) => error > LOST_DIGITS * value.abs(),
-            None => true,
-        };
-        if lost && let Some(better) = by_definition(oscillator, solution, numbers) {
+        let kept = form
+            .value
+            .evaluate_rounded(&value_of)
+            .is_some_and(|(value, error)| value.is_finite() && error <= LOST_DIGITS * value.abs());
+        if !kept && let Some(better) = by_definition(oscillator, solution, numbers) {
             return Ok(better);
         }
     }
@@ -331,14 +331,12 @@ fn iterate_by_definition(
         let value = numbers.get(&name).copied()?;
         Some(if name == symbol { value.abs() } else { value })
     };
-    let lost = solution.definitions.iter().any(|definition| {
+    let kept = solution.definitions.iter().all(|definition| {
         let value_of = |name| rounded(solution, name, &value_of);
-        match definition.meaning.evaluate_rounded(&value_of) {
-            Some((_, error)) => error > LOST_DIGITS * squared * amplitude.abs(),
-            None => true,
-        }
+        let found = definition.meaning.evaluate_rounded(&value_of);
+        found.is_some_and(|(value, error)| value.is_finite() && error <= LOST_DIGITS * squared * amplitude.abs())
     });
-    if !lost {
+    if kept {
         return None;
     }
     let force = force_of(oscillator, solution, numbers)?;

@@ -19,6 +19,7 @@ use num_traits::One;
 use super::{Options, Refusal, first_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
+use crate::conservative::parity::twice_even_part;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::{Integer, Polynomial};
@@ -87,8 +88,7 @@ pub(super) fn first_order_only(options: &Options, method: Method) -> Result<(), 
 
 /// The terms of a force that keep their sign when the coordinate changes its own.
 pub(super) fn even_part(oscillator: &Oscillator, force: &Expr) -> Result<Expr, Refusal> {
-    let mirrored = force.substitute(oscillator.coordinate, &-&Expr::from(oscillator.coordinate))?;
-    let sum = (&mirrored + force).expand()?;
+    let sum = twice_even_part(force, oscillator.coordinate)?;
     Ok(Expr::divide(&sum, &Expr::from(2))?)
 }
 

@@ -105,7 +105,7 @@ pub enum Refusal {
     /// A limit cycle exists or may exist, but not in closed form.
     #[error("the amplitude of the limit cycle follows from `{equation} = 0`, {reason}")]
     LimitCycle {
-        /// The polynomial in z = amplitude^2 whose root is needed.
+        /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z of its own.
         equation: String,
         /// Why that is not possible.
         reason: &'static str,

@@ -116,7 +116,7 @@ pub fn frequency_squared_of(
 
 /// The symbol of homotopy analysis that is to be chosen, where there is one.
 fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
-    let hbar = Symbol::new(homotopy_analysis::HBAR);
+    let hbar = homotopy_analysis::convergence_control(solution);
     let open = solution.method == Method::HomotopyAnalysis && !numbers.contains_key(&hbar);
     (open && contains(solution, hbar)).then_some(hbar)
 }

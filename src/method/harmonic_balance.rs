@@ -154,7 +154,7 @@ pub(super) fn harmonics(order: u32, odd: bool) -> Vec<usize> {
 }
 
 /// `a1`, `a3`, ...; another stem where the equation uses one of these.
-fn coefficient_names(oscillator: &Oscillator, harmonics: &[usize]) -> Vec<Symbol> {
+pub(super) fn coefficient_names(oscillator: &Oscillator, harmonics: &[usize]) -> Vec<Symbol> {
     let stem = fresh_stem("a", &oscillator.names());
     harmonics.iter().map(|k| Symbol::new(&format!("{stem}{k}"))).collect()
 }

@@ -13,6 +13,7 @@ pub mod hamiltonian;
 pub mod harmonic_balance;
 pub mod homotopy_analysis;
 pub mod homotopy_perturbation;
+pub mod inertia;
 pub mod iteration_perturbation;
 pub mod joint_expansion;
 pub mod limit_cycle;
@@ -323,7 +324,10 @@ fn by_method(method: Method, oscillator: &Oscillator, options: &Options) -> Resu
         Method::Pade => pade::solve,
         Method::Exact => exact::solve,
     };
-    solve(oscillator, options)
+    match inertia::solve(method, oscillator, options)? {
+        Some(solution) => Ok(solution),
+        None => solve(oscillator, options),
+    }
 }
 
 /// The degree of the polynomial that stands for the force about an equilibrium that is no fraction.

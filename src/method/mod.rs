@@ -13,7 +13,6 @@ pub mod hamiltonian;
 pub mod harmonic_balance;
 pub mod homotopy_analysis;
 pub mod homotopy_perturbation;
-pub mod inertia;
 pub mod iteration_perturbation;
 pub mod joint_expansion;
 pub mod limit_cycle;
@@ -106,7 +105,7 @@ pub enum Refusal {
     /// A limit cycle exists or may exist, but not in closed form.
     #[error("the amplitude of the limit cycle follows from `{equation} = 0`, {reason}")]
     LimitCycle {
-        /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z of its own.
+        /// The polynomial in z = amplitude^2 whose root is needed.
         equation: String,
         /// Why that is not possible.
         reason: &'static str,
@@ -324,10 +323,7 @@ fn by_method(method: Method, oscillator: &Oscillator, options: &Options) -> Resu
         Method::Pade => pade::solve,
         Method::Exact => exact::solve,
     };
-    match inertia::solve(method, oscillator, options)? {
-        Some(solution) => Ok(solution),
-        None => solve(oscillator, options),
-    }
+    solve(oscillator, options)
 }
 
 /// The degree of the polynomial that stands for the force about an equilibrium that is no fraction.

@@ -31,10 +31,16 @@ pub fn significant(value: f64, digits: usize) -> String {
 
 /// Fifteen significant digits of a number, as a fraction.
 pub fn rounded(value: f64) -> Rational {
-    let text = format!("{value:.14e}");
+    rounded_to(value, 15)
+}
+
+/// So many significant digits of a number, as a fraction; seventeen tell any two numbers apart.
+pub fn rounded_to(value: f64, digits: usize) -> Rational {
+    let decimals = digits.saturating_sub(1);
+    let text = format!("{value:.decimals$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let digits: num_bigint::BigInt = mantissa.replace('.', "").parse().unwrap_or_default();
-    let power = exponent.parse::<i32>().unwrap_or(0) - 14;
+    let power = exponent.parse::<i32>().unwrap_or(0) - decimals as i32;
     let ten = Rational::from_integer(10.into());
     let scale = num_traits::pow(ten, power.unsigned_abs() as usize);
     let digits = Rational::from_integer(digits);

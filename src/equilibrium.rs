@@ -1,97 +1,435 @@
-//! Where a motion swings about: the stable equilibrium nearest to `x = 0`, and the equation seen from there.
+//! Where a motion swings about: the stable equilibrium nearest to `x = 0`, or the one asked for, and the equation seen from
+//! there.
 //!
-//! `f(x_e) = 0`, stable where the force changes sign from negative to positive. An equilibrium that is a fraction is used
-//! exactly; any other leads to numerical coefficients, which the answer says.
+//! `f(x_e) = 0`, stable where the lowest term of the force about `x_e` is odd and pulls back; where there is no Taylor
+//! series, where the force changes its sign from negative to positive.
+//!
+//! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
+//! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
+
+mod search;
+mod shift;
+
+use std::collections::BTreeMap;
 
 use num_traits::Zero;
 
-use crate::decimal::rounded;
+use crate::decimal::{decimal, rounded, rounded_to};
 use crate::exact::Rational;
-use crate::exact::rational::ratio;
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
+use crate::solution::Definition;
+use crate::symbol::Symbol;
+use search::{Zero as SignChange, polynomial_zeros, zeros};
+use shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved, value_at};
 
 /// An equation of motion in the deviation from its equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Centred {
     /// The equation in `x - position`.
     pub oscillator: Oscillator,
-    /// The equilibrium: a fraction, or fifteen digits of it.
-    pub position: Rational,
-    /// Whether position and coefficients are rounded.
+    /// The equilibrium in numbers and parameters; seventeen digits where it has no closed form here.
+    pub position: Expr,
+    /// The same with the symbol of `definition` in it, where there is one.
+    pub written: Expr,
+    /// The symbol that stands for the equilibrium, or its negative, in the force.
+    pub definition: Option<Definition>,
+    /// Whether the coefficients of the force are rounded.
     pub numerical: bool,
     /// What was assumed of parameters: `xc > 0` where a barrier `H(x - xc)` must not act at rest.
     pub assumption: Option<String>,
 }
 
-/// The oscillator about the stable equilibrium nearest to zero; `degree` is that of the numerical force polynomial, should
-/// the equilibrium be irrational.
+impl Centred {
+    fn at_origin(oscillator: &Oscillator) -> Self {
+        Self {
+            oscillator: oscillator.clone(),
+            position: Expr::zero(),
+            written: Expr::zero(),
+            definition: None,
+            numerical: false,
+            assumption: None,
+        }
+    }
+}
+
+/// The oscillator about the equilibrium asked for, else about the stable one nearest to zero that no pole hides; `degree` is
+/// that of a polynomial with rounded coefficients in place of the force, should the equilibrium be irrational.
 ///
 /// # Errors
-/// An unstable `x = 0` (the stable ones are named), no equilibrium, or one that depends on parameters.
-pub fn centred(oscillator: &Oscillator, degree: u32) -> Result<Centred, OscillatorError> {
-    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
-    let at_origin = Centred {
-        oscillator: oscillator.clone(),
-        position: Rational::zero(),
-        numerical: false,
-        assumption: None,
-    };
+/// An unstable `x = 0`, or an equilibrium asked for that is none (the stable ones are named); no equilibrium, or one that
+/// has no closed form in the parameters.
+pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
+    let position = oscillator.coordinate;
     // Time-dependent terms are refused by the methods; where the force has no value at rest, so is that.
-    let Ok(still) = oscillator.force.substitute(velocity, &Expr::zero()) else {
-        return Ok(at_origin);
+    let Ok(still) = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()) else {
+        return Ok(Centred::at_origin(oscillator));
     };
-    let at_zero = still
-        .substitute(position, &Expr::zero())
-        .and_then(|force| force.expand());
-    let Ok(at_zero) = at_zero else { return Ok(at_origin) };
-    let only_position = still.symbols().into_iter().all(|symbol| symbol == position);
-    if at_zero.is_zero() {
-        if !only_position {
-            return Ok(at_origin);
-        }
-        let equilibria = equilibria(&still, oscillator)?;
-        let unstable = equilibria.iter().any(|found| found.position == 0.0 && !found.stable);
-        return match unstable {
-            false => Ok(at_origin),
-            true => Err(OscillatorError::Unstable(stable_texts(&equilibria, &still, oscillator))),
+    if let Some(asked) = &oscillator.about {
+        return about(oscillator, &still, asked, degree);
+    }
+    let at_zero = value_at(&still, position, &Expr::zero());
+    if at_zero
+        .as_ref()
+        .map_or(&still, |force| force)
+        .contains(Symbol::new("t"))
+    {
+        return Ok(Centred::at_origin(oscillator));
+    }
+    let force = Force::new(&still, position);
+    let rests = match &at_zero {
+        Ok(force) => force.is_zero(),
+        Err(_) => force.vanishes_towards_zero(),
+    };
+    if rests {
+        return match force.is_stable_at_zero() {
+            true => Ok(Centred::at_origin(oscillator)),
+            false => Err(force.unstable()),
         };
     }
-    if !only_position && let Some(assumption) = untouched(&at_zero)? {
+    if force.value.is_some() {
+        let stable = force.stable();
+        let nearest = stable.iter().find(|found| found.reachable);
+        return match (nearest, stable.is_empty()) {
+            (Some(nearest), _) => seen_from(oscillator, &force.exact_or_rounded(nearest.position), degree),
+            (None, true) => Err(OscillatorError::NoEquilibrium(force.at_rest(&at_zero))),
+            (None, false) => Err(OscillatorError::BeyondPole {
+                force: force.at_rest(&at_zero),
+                coordinate: position,
+                stable: force.stable_texts(),
+            }),
+        };
+    }
+    if let Ok(at_zero) = &at_zero
+        && let Some(assumption) = untouched(at_zero)?
+    {
         return Ok(Centred {
             assumption: Some(assumption),
-            ..at_origin
+            ..Centred::at_origin(oscillator)
         });
     }
-    if !only_position {
-        return match at_zero.contains("t".into()) {
-            true => Ok(at_origin),
-            false => Err(OscillatorError::SymbolicEquilibrium(at_zero.to_string())),
+    match force.stable_closed_form() {
+        Some(found) => seen_from(oscillator, &found, degree),
+        None => Err(OscillatorError::SymbolicEquilibrium(force.at_rest(&at_zero))),
+    }
+}
+
+/// The oscillator with the numbers given for its parameters, where the equilibrium in symbols is not that of these numbers.
+///
+/// # Errors
+/// With these numbers `x = 0`, or the equilibrium asked for, is not stable, or there is none.
+pub fn with_numbers_where_needed(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, Expr>,
+) -> Result<Option<Oscillator>, OscillatorError> {
+    if oscillator.parameters.is_empty() {
+        return Ok(None);
+    }
+    let in_symbols = match centred(oscillator, None) {
+        Err(OscillatorError::SymbolicEquilibrium(_) | OscillatorError::NoSuchEquilibrium { .. }) => None,
+        Err(error) => return Err(error),
+        Ok(centred) => Some(centred),
+    };
+    if !oscillator.parameters.iter().all(|name| numbers.contains_key(name)) {
+        return Ok(None);
+    }
+    let numerical = oscillator.with_values(numbers)?;
+    let place = |centred: &Centred| {
+        let position = centred.position.substitute_all(numbers).ok()?;
+        position.evaluate(&BTreeMap::new()).ok()
+    };
+    let in_numbers = centred(&numerical, None)?;
+    let same = in_symbols.is_some_and(|in_symbols| {
+        let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
+        matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
+    });
+    Ok((!same).then_some(numerical))
+}
+
+/// The oscillator about the equilibrium that was asked for: it may be typed rounded.
+fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32>) -> Result<Centred, OscillatorError> {
+    /// How far a number typed may be from the equilibrium it means, relatively.
+    const ROUNDING: f64 = 1e-3;
+    let force = Force::new(still, oscillator.coordinate);
+    let none_there = || OscillatorError::NoSuchEquilibrium {
+        position: format!("{} = {asked}", oscillator.coordinate),
+        stable: force.stable_texts(),
+    };
+    let exact = value_at(still, oscillator.coordinate, asked).is_ok_and(|value| value.is_zero());
+    if exact {
+        let there = moved(still, oscillator.coordinate, asked)?;
+        let stable = Force::new(&there, oscillator.coordinate).is_stable_at_zero();
+        return match stable {
+            true => seen_from(oscillator, &Place::Exact(asked.clone()), degree),
+            false => Err(none_there()),
         };
     }
-    let equilibria = equilibria(&still, oscillator)?;
-    let stable = equilibria.iter().filter(|found| found.stable);
-    let Some(nearest) = stable.min_by(|a, b| a.position.abs().total_cmp(&b.position.abs())) else {
-        return Err(OscillatorError::NoEquilibrium(at_zero.to_string()));
+    let Ok(near) = asked.evaluate(&BTreeMap::new()) else {
+        return Err(none_there());
     };
-    let exact = nearest.exact(&still, oscillator);
-    let numerical = exact.is_none();
-    let shift = exact.unwrap_or_else(|| rounded(nearest.position));
-    let moved = &Expr::from(position) + &Expr::number(shift.clone());
-    let mut oscillator = oscillator.clone();
-    oscillator.residual = oscillator.residual.substitute(position, &moved)?;
-    oscillator.force = match numerical {
-        false => oscillator.force.substitute(position, &moved)?,
-        true => numerical_force(&oscillator, &shift, degree)?,
+    let close = |found: &&SignChange| found.stable && (found.position - near).abs() <= ROUNDING * near.abs();
+    let distance = |found: &SignChange| (found.position - near).abs();
+    let signs = force.signs();
+    let nearest = signs
+        .iter()
+        .filter(close)
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let Some(found) = nearest else { return Err(none_there()) };
+    seen_from(oscillator, &force.exact_or_rounded(found.position), degree)
+}
+
+/// Where an equilibrium is.
+#[derive(Clone, Debug, PartialEq)]
+enum Place {
+    /// In closed form.
+    Exact(Expr),
+    /// By its number alone.
+    Rounded(f64),
+}
+
+/// A force of the position alone.
+struct Force<'a> {
+    force: &'a Expr,
+    coordinate: Symbol,
+    /// The force as a function, where it has no parameters.
+    value: Option<CompiledFunction>,
+}
+
+impl<'a> Force<'a> {
+    fn new(force: &'a Expr, coordinate: Symbol) -> Self {
+        Self {
+            force,
+            coordinate,
+            value: CompiledFunction::new(force, &[coordinate]).ok(),
+        }
+    }
+
+    /// The force at rest, for messages.
+    fn at_rest<E>(&self, at_zero: &Result<Expr, E>) -> String {
+        at_zero
+            .as_ref()
+            .map_or_else(|_| self.force.to_string(), Expr::to_string)
+    }
+
+    /// Numbers in place of the parameters to choose between closed forms: all about equal to `scale`.
+    fn sample(&self, scale: f64) -> BTreeMap<Symbol, f64> {
+        let parameters = self.force.symbols().into_iter().filter(|name| *name != self.coordinate);
+        let values = (1..).map(|k| scale * (1.0 + 0.03 * f64::from(k)));
+        parameters.zip(values).collect()
+    }
+
+    /// The force as a function with these numbers for its parameters.
+    fn at_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<impl Fn(f64) -> f64 + use<>> {
+        let names: Vec<Symbol> = std::iter::once(self.coordinate)
+            .chain(numbers.keys().copied())
+            .collect();
+        let function = CompiledFunction::new(self.force, &names).ok()?;
+        let numbers: Vec<f64> = numbers.values().copied().collect();
+        Some(move |x: f64| function.call(&[&[x], numbers.as_slice()].concat()))
+    }
+
+    /// Whether a force that has no value at zero goes to zero there, as `(1 - cos(x))/x` does.
+    fn vanishes_towards_zero(&self) -> bool {
+        let origin = [(self.coordinate, Rational::zero())];
+        if let Ok(parts) = taylor(self.force, &origin, 1) {
+            return parts.first().is_some_and(Expr::is_zero);
+        }
+        let Some(value) = self.at_numbers(&self.sample(1.0)) else {
+            return false;
+        };
+        [1.0, -1.0].into_iter().all(|side| {
+            let (near, far) = (value(side * 1e-100).abs(), value(side * 1e-30).abs());
+            far.is_finite() && near <= 1e-3 * far
+        })
+    }
+
+    /// Whether the force, zero at `x = 0`, pulls back there; a parameter is given the benefit of the doubt.
+    fn is_stable_at_zero(&self) -> bool {
+        let origin = [(self.coordinate, Rational::zero())];
+        for degree in [1, 3, 5, 9, 15] {
+            let Ok(parts) = taylor(self.force, &origin, degree) else {
+                break;
+            };
+            let coefficient = |part: &Expr| part.substitute(self.coordinate, &Expr::one()).ok();
+            let lowest = parts.iter().enumerate().skip(1).find_map(|(power, part)| {
+                let coefficient = coefficient(part).filter(|coefficient| !is_nothing(coefficient))?;
+                Some((power, coefficient))
+            });
+            if let Some((power, coefficient)) = lowest {
+                let negative = coefficient.evaluate(&BTreeMap::new()).is_ok_and(|value| value < 0.0);
+                return power % 2 == 1 && !negative;
+            }
+        }
+        // Without a Taylor series, or flat: the first force that is felt on either side.
+        let Some(value) = &self.value else { return true };
+        let felt = |side: f64| {
+            let places = (-1200..1200).map(|k| side * 10_f64.powf(f64::from(k) / 40.0));
+            let mut forces = places.map(|x| value.call(&[x])).take_while(|force| force.is_finite());
+            forces.find(|force| *force != 0.0).unwrap_or(0.0)
+        };
+        felt(1.0) > 0.0 && felt(-1.0) < 0.0
+    }
+
+    /// All changes of sign of a force without parameters.
+    fn signs(&self) -> Vec<SignChange> {
+        let Some(function) = &self.value else { return vec![] };
+        let numbers = coefficients(self.force, self.coordinate).and_then(|coefficients| {
+            let values = coefficients
+                .iter()
+                .map(|coefficient| coefficient.evaluate(&BTreeMap::new()).ok());
+            values.collect::<Option<Vec<f64>>>()
+        });
+        if let Some(numbers) = numbers {
+            return polynomial_zeros(&numbers);
+        }
+        let centres = linear_zeros(self.force, self.coordinate);
+        let centres: Vec<f64> = centres
+            .iter()
+            .filter_map(|zero| zero.evaluate(&BTreeMap::new()).ok())
+            .collect();
+        zeros(&|x| function.call(&[x]), &centres)
+    }
+
+    /// The stable equilibria, the nearest first; those that a pole hides only where there are no others.
+    fn stable(&self) -> Vec<SignChange> {
+        let mut found: Vec<SignChange> = self.signs().into_iter().filter(|found| found.stable).collect();
+        if found.iter().any(|found| found.reachable) {
+            found.retain(|found| found.reachable);
+        }
+        // Of two mirror images the positive one, though rounding may put it farther away.
+        found.sort_by(|a, b| {
+            let size = |found: &SignChange| found.position.abs() as f32;
+            size(a).total_cmp(&size(b)).then(b.position.total_cmp(&a.position))
+        });
+        found
+    }
+
+    /// A number with the closed form that belongs to it, where one is known.
+    fn exact_or_rounded(&self, position: f64) -> Place {
+        if let Some(exact) = exact_zero(self.force, self.coordinate, position) {
+            return Place::Exact(exact);
+        }
+        let belongs = |form: &Expr| {
+            let value = form.evaluate(&BTreeMap::new());
+            value.is_ok_and(|value| (value - position).abs() <= 1e-15 * position.abs())
+        };
+        let forms = closed_forms(self.force, self.coordinate);
+        let form = forms.into_iter().find(belongs);
+        form.map_or(Place::Rounded(position), Place::Exact)
+    }
+
+    /// The closed form of the stable equilibrium in the parameters, chosen where loads are small.
+    fn stable_closed_form(&self) -> Option<Place> {
+        let forms = closed_forms(self.force, self.coordinate);
+        let nearest = [0.1, 0.01, 1.0, 0.001, 10.0].into_iter().find_map(|scale| {
+            let mut stable = self.stable_at(&forms, scale);
+            stable.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()).then(b.0.total_cmp(&a.0)));
+            stable.into_iter().next()
+        });
+        nearest.map(|(_, form)| Place::Exact(form))
+    }
+
+    /// The forms at which the force pulls back with parameters about equal to `scale`, and their values.
+    fn stable_at(&self, forms: &[Expr], scale: f64) -> Vec<(f64, Expr)> {
+        let sample = self.sample(scale);
+        let Some(value) = self.at_numbers(&sample) else {
+            return vec![];
+        };
+        let stable = |form: &Expr| {
+            let position = form.evaluate(&sample).ok()?;
+            let step = 1e-6 * position.abs();
+            let (left, right) = (value(position - step), value(position + step));
+            (left < 0.0 && right > 0.0 && position != 0.0).then(|| (position, form.clone()))
+        };
+        forms.iter().filter_map(stable).collect()
+    }
+
+    fn unstable(&self) -> OscillatorError {
+        OscillatorError::Unstable {
+            coordinate: self.coordinate,
+            stable: self.stable_texts(),
+        }
+    }
+
+    /// The stable equilibria as text: the nearest few, and the period with which they come back.
+    fn stable_texts(&self) -> Vec<String> {
+        const MOST: usize = 4;
+        if self.value.is_none() {
+            let forms = closed_forms(self.force, self.coordinate);
+            return self
+                .stable_at(&forms, 1.0)
+                .into_iter()
+                .map(|(_, form)| form.to_string())
+                .collect();
+        }
+        let period = self.period();
+        let half = period
+            .as_ref()
+            .and_then(|period| period.evaluate(&BTreeMap::new()).ok());
+        let near = |position: &f64| half.is_none_or(|period| position.abs() <= 0.5 * period * (1.0 + 1e-9));
+        let mut positions: Vec<f64> = self.stable().into_iter().map(|found| found.position).collect();
+        positions.retain(near);
+        let more = positions.len() > MOST;
+        positions.truncate(MOST);
+        positions.sort_by(f64::total_cmp);
+        let text = |position: &f64| match exact_zero(self.force, self.coordinate, *position) {
+            Some(exact) if exact.to_string().len() <= 12 => exact.to_string(),
+            _ => decimal(*position),
+        };
+        let mut texts: Vec<String> = positions.iter().map(text).collect();
+        if let Some(last) = texts.last_mut() {
+            match period {
+                Some(period) => last.push_str(&format!(", and again every {period}")),
+                None if more => last.push_str(" and farther out"),
+                None => {}
+            }
+        }
+        texts
+    }
+
+    /// The period of a force of angles, by trying those of its sines and cosines.
+    fn period(&self) -> Option<Expr> {
+        let mut slopes: Vec<Rational> = Vec::new();
+        let collected = self.force.fold(|expr, _: &[()]| {
+            if let Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) = expr.node()
+                && let Some(slope) = arguments
+                    .first()
+                    .and_then(|angle| angle.differentiate(self.coordinate).ok())
+                && let Some(slope) = slope.as_number().filter(|slope| !slope.is_zero())
+            {
+                slopes.push(num_traits::Signed::abs(slope));
+            }
+            Ok::<(), std::convert::Infallible>(())
+        });
+        collected.ok()?;
+        slopes.sort();
+        let periods = slopes
+            .iter()
+            .map(|slope| Expr::from(2) * Expr::pi() * Expr::number(slope.recip()));
+        periods.into_iter().find(|period| {
+            let moved = moved(self.force, self.coordinate, period);
+            let difference = moved.and_then(|moved| (&moved - self.force).expand());
+            difference.is_ok_and(|difference| difference.is_zero())
+        })
+    }
+}
+
+/// Whether a coefficient is zero, or what rounding leaves of terms that cancel.
+fn is_nothing(coefficient: &Expr) -> bool {
+    let Ok(expanded) = coefficient.expand() else {
+        return false;
     };
-    Ok(Centred {
-        oscillator,
-        position: shift,
-        numerical,
-        assumption: None,
-    })
+    let values = expanded.terms().iter().map(|term| term.evaluate(&BTreeMap::new()));
+    let Ok(values) = values.collect::<Result<Vec<f64>, _>>() else {
+        return expanded.is_zero();
+    };
+    let (sum, size) = values
+        .iter()
+        .fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
+    f64::abs(sum) <= 1e-14 * size
 }
 
 /// Whether a force at rest is that of barriers alone that do not act there: every `H(-xc)` is zero for `xc > 0`.
@@ -117,126 +455,302 @@ fn untouched(at_zero: &Expr) -> Result<Option<String>, OscillatorError> {
     Ok((without.expand()?.is_zero() && !names.is_empty()).then(assumption))
 }
 
-/// The force as a polynomial with rounded coefficients; only for forces of the position alone.
-fn numerical_force(oscillator: &Oscillator, shift: &Rational, degree: u32) -> Result<Expr, OscillatorError> {
-    let position = oscillator.coordinate;
-    if oscillator.force.contains(oscillator.velocity()) {
-        return Err(OscillatorError::NoEquilibrium(
-            "a force with velocities about an irrational equilibrium".to_owned(),
-        ));
+/// The equation in the deviation from a place.
+fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Result<Centred, OscillatorError> {
+    let coordinate = oscillator.coordinate;
+    let position = match place {
+        Place::Exact(position) => position.clone(),
+        Place::Rounded(value) => Expr::number(rounded_to(*value, 17)),
+    };
+    let number = position.evaluate(&BTreeMap::new()).ok();
+    let mut centred = Centred {
+        position: position.clone(),
+        written: position.clone(),
+        ..Centred::at_origin(oscillator)
+    };
+    let simple = matches!(place, Place::Exact(_)) && position.to_polynomial(&mut |_| None)?.is_some();
+    if simple {
+        centred.oscillator.force = moved(&oscillator.force, coordinate, &position)?;
+        return Ok(centred);
     }
-    let parts = taylor(&oscillator.force, &[(position, shift.clone())], degree)?;
-    // The value at the equilibrium itself is rounding; the linear frequency is rounded instead of its square, so that it
-    // needs no symbol.
-    let term = |(power, part): (usize, &Expr)| {
-        let value = part.evaluate(&[(position, 1.0)].into()).ok()?;
-        let coefficient = match power {
-            1 if value > 0.0 => num_traits::pow(rounded(value.sqrt()), 2),
+    if let (Some(degree), Some(number)) = (degree, number) {
+        centred.oscillator.force = rounded_force(oscillator, number, degree)?;
+        centred.written = Expr::number(rounded(number));
+        centred.numerical = true;
+        return Ok(centred);
+    }
+    // What stands for the equilibrium is positive wherever that is known, as edges of barriers are taken to be.
+    let negative = number.is_some_and(|number| number < 0.0);
+    let symbol = fresh_name(oscillator);
+    let (written, meaning) = match negative {
+        false => (Expr::from(symbol), position),
+        true => (-Expr::from(symbol), -position),
+    };
+    let at_rest = oscillator
+        .force
+        .substitute(oscillator.velocity(), &Expr::zero())?
+        .substitute(coordinate, &written)?;
+    let force = oscillator
+        .force
+        .substitute(coordinate, &(Expr::from(coordinate) + &written))?;
+    centred.oscillator.force = force - at_rest;
+    centred.written = written;
+    centred.definition = Some(Definition { symbol, meaning });
+    Ok(centred)
+}
+
+/// `x_e`, or the same with more underscores where the equation has that.
+fn fresh_name(oscillator: &Oscillator) -> Symbol {
+    let mut name = format!("{}_e", oscillator.coordinate);
+    while oscillator.parameters.contains(&Symbol::new(&name)) {
+        name.push('_');
+    }
+    Symbol::new(&name)
+}
+
+/// The force as a polynomial in coordinate and velocity with rounded coefficients: all of it where it is a polynomial, its
+/// Taylor polynomial of a degree otherwise.
+fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Expr, OscillatorError> {
+    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let centre = rounded_to(number, 17);
+    let mut constants: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    let mut name = |constant: &Expr| {
+        if constant.contains(position) || constant.contains(velocity) || constant.contains(Symbol::new("t")) {
+            return None;
+        }
+        let symbol = Symbol::new(&format!("constant {constant}"));
+        constants.insert(symbol, constant.clone());
+        Some(symbol)
+    };
+    let moved = oscillator
+        .force
+        .substitute(position, &(Expr::from(position) + Expr::number(centre.clone())))?;
+    let polynomial = match moved.to_polynomial(&mut name)? {
+        Some(polynomial) if polynomial.exponent_range(position).is_none_or(|range| range.0 >= 0) => polynomial,
+        _ => {
+            let point = [(position, centre), (velocity, Rational::zero())];
+            let point = if oscillator.force.contains(velocity) {
+                &point[..]
+            } else {
+                &point[..1]
+            };
+            let sum = Expr::sum(taylor(&oscillator.force, point, degree)?);
+            let polynomial = sum.to_polynomial(&mut name)?;
+            polynomial.ok_or_else(|| OscillatorError::NotPolynomial(sum.to_string()))?
+        }
+    };
+    // Number and size of what was added up, by the powers of coordinate and velocity and what else stands in the term.
+    let mut sums: BTreeMap<(i32, i32, Monomial), (f64, f64)> = BTreeMap::new();
+    for (monomial, factor) in polynomial.terms() {
+        let mut value = to_f64(factor);
+        let mut rest = Monomial::one();
+        for &(symbol, exponent) in monomial.factors() {
+            let number = match constants.get(&symbol) {
+                Some(constant) => constant.evaluate(&BTreeMap::new()).ok(),
+                None => (symbol == Symbol::new("pi")).then_some(std::f64::consts::PI),
+            };
+            match (number, constants.get(&symbol)) {
+                (Some(number), _) => value *= number.powi(exponent),
+                (None, Some(constant)) => return Err(OscillatorError::NotPolynomial(constant.to_string())),
+                (None, None) if symbol == position || symbol == velocity => {}
+                (None, None) => rest = rest.product(&Monomial::power_of(symbol, exponent)),
+            }
+        }
+        let powers = (monomial.exponent(position), monomial.exponent(velocity), rest);
+        let entry = sums.entry(powers).or_insert((0.0, 0.0));
+        *entry = (entry.0 + value, entry.1 + value.abs());
+    }
+    let coefficient = |powers: &(i32, i32, Monomial)| sums.get(powers).map_or(0.0, |entry| entry.0);
+    let mut terms = Vec::new();
+    for (powers, &(value, size)) in &sums {
+        let (p, q, rest) = powers;
+        // The equilibrium is rounded, and with it every coefficient in proportion to the next one.
+        let next = coefficient(&(p + 1, *q, rest.clone()));
+        let rounding = 1e-14 * size + 4.0 * f64::EPSILON * number.abs() * f64::from(p + 1) * next.abs();
+        if value.abs() <= rounding || (*p, *q) == (0, 0) {
+            continue;
+        }
+        // The linear frequency is rounded instead of its square, so that it needs no symbol.
+        let coefficient = match (p, q) {
+            (1, 0) if value > 0.0 && rest.factors().is_empty() => num_traits::pow(rounded(value.sqrt()), 2),
             _ => rounded(value),
         };
-        let power = Expr::integer_power(&Expr::from(position), power as i64).ok()?;
-        Some(&Expr::number(coefficient) * &power)
-    };
-    Ok(Expr::sum(parts.iter().enumerate().skip(1).filter_map(term)))
-}
-
-struct Equilibrium {
-    position: f64,
-    stable: bool,
-}
-
-impl Equilibrium {
-    /// The fraction of smallest denominator here at which the force is exactly zero.
-    fn exact(&self, force: &Expr, oscillator: &Oscillator) -> Option<Rational> {
-        (1..=1000)
-            .map(|q| ratio((self.position * q as f64).round() as i64, q))
-            .find(|candidate| {
-                let near = (crate::exact::rational::to_f64(candidate) - self.position).abs()
-                    < 1e-9 * (1.0 + self.position.abs());
-                let value = || force.substitute(oscillator.coordinate, &Expr::number(candidate.clone()));
-                near && value()
-                    .and_then(|value| value.expand())
-                    .is_ok_and(|value| value.is_zero())
-            })
-    }
-}
-
-fn stable_texts(equilibria: &[Equilibrium], force: &Expr, oscillator: &Oscillator) -> Vec<String> {
-    let text = |found: &Equilibrium| match found.exact(force, oscillator) {
-        Some(exact) => exact.to_string(),
-        None => crate::decimal::decimal(found.position),
-    };
-    equilibria.iter().filter(|found| found.stable).map(text).collect()
-}
-
-/// All simple zeros of the force between -1000 and 1000 that a fine grid tells apart, nearest to zero in the finest part.
-fn equilibria(force: &Expr, oscillator: &Oscillator) -> Result<Vec<Equilibrium>, OscillatorError> {
-    let function = CompiledFunction::new(force, &[oscillator.coordinate])
-        .map_err(|_| OscillatorError::NoEquilibrium(force.to_string()))?;
-    let value = |x: f64| function.call(&[x]);
-    // From 1/100 apart near zero to a few units apart far out; odd numbers of steps keep zero itself off the grid.
-    let place = |k: i32| {
-        let s = (f64::from(k) + 0.5) / 1000.0;
-        10.0 * s + 990.0 * s.powi(7)
-    };
-    let mut found: Vec<Equilibrium> = Vec::new();
-    for k in -1000..1000 {
-        let (left, right) = (place(k), place(k + 1));
-        let (before, after) = (value(left), value(right));
-        if !(before.is_finite() && after.is_finite()) || before.signum() == after.signum() {
-            continue;
+        let power = |symbol: Symbol, exponent: i32| Expr::from(symbol).integer_power(exponent.into());
+        let mut term = Expr::number(coefficient) * power(position, *p)? * power(velocity, *q)?;
+        for &(symbol, exponent) in rest.factors() {
+            term = term * power(symbol, exponent)?;
         }
-        let Ok(root) = find_root(value, left, right) else {
-            continue;
-        };
-        // A pole changes sign as well, but is no zero.
-        if value(root).abs() > before.abs().min(after.abs()) {
-            continue;
-        }
-        let root = if value(0.0) == 0.0 && root.abs() < 1e-12 {
-            0.0
-        } else {
-            root
-        };
-        found.push(Equilibrium {
-            position: root,
-            stable: after > 0.0,
-        });
+        terms.push(term);
     }
-    Ok(found)
+    Ok(Expr::sum(terms))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn position(text: &str) -> Result<(String, bool), OscillatorError> {
-        let centred = centred(&Oscillator::parse(text)?, 9)?;
-        Ok((centred.position.to_string(), centred.numerical))
+    fn position(text: &str) -> Result<String, OscillatorError> {
+        Ok(centred(&Oscillator::parse(text)?, None)?.position.to_string())
+    }
+
+    fn force(text: &str) -> String {
+        let centred = centred(&Oscillator::parse(text).unwrap(), None).unwrap();
+        centred.oscillator.force.expand().unwrap().to_string()
     }
 
     #[test]
     fn the_nearest_stable_equilibrium() {
-        assert_eq!(position("x'' + sin(x)"), Ok(("0".to_owned(), false)));
-        assert_eq!(position("x'' + x - 1/3"), Ok(("1/3".to_owned(), false)));
-        assert_eq!(position("x'' + x^2 - 4"), Ok(("2".to_owned(), false)));
-        let (text, numerical) = position("x'' + x - cos(x)").unwrap();
-        assert!(numerical);
-        let value = crate::exact::rational::to_f64(&text.parse().unwrap());
-        assert!((value - value.cos()).abs() < 1e-14);
+        assert_eq!(position("x'' + sin(x)").unwrap(), "0");
+        assert_eq!(position("x'' + x - 1/3").unwrap(), "1/3");
+        assert_eq!(position("x'' + x^2 - 4").unwrap(), "2");
+        assert_eq!(position("x'' + x^2 - 2").unwrap(), "sqrt(2)");
+        let text = position("x'' + x - cos(x)").unwrap();
+        let value = to_f64(&text.parse::<Expr>().unwrap().as_number().unwrap().clone());
+        assert!((value - value.cos()).abs() < 2e-16);
+    }
+
+    #[test]
+    fn angles_are_moved_exactly() {
+        assert_eq!(position("x'' + cos(x)").unwrap(), "-pi/2");
+        assert_eq!(force("x'' + cos(x)"), "sin(x)");
+        assert_eq!(force("x'' - sin(x + pi/3)"), "sin(x)");
+        assert_eq!(force("x'' + 2*cos(2*x)"), "2*sin(2*x)");
+        assert_eq!(force("x'' + sin(x) - 1/2"), "-1/2 + sqrt(3)*sin(x)/2 + cos(x)/2");
+    }
+
+    #[test]
+    fn every_scale_has_its_equilibria() {
+        assert_eq!(position("x'' + 1e12*x - 1e26*x^3").unwrap(), "0");
+        let small: Expr = position("x'' + 1e12*x - 1e26*x^2 - 1e-9").unwrap().parse().unwrap();
+        assert!((small.evaluate(&BTreeMap::new()).unwrap() / 1.000_000_1e-21 - 1.0).abs() < 1e-13);
+        for scale in ["1e-20", "1e-9", "1e9", "1e20"] {
+            let text = format!("x'' + (x/{scale})^2 - 4");
+            let expected = format!("2*{scale}").parse::<Expr>().unwrap();
+            assert_eq!(position(&text).unwrap(), expected.to_string(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_equilibrium_is_not_taken_for_one() {
+        for text in [
+            "x'' + x^2 + x^3",
+            "x'' + x^2",
+            "x'' - x^3",
+            "x'' + max(x, 0)",
+            "x'' + x*log(abs(x))",
+        ] {
+            assert!(
+                matches!(position(text), Err(OscillatorError::Unstable { .. })),
+                "{text}"
+            );
+        }
+        assert_eq!(position("x'' + x - 1/x^3").unwrap(), "1");
+        assert_eq!(position("x'' + x - 1/x").unwrap(), "1");
+        assert_eq!(position("x'' + x - k/x").unwrap(), "sqrt(k)");
+        let text = position("x'' + x + log(x)").unwrap();
+        let value = to_f64(text.parse::<Expr>().unwrap().as_number().unwrap());
+        assert!((value + value.ln()).abs() < 1e-15);
+        assert!(matches!(
+            position("x'' + k/x^2"),
+            Err(OscillatorError::SymbolicEquilibrium(_))
+        ));
+    }
+
+    #[test]
+    fn a_gap_and_a_corner_are_equilibria() {
+        for text in [
+            "x'' + max(x - 1, 0) + min(x + 1, 0)",
+            "x'' + x*abs(x)",
+            "x'' + sgn(x)",
+            "x'' + x^(1/3)",
+            "x'' + (1 - cos(x))/x",
+        ] {
+            assert_eq!(position(text).unwrap(), "0", "{text}");
+        }
+    }
+
+    #[test]
+    fn equilibria_beyond_a_pole_come_last() {
+        // x (1 - x)^2 = 1/4 has a root beyond x = 1 alone, the plates of a condenser having met; x (1 - x) = 1/5 before it.
+        let error = position("x'' + x - 1/(4*(1 - x)^2)").unwrap_err();
+        assert!(matches!(error, OscillatorError::BeyondPole { .. }), "{error}");
+        assert!(
+            matches!(position("x'' + x - 1/(9*(1 - x)^2)").unwrap().len(), 18..),
+            "irrational"
+        );
+        assert_eq!(position("x'' + x - 1/(5*(1 - x))").unwrap(), "2/(5 + sqrt(5))");
+        assert_eq!(
+            position("x'' + x - lambda/(1 - x)").unwrap(),
+            "2*lambda/(1 + sqrt(1 - 4*lambda))"
+        );
+    }
+
+    #[test]
+    fn static_loads_in_symbols() {
+        assert_eq!(position("x'' + x - k").unwrap(), "k");
+        assert_eq!(position("x'' + k*(x - L) + b*(x - L)^3").unwrap(), "L");
+        assert_eq!(position("x'' + x + x^2 - g").unwrap(), "2*g/(1 + sqrt(1 + 4*g))");
+        assert!(matches!(
+            position("x'' + x + x^3 - g"),
+            Err(OscillatorError::SymbolicEquilibrium(_))
+        ));
+    }
+
+    #[test]
+    fn a_force_moved_keeps_its_form() {
+        assert_eq!(
+            force("x'' + x - 1/3 + x*abs(x)"),
+            "x + x*abs(x + x_e) - x_e*abs(x_e) + x_e*abs(x + x_e)"
+        );
+        let barrier = force("x'' + x - cos(x) + 3*max(x - 1, 0)");
+        assert!(barrier.contains("max(0, -1 + x + x_e)"), "{barrier}");
     }
 
     #[test]
     fn unstable_and_missing_ones_are_refused() {
-        let error = position("x'' - x + x^3").unwrap_err();
-        assert_eq!(error, OscillatorError::Unstable(vec!["-1".to_owned(), "1".to_owned()]));
+        let stable = |text: &str| match position(text) {
+            Err(OscillatorError::Unstable { stable, .. }) => stable.join(", "),
+            other => panic!("{text}: {other:?}"),
+        };
+        assert_eq!(stable("x'' - x + x^3"), "-1, 1");
+        assert_eq!(stable("x'' - x + k*x^3"), "sqrt(1/k), -sqrt(1/k)");
+        assert_eq!(
+            stable("x'' + sin(x) - 2*sin(x)*cos(x)"),
+            "-pi/3, pi/3, and again every 2*pi"
+        );
         assert!(matches!(
             position("x'' + 1 + x^2"),
             Err(OscillatorError::NoEquilibrium(_))
         ));
-        assert!(matches!(
-            position("x'' + x - k"),
-            Err(OscillatorError::SymbolicEquilibrium(_))
-        ));
+    }
+
+    #[test]
+    fn an_equilibrium_may_be_chosen() {
+        let about = |text: &str, place: &str| {
+            let oscillator = Oscillator::parse(text).unwrap().about(place.parse().unwrap());
+            centred(&oscillator, None).map(|centred| centred.position.to_string())
+        };
+        assert_eq!(about("x'' - x + x^3", "-1").unwrap(), "-1");
+        assert_eq!(about("x'' + sin(x)", "2*pi").unwrap(), "2*pi");
+        assert_eq!(about("x'' - x + k*x^3", "1/sqrt(k)").unwrap(), "1/sqrt(k)");
+        assert_eq!(about("x'' - 2*x + x^3", "1.4142").unwrap(), "sqrt(2)");
+        for (text, place) in [("x'' - x + x^3", "0"), ("x'' - x + x^3", "0.5"), ("x'' + sin(x)", "pi")] {
+            let error = about(text, place).unwrap_err();
+            assert!(matches!(error, OscillatorError::NoSuchEquilibrium { .. }), "{error}");
+        }
+    }
+
+    #[test]
+    fn rounding_leaves_no_terms_behind() {
+        // (x - sqrt(2)) + (x - sqrt(2))^3 + a load that shifts nothing: even coefficients are zero.
+        let oscillator = Oscillator::parse("x'' + sinh(x - 0.7390851332151607) + x - 0.7390851332151607").unwrap();
+        assert_eq!(
+            centred(&oscillator, Some(5)).unwrap().oscillator.force.to_string(),
+            "x + sinh(x)"
+        );
+        let oscillator = Oscillator::parse("x'' + exp(x - 1/7) - exp(1/7 - x) + x - 1/7 + 0*x").unwrap();
+        assert_eq!(position("x'' + exp(x - 1/7) - exp(1/7 - x)").unwrap(), "1/7");
+        let centred = centred(&oscillator, Some(4)).unwrap();
+        assert!(!centred.numerical);
     }
 }

@@ -30,6 +30,8 @@ pub struct Oscillator {
     pub force: Expr,
     /// The names that are neither the coordinate, its derivatives nor time, in alphabetical order.
     pub parameters: Vec<Symbol>,
+    /// The equilibrium about which the motion swings; the stable one nearest to zero where none is asked for.
+    pub about: Option<Expr>,
 }
 
 /// The force taken apart by what its terms do.
@@ -101,12 +103,38 @@ pub enum OscillatorError {
     /// There is a force at rest, and nowhere near a stable equilibrium.
     #[error("the force at rest is `{0}`, not zero, and no stable equilibrium was found")]
     NoEquilibrium(String),
+    /// There is a force at rest, and stable equilibria only where no motion from rest leads.
+    #[error(
+        "the force at rest is `{force}`, not zero, and no stable equilibrium was found before the force has a pole or ends; beyond there {}",
+        beyond(stable)
+    )]
+    BeyondPole {
+        /// The force at rest.
+        force: String,
+        /// The coordinate.
+        coordinate: Symbol,
+        /// The stable equilibria beyond.
+        stable: Vec<String>,
+    },
     /// The equilibrium depends on parameters.
     #[error("the force at rest is `{0}`, so the equilibrium depends on parameters")]
     SymbolicEquilibrium(String),
-    /// The equilibrium is unstable.
-    #[error("x = 0 is an unstable equilibrium{}", stable(.0))]
-    Unstable(Vec<String>),
+    /// The equilibrium `x = 0` is unstable.
+    #[error("{coordinate} = 0 is an unstable equilibrium{}", stable_ones(coordinate, .stable))]
+    Unstable {
+        /// The coordinate.
+        coordinate: Symbol,
+        /// Those that are stable.
+        stable: Vec<String>,
+    },
+    /// What was asked for is no stable equilibrium.
+    #[error("{position} is no stable equilibrium{}", stable_ones(&position[..1], .stable))]
+    NoSuchEquilibrium {
+        /// As it was asked for: `x = 1`.
+        position: String,
+        /// Those that are stable.
+        stable: Vec<String>,
+    },
     /// No linear restoring force.
     #[error("the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0")]
     NoRestoringForce(String),
@@ -132,10 +160,15 @@ pub enum OscillatorError {
     UnknownParameter(Symbol),
 }
 
-fn stable(positions: &[String]) -> String {
+fn beyond(stable: &[String]) -> String {
+    let verb = if stable.len() == 1 { "is one at" } else { "are some at" };
+    format!("{verb} {}", stable.join(", "))
+}
+
+fn stable_ones(coordinate: impl std::fmt::Display, positions: &[String]) -> String {
     match positions.is_empty() {
-        true => ", and there is no stable one".to_owned(),
-        false => format!("; stable ones are at x = {}", positions.join(", ")),
+        true => ", and no stable one was found".to_owned(),
+        false => format!("; stable ones are at {coordinate} = {}", positions.join(", ")),
     }
 }
 
@@ -165,9 +198,10 @@ impl OscillatorError {
             Self::SymbolicEquilibrium(_) => {
                 Some("give numbers for the parameters, or measure x from the equilibrium".to_owned())
             }
-            Self::Unstable(stable) => {
-                let position = stable.first()?;
-                Some(format!("measure x from a stable one: write x + ({position}) for x"))
+            Self::Unstable { coordinate, stable } | Self::BeyondPole { coordinate, stable, .. } => {
+                let positive = stable.iter().find(|position| !position.starts_with('-'));
+                let position = positive.or(stable.first())?.split(&[',', ' ']).next()?;
+                Some(format!("choose one with `--about {coordinate}={position}`"))
             }
             _ => None,
         }
@@ -221,7 +255,15 @@ impl Oscillator {
             residual,
             force,
             parameters: names.into_iter().collect(),
+            about: None,
         })
+    }
+
+    /// The same equation, to be seen from this equilibrium.
+    #[must_use]
+    pub fn about(mut self, equilibrium: Expr) -> Self {
+        self.about = Some(equilibrium);
+        self
     }
 
     /// The same equation with exact values for some of its parameters.
@@ -232,6 +274,10 @@ impl Oscillator {
         let mut oscillator = self.clone();
         oscillator.force = self.force.substitute_all(values)?;
         oscillator.residual = self.residual.substitute_all(values)?;
+        oscillator.about = match &self.about {
+            Some(place) => Some(place.substitute_all(values)?),
+            None => None,
+        };
         oscillator.parameters.retain(|name| !values.contains_key(name));
         Ok(oscillator)
     }

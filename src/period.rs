@@ -26,9 +26,19 @@ const STEP_TOLERANCE: f64 = 1e-13;
 pub enum PeriodError {
     /// Released there, the motion leaves instead of swinging.
     #[error(
-        "no periodic motion: released at rest from x = {start}, the force does not pull back towards x = {equilibrium}"
+        "no periodic motion about x = {equilibrium}: released at rest from x = {start}, the force does not pull back there"
     )]
     PushedAway {
+        /// The release point.
+        start: f64,
+        /// The equilibrium.
+        equilibrium: f64,
+    },
+    /// The motion turns before it reaches the equilibrium.
+    #[error(
+        "no motion about x = {equilibrium}: released at rest from x = {start} it turns back before it gets there, and swings about another equilibrium"
+    )]
+    OtherWell {
         /// The release point.
         start: f64,
         /// The equilibrium.
@@ -229,7 +239,11 @@ pub fn turning_point(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: f64) -
                 x,
                 next,
             );
-            return root.map_err(|error| failure.map_or(error.into(), Into::into));
+            let end = root.map_err(|error| failure.map_or(error.into(), PeriodError::from))?;
+            return match (end - equilibrium) * amplitude > 0.0 {
+                true => Err(PeriodError::OtherWell { start, equilibrium }),
+                false => Ok(end),
+            };
         }
         (x, energy) = (next, after);
         // Past the mirror image of the start the search may widen its steps.
@@ -329,6 +343,21 @@ mod tests {
         assert!(matches!(
             conservative_period(&|x: f64| x + x * x, 0.0, 0.75),
             Err(PeriodError::Escapes { .. })
+        ));
+    }
+
+    #[test]
+    fn a_motion_in_another_well_is_told_from_one_over_all() {
+        let wells = |x: f64| x - x.powi(3) + 0.2 * x.powi(5);
+        assert!(matches!(
+            conservative_period(&wells, 0.0, 2.0),
+            Err(PeriodError::OtherWell { .. })
+        ));
+        assert!((turning_point(&wells, 0.0, 2.5).unwrap() + 2.5).abs() < 1e-14);
+        let uneven = |x: f64| wells(x) + 0.01;
+        assert!(matches!(
+            conservative_period(&uneven, -0.01, -2.0),
+            Err(PeriodError::OtherWell { .. })
         ));
     }
 }

@@ -35,6 +35,8 @@ pub struct Problem {
     pub small: Option<String>,
     /// The amplitude convention: `initial` or `first-harmonic`.
     pub amplitude: Option<String>,
+    /// The equilibrium to swing about: `"x = 1"`.
+    pub about: Option<String>,
     /// Values for `--at`: numbers, or text such as "pi/3".
     pub values: toml::Table,
     /// The swing.

@@ -455,7 +455,8 @@ impl Solution {
             laws.into_iter().flatten().any(|law| law.symbols().contains(&name))
                 || self.closed_form.as_ref().is_some_and(|form| form.value.contains(name))
         });
-        let definitions = definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning));
+        let definitions =
+            definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
         std::iter::once(law).chain(definitions).collect()
     }
 

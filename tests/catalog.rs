@@ -83,7 +83,8 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
                 // Small amplitudes and parameters; those of the shape may be of order one.
                 let value = match name.name() {
                     "A" | "a" => "1/20",
-                    "eps" | "mu" => "1/10",
+                    // A wire bears no more than 1/4.
+                    "eps" | "mu" | "lambda" => "1/10",
                     _ => "1/2",
                 };
                 at.insert(name, value.parse().expect("a number")).expect("a value");
@@ -112,6 +113,7 @@ fn values(solution: &Solution, size: &str) -> Values {
     for name in needed_values(solution) {
         let value = match name.name() {
             "A" | "a" | "mu" => size,
+            "lambda" => "1/10",
             _ => "1/2",
         };
         at.insert(name, value.parse().expect("a number")).expect("a value");

@@ -49,6 +49,8 @@ fn at(solution: &Solution, size: &str) -> Values {
     for name in needed_values(solution) {
         let value = match name.name() {
             "A" | "a" | "mu" => size,
+            // Twice as much current as the wire can bear would leave it no equilibrium.
+            "lambda" => "1/10",
             _ => "1/2",
         };
         at.insert(name, value.parse().expect("a number")).expect("a value");

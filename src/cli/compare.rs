@@ -19,13 +19,16 @@ pub struct Arguments {
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
+    /// The stable equilibrium to swing about, x=1 say; without it the one nearest to zero
+    #[arg(long, value_name = "NAME=VALUE")]
+    about: Option<String>,
     #[command(flatten)]
     pub common: Common,
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let oscillator = oscillator(&problem)?;
+    let oscillator = oscillator(&problem, arguments.about.as_deref())?;
     let (oscillator, values) = with_known_equilibrium(oscillator, exact_values(&arguments.at, &problem)?)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(problem.small.as_deref());

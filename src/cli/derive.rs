@@ -8,7 +8,6 @@ use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{self, Options, Refusal};
-use lindstedt::oscillator::OscillatorError;
 use lindstedt::problem::{self, Problem};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::spelling::nearest;
@@ -35,6 +34,9 @@ pub struct Arguments {
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
+    /// The stable equilibrium to swing about, x=1 say; without it the one nearest to zero
+    #[arg(long, value_name = "NAME=VALUE")]
+    about: Option<String>,
     /// Degree of the Taylor polynomial that homotopy perturbation puts for the force
     #[arg(long, value_name = "DEGREE")]
     taylor: Option<u32>,
@@ -91,7 +93,7 @@ impl std::str::FromStr for Order {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let oscillator = oscillator(&problem)?;
+    let oscillator = oscillator(&problem, arguments.about.as_deref())?;
     let options = options(arguments, &problem)?;
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
@@ -171,35 +173,49 @@ fn solve_at(
     }
 }
 
-/// The oscillator of a problem that has an equation.
-pub(super) fn oscillator(problem: &Problem) -> Result<Oscillator, Failure> {
+/// The oscillator of a problem that has an equation, about the equilibrium asked for.
+pub(super) fn oscillator(problem: &Problem, about: Option<&str>) -> Result<Oscillator, Failure> {
     let Some(equation) = &problem.equation else {
         return Err(Failure::Refused(
             "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
         ));
     };
-    Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))
+    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
+    let Some(about) = about.or(problem.about.as_deref()) else {
+        return Ok(oscillator);
+    };
+    let x = oscillator.coordinate;
+    let usage = |message: String| Failure::Usage(format!("--about {about}: {message}"));
+    let place = about
+        .split_once('=')
+        .filter(|(name, _)| name.trim() == x.name())
+        .ok_or_else(|| usage(format!("expected {x}=VALUE, an equilibrium of the coordinate {x}")))?;
+    let value = parse_expression(place.1).map_err(|error| usage(error.to_string()))?;
+    let foreign = value
+        .symbols()
+        .into_iter()
+        .find(|symbol| !oscillator.parameters.contains(symbol));
+    match foreign {
+        Some(symbol) => Err(usage(format!("`{symbol}` is no parameter of the equation"))),
+        None => Ok(oscillator.about(value)),
+    }
 }
 
-/// Where the equilibrium depends on parameters and all of them are given, the equation with those numbers in it.
+/// Where the equilibrium in symbols is not that of the numbers given, the equation with those numbers in it.
 pub(super) fn with_known_equilibrium(
     oscillator: Oscillator,
     values: Option<Values>,
 ) -> Result<(Oscillator, Option<Values>), Failure> {
-    let symbolic = matches!(
-        equilibrium::centred(&oscillator, 1),
-        Err(OscillatorError::SymbolicEquilibrium(_))
-    );
-    match values {
-        Some(values) if symbolic => {
-            let (known, rest) = values.split(&oscillator.parameters);
-            let oscillator = oscillator
-                .with_values(&known)
-                .map_err(|error| Failure::refused(&error, error.help()))?;
-            Ok((oscillator, Some(rest)))
-        }
-        values => Ok((oscillator, values)),
-    }
+    let Some(given) = values else {
+        return Ok((oscillator, None));
+    };
+    let (known, rest) = given.split(&oscillator.parameters);
+    let numerical = equilibrium::with_numbers_where_needed(&oscillator, &known)
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    Ok(match numerical {
+        Some(numerical) => (numerical, Some(rest)),
+        None => (oscillator, Some(given)),
+    })
 }
 
 /// An equation, or what a file says. A name that ends in `.toml`, or a file that exists, is a file.

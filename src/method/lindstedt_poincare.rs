@@ -61,7 +61,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         bookkeeping,
     } = perturbation(oscillator, &parts, options)?;
     let (linear_frequency, definition) = force.linear_frequency();
-    let mut definitions: Vec<Definition> = definition.into_iter().chain(force.definitions.clone()).collect();
+    let mut definitions: Vec<Definition> = force.definitions.iter().cloned().chain(definition).collect();
     let mut taken = oscillator.parameters.clone();
     taken.extend(definitions.iter().map(|definition| definition.symbol));
 

@@ -25,16 +25,18 @@ pub mod parameter_expansion;
 pub mod secular;
 pub mod variational_iteration;
 
+use std::collections::BTreeMap;
+
 use num_traits::{One, Zero};
 
 use crate::decimal::decimal;
-use crate::equilibrium::centred;
-use crate::exact::rational::to_f64;
+use crate::equilibrium::{Centred, centred};
 use crate::exact::{Integer, Polynomial};
 use crate::expr::{Expr, ExprError, parse_expression};
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::symbol::Symbol;
 
 /// The highest order any method accepts.
 pub const HIGHEST_ORDER: u32 = 400;
@@ -256,7 +258,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let method = options.method.unwrap_or(Method::LindstedtPoincare);
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
-    let centred = centred(oscillator, numerical_degree(method, options))?;
+    let polynomial = oscillator.polynomial_degree()?.is_some();
+    let degree = rounded_degree(method, options, polynomial);
+    let centred = centred(oscillator, degree)?;
+    let options = &about_a_load(&centred, options);
     let mut solution = by_method(method, &centred.oscillator, options)?;
     if expands(method) && has_corners(&oscillator.force) {
         solution
@@ -271,24 +276,59 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if centred.position.is_zero() {
         return Ok(solution);
     }
-    let position = Polynomial::constant(centred.position.clone());
-    solution.displacement = solution
-        .displacement
-        .sum(&FourierSeries::constant(position, Integer::one()));
+    if let (Some(degree), true) = (degree, centred.numerical && !polynomial && by_taylor_polynomial(method)) {
+        solution
+            .validity
+            .push(format!("the force entered as its Taylor polynomial of degree {degree}"));
+    }
+    move_back(&mut solution, oscillator, &centred)?;
+    Ok(solution)
+}
+
+/// A parameter that moves the equilibrium is no small one, unless it is asked for: the amplitude is.
+fn about_a_load(centred: &Centred, options: &Options) -> Options {
+    let small = centred.oscillator.small_parameter(options.small.as_deref());
+    let moves = |name: Symbol| centred.position.contains(name);
+    let amplitude = options.small.is_none() && matches!(small, Ok(SmallParameter::Parameter(name)) if moves(name));
+    Options {
+        small: if amplitude {
+            Some("A".to_owned())
+        } else {
+            options.small.clone()
+        },
+        ..options.clone()
+    }
+}
+
+/// Adds the equilibrium to an answer about zero.
+fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred) -> Result<(), Refusal> {
+    let x = oscillator.coordinate;
+    let written = centred.written.to_polynomial(&mut |_| None)?;
+    // What is no polynomial has a symbol.
+    let position = written.unwrap_or_else(Polynomial::zero);
+    // A motion known by numbers alone is left to them.
+    if !solution.displacement.is_zero() {
+        let position = FourierSeries::constant(position, Integer::one());
+        solution.displacement = solution.displacement.sum(&position);
+    }
     solution.equation = oscillator.equation();
     if centred.numerical {
         solution.round_coefficients();
     }
-    let position = if centred.numerical {
-        decimal(to_f64(&centred.position))
-    } else {
-        centred.position.to_string()
+    let number = centred.position.evaluate(&BTreeMap::new()).ok();
+    let position = match (&centred.definition, number) {
+        (None, _) if !centred.numerical => centred.position.to_string(),
+        (None | Some(_), Some(number)) => decimal(number),
+        (_, None) => format!("{}, where that is real and stable", centred.position),
     };
     solution
         .validity
-        .push(format!("swings about the equilibrium x = {position}"));
-    solution.equilibrium = Expr::number(centred.position);
-    Ok(solution)
+        .push(format!("swings about the equilibrium {x} = {position}"));
+    if let Some(definition) = &centred.definition {
+        solution.definitions.insert(0, definition.clone());
+    }
+    solution.equilibrium = centred.position.clone();
+    Ok(())
 }
 
 /// Whether a method sees of the force only its derivatives at the equilibrium.
@@ -326,23 +366,31 @@ fn by_method(method: Method, oscillator: &Oscillator, options: &Options) -> Resu
     solve(oscillator, options)
 }
 
-/// The degree of the polynomial that stands for the force about an equilibrium that is no fraction.
-fn numerical_degree(method: Method, options: &Options) -> u32 {
-    /// Enough for every method that takes the force as it is.
-    const AS_IT_IS: u32 = 24;
+/// Whether a method puts a Taylor polynomial of a chosen degree in place of the force.
+fn by_taylor_polynomial(method: Method) -> bool {
+    matches!(
+        method,
+        Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::ParameterExpansion
+    )
+}
+
+/// The degree of the polynomial with rounded coefficients that stands for the force about an equilibrium without a closed
+/// form; `None` for methods that take the force as it is. A polynomial force is kept whole.
+fn rounded_degree(method: Method, options: &Options, polynomial: bool) -> Option<u32> {
+    let twice = |order: u32| order.saturating_mul(2).saturating_add(1);
     match method {
-        Method::LindstedtPoincare => options.order.unwrap_or(4) + 1,
+        Method::LindstedtPoincare => Some(options.order.unwrap_or(4) + 1),
         Method::HomotopyPerturbation | Method::HomotopyAnalysis => {
-            options.taylor.unwrap_or(2 * options.order.unwrap_or(2) + 1)
+            Some(options.taylor.unwrap_or(twice(options.order.unwrap_or(2))))
         }
         Method::Pade => {
             let (numerator, denominator) = options.pade.unwrap_or((2, 1));
-            2 * (numerator + denominator) + 1
+            Some(twice(numerator.saturating_add(denominator)))
         }
-        Method::IterationPerturbation | Method::ParameterExpansion if options.order.is_some_and(|order| order > 1) => {
-            2 * options.order.unwrap_or(1) + 1
-        }
-        _ => options.taylor.unwrap_or(AS_IT_IS),
+        Method::ParameterExpansion if options.taylor.is_some() => options.taylor,
+        Method::ParameterExpansion => (polynomial && options.order != Some(1)).then_some(0),
+        Method::IterationPerturbation => (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0),
+        _ => None,
     }
 }
 

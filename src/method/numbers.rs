@@ -82,7 +82,7 @@ pub fn evaluate(
         let (frequency_squared, motion) = solve(oscillator, solution, &numbers)?;
         return Ok(Numbers {
             frequency_squared,
-            chosen: balanced(solution, &motion),
+            chosen: balanced(solution, &motion, &numbers),
             motion: (frequency_squared > 0.0).then_some(motion),
         });
     }
@@ -122,11 +122,11 @@ fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Sym
 }
 
 /// The coefficients of a balance, by their names; the equilibrium is no part of the mean.
-fn balanced(solution: &Solution, motion: &FourierSeries<f64>) -> Vec<(Symbol, f64)> {
+fn balanced(solution: &Solution, motion: &FourierSeries<f64>, numbers: &BTreeMap<Symbol, f64>) -> Vec<(Symbol, f64)> {
     if solution.method != Method::HarmonicBalance {
         return vec![];
     }
-    let equilibrium = solution.equilibrium.evaluate(&BTreeMap::new()).unwrap_or(0.0);
+    let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
     let named = |(k, cosine, _): (usize, Polynomial, Polynomial)| {
         let name = cosine.symbols().into_iter().next()?;
         let value = motion.cosine(k).mean().0;

@@ -1,0 +1,306 @@
+//! Formulas about any equilibrium are those of the same force written about zero: irrational ones, static loads in symbols,
+//! wells that were chosen. Held against the definitions of the methods, against the equation moved by hand, and against
+//! Runge-Kutta.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+
+use lindstedt::equilibrium::with_numbers_where_needed;
+use lindstedt::expr::{CompiledFunction, Expr};
+use lindstedt::method::numbers::{evaluate, frequency_squared_of};
+use lindstedt::method::{Options, Refusal, solve};
+use lindstedt::oscillator::OscillatorError;
+use lindstedt::period::{PeriodError, swing};
+use lindstedt::solution::{Method, Solution};
+use lindstedt::verify::{Values, VerificationError, judge};
+use lindstedt::{Oscillator, Symbol};
+
+fn oscillator(equation: &str) -> Oscillator {
+    Oscillator::parse(equation).expect(equation)
+}
+
+fn by(oscillator: &Oscillator, method: Method) -> Result<Solution, Refusal> {
+    let options = Options {
+        method: Some(method),
+        ..Options::default()
+    };
+    solve(oscillator, &options)
+}
+
+fn numbers(entries: &[(&str, f64)]) -> BTreeMap<Symbol, f64> {
+    let entry = |(name, value): &(&str, f64)| (Symbol::new(name), *value);
+    entries.iter().map(entry).collect()
+}
+
+/// omega^2 at an amplitude.
+fn squared(oscillator: &Oscillator, solution: &Solution, amplitude: f64) -> f64 {
+    frequency_squared_of(oscillator, solution, &numbers(&[("A", amplitude)])).unwrap_or(f64::NAN)
+}
+
+/// The force of an equation without parameters.
+fn force(oscillator: &Oscillator) -> impl Fn(f64) -> f64 {
+    let function = CompiledFunction::new(&oscillator.force, &[oscillator.coordinate]).expect("no parameters");
+    move |x| function.call(&[x])
+}
+
+/// The zero of a function between two points, by bisection.
+fn bisected(function: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if function(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn the_force_about_an_irrational_equilibrium_is_the_force() {
+    // Equation, an interval with the equilibrium in it, amplitude.
+    for (equation, low, high, amplitude) in [
+        ("x'' + x - 1/3 + x*abs(x) = 0", 0.0, 1.0, 0.4),
+        ("x'' + x - 1/3 + x*abs(x) = 0", 0.0, 1.0, 0.1),
+        ("x'' + x + 1/3 + x*abs(x) = 0", -1.0, 0.0, 0.7),
+        ("x'' + x + 187*x*abs(x) - 1.72 = 0", 0.0, 1.0, 0.101),
+        ("x'' + x/(1 + x^2) = 1/5", 0.0, 0.9, 1.2),
+        ("x'' + x - cos(x) + 3*max(x - 1, 0) = 0", 0.0, 1.0, 0.9),
+        ("x'' + x - 20*(x - 1)*exp(-100*(x - 1)^2) = 0", -0.5, 0.5, 0.3),
+        ("x'' + x + 1/2 - 20*(x - 1)*exp(-100*(x - 1)^2) = 0", -0.8, 0.0, 1.6),
+        ("x'' + exp(x) - 2 - cos(3*x)/5 = 0", 0.0, 1.5, 0.5),
+        ("x'' + 24*x + 0.498*x^3 + 1.96*x^5 - 1.98 = 0", 0.0, 1.0, 0.447),
+        ("x'' + x + log(x) = 0", 0.1, 1.0, 0.2),
+        ("x'' + 1e12*x - 1e26*x^3 - 1e4 = 0", 0.0, 4e-8, 2e-8),
+    ] {
+        let oscillator = oscillator(equation);
+        let force = force(&oscillator);
+        let equilibrium = bisected(&force, low, high);
+        // The definition of the Hamiltonian approach, by the midpoint rule.
+        let points = 1 << 16;
+        let sum: f64 = (0..points)
+            .map(|k| {
+                let theta = PI * (f64::from(k) + 0.5) / f64::from(points);
+                force(equilibrium + amplitude * theta.cos()) * theta.cos()
+            })
+            .sum();
+        let hamiltonian = 2.0 * sum / f64::from(points) / amplitude;
+        for method in [
+            Method::Hamiltonian,
+            Method::IterationPerturbation,
+            Method::VariationalIteration,
+        ] {
+            let found = squared(&oscillator, &by(&oscillator, method).expect(equation), amplitude);
+            assert!(
+                (found / hamiltonian - 1.0).abs() < 1e-8,
+                "{equation} {method:?}: {found} against {hamiltonian}"
+            );
+        }
+        let solution = by(&oscillator, Method::Exact).expect(equation);
+        let path = swing(
+            &|_, x, _| -force(x),
+            equilibrium,
+            equilibrium + amplitude,
+            100.0 / hamiltonian.sqrt(),
+        );
+        let truth = TAU / path.expect(equation).end().t;
+        let found = squared(&oscillator, &solution, amplitude).sqrt();
+        assert!(
+            (found / truth - 1.0).abs() < 1e-8,
+            "{equation} exact: {found} against {truth}"
+        );
+        assert!(
+            solution.displacement.is_zero(),
+            "{equation}: a motion by quadrature has no formula"
+        );
+    }
+}
+
+#[test]
+fn a_polynomial_is_kept_whole_about_an_irrational_equilibrium() {
+    // x + x^5/2 + x^7 - 1 about its zero, whose Taylor coefficients are written out beside it.
+    let equation = oscillator("x'' + x + x^5/2 + x^7 - 1 = 0");
+    let x: f64 = bisected(&|x: f64| x + 0.5 * x.powi(5) + x.powi(7) - 1.0, 0.0, 1.0);
+    let choose = |n: i32, k: i32| (0..k).fold(1.0, |product, j| product * f64::from(n - j) / f64::from(j + 1));
+    let coefficient = |k: i32| {
+        let power = |n: i32| if n < k { 0.0 } else { choose(n, k) * x.powi(n - k) };
+        power(1) + 0.5 * power(5) + power(7)
+    };
+    let terms: Vec<String> = (1..=7).map(|k| format!("{:.15}*x^{k}", coefficient(k))).collect();
+    let by_hand = oscillator(&format!("x'' + {} = 0", terms.join(" + ")));
+    for (method, order) in [
+        (Method::HomotopyPerturbation, 1),
+        (Method::HomotopyPerturbation, 2),
+        (Method::HomotopyAnalysis, 2),
+        (Method::IterationPerturbation, 2),
+        (Method::ParameterExpansion, 2),
+        (Method::LindstedtPoincare, 4),
+    ] {
+        let options = Options {
+            method: Some(method),
+            order: Some(order),
+            ..Options::default()
+        };
+        let moved = solve(&equation, &options).unwrap();
+        let direct = solve(&by_hand, &options).unwrap();
+        let (a, b) = (squared(&equation, &moved, 0.2), squared(&by_hand, &direct, 0.2));
+        assert!((a / b - 1.0).abs() < 1e-9, "{method:?} {order}: {a} against {b}");
+    }
+}
+
+#[test]
+fn a_pendulum_is_a_pendulum_wherever_it_hangs() {
+    let plain = oscillator("x'' + sin(x) = 0");
+    for equation in ["x'' + cos(x) = 0", "x'' - sin(x + pi/3) = 0", "x'' - sin(x) = 0"] {
+        let moved = oscillator(equation);
+        let moved = match equation {
+            "x'' - sin(x) = 0" => moved.about("pi".parse().unwrap()),
+            _ => moved,
+        };
+        for method in Method::ALL {
+            let (a, b) = (by(&moved, method).expect(equation), by(&plain, method).expect(equation));
+            assert_eq!(a.frequency_squared, b.frequency_squared, "{equation} {method:?}");
+            assert_eq!(a.closed_form, b.closed_form, "{equation} {method:?}");
+            assert!(!a.numerical && a.definitions == b.definitions, "{equation} {method:?}");
+        }
+    }
+}
+
+#[test]
+fn static_loads_in_symbols_are_those_in_numbers() {
+    for (equation, values, amplitude) in [
+        ("x'' + x + x^2 - g = 0", &[("g", "1/10")][..], 0.2),
+        (
+            "x'' + k*x - b*x^2 + g = 0",
+            &[("g", "1/10"), ("k", "2"), ("b", "1/3")],
+            0.3,
+        ),
+        ("x'' + x - lambda/(1 - x) = 0", &[("lambda", "1/8")], 0.2),
+        ("x'' + x - k/x = 0", &[("k", "2")], 0.3),
+        (
+            "x'' + k*(x - L) + b*(x - L)^3 = 0",
+            &[("k", "2"), ("b", "1"), ("L", "5/7")],
+            0.5,
+        ),
+        ("x'' + sin(x - c) = 0", &[("c", "1/4")], 0.5),
+    ] {
+        let symbolic = oscillator(equation);
+        let exact: BTreeMap<Symbol, Expr> = values
+            .iter()
+            .map(|(name, value)| (Symbol::new(name), value.parse().unwrap()))
+            .collect();
+        assert_eq!(
+            with_numbers_where_needed(&symbolic, &exact).expect(equation),
+            None,
+            "{equation}"
+        );
+        let numerical = symbolic.with_values(&exact).unwrap();
+        let at: BTreeMap<Symbol, f64> = exact
+            .iter()
+            .map(|(name, value)| (*name, value.evaluate(&BTreeMap::new()).unwrap()))
+            .chain([(Symbol::new("A"), amplitude)])
+            .collect();
+        for method in Method::ALL {
+            // Homotopy analysis chooses hbar by a residual; its value depends on nothing else.
+            match (by(&symbolic, method), by(&numerical, method)) {
+                (Ok(symbols), Ok(direct)) => {
+                    let a = evaluate(&symbolic, &symbols, &at).expect(equation);
+                    let b = evaluate(&numerical, &direct, &at).expect(equation);
+                    let error = a.frequency_squared / b.frequency_squared - 1.0;
+                    assert!(error.abs() < 1e-7, "{equation} {method:?}: {error}");
+                    let (a, b) = (a.motion.unwrap(), b.motion.unwrap());
+                    for theta in [0.0, 0.7, 2.0, 3.0] {
+                        let difference = a.evaluate(theta) - b.evaluate(theta);
+                        assert!(difference.abs() < 1e-7, "{equation} {method:?}: {difference}");
+                    }
+                }
+                (Err(_), Err(_)) => {}
+                (a, b) => panic!("{equation} {method:?}: {:?} {:?}", a.err(), b.err()),
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_choose_the_equilibrium() {
+    let values = |entries: &[(&str, &str)]| -> BTreeMap<Symbol, Expr> {
+        let entry = |(name, value): &(&str, &str)| (Symbol::new(name), value.parse().unwrap());
+        entries.iter().map(entry).collect()
+    };
+    let duffing = oscillator("x'' + k*x + x^3 = 0");
+    assert_eq!(with_numbers_where_needed(&duffing, &values(&[("k", "2")])), Ok(None));
+    let error = with_numbers_where_needed(&duffing, &values(&[("k", "-1")])).unwrap_err();
+    assert!(matches!(error, OscillatorError::Unstable { .. }), "{error}");
+    let chosen = with_numbers_where_needed(&duffing.about(Expr::one()), &values(&[("k", "-1")]));
+    assert!(chosen.unwrap().is_some());
+    // A barrier behind the equilibrium acts at rest.
+    let barrier = oscillator("x'' + x + k*(x - xc)*H(x - xc) = 0");
+    assert_eq!(
+        with_numbers_where_needed(&barrier, &values(&[("k", "3"), ("xc", "1/2")])),
+        Ok(None)
+    );
+    let pushed = with_numbers_where_needed(&barrier, &values(&[("k", "3"), ("xc", "-1/2")]));
+    let pushed = pushed.unwrap().expect("another equilibrium");
+    let solution = by(&pushed, Method::Hamiltonian).unwrap();
+    assert_eq!(solution.equilibrium.to_string(), "-3/8");
+}
+
+#[test]
+fn a_formula_is_judged_by_a_motion_about_its_own_equilibrium() {
+    let wells = oscillator("x'' + x - x^3 + x^5/5 = 0");
+    let at = |amplitude: &str| {
+        let mut at = Values::default();
+        at.insert("A".into(), amplitude.parse().unwrap()).unwrap();
+        at
+    };
+    let solution = by(&wells, Method::Hamiltonian).unwrap();
+    let other = judge(&wells, &solution, &at("2"), 0.01).unwrap_err();
+    assert!(
+        matches!(other, VerificationError::Period(PeriodError::OtherWell { .. })),
+        "{other}"
+    );
+    let over_all = judge(&wells, &solution, &at("5/2"), 0.01).unwrap();
+    let path = swing(&|_, x: f64, _| -(x - x.powi(3) + x.powi(5) / 5.0), 0.0, 2.5, 100.0).unwrap();
+    assert!((over_all.true_frequency * path.end().t / TAU - 1.0).abs() < 1e-9);
+    // The outer well, chosen by a rounded number.
+    let outer = wells.about("1.902".parse().unwrap());
+    let solution = by(&outer, Method::Hamiltonian).unwrap();
+    let judged = judge(&outer, &solution, &at("1/100"), 0.01).unwrap();
+    let place: f64 = (2.5 + 5.0_f64.sqrt() / 2.0).sqrt();
+    let slope = 1.0 - 3.0 * place.powi(2) + place.powi(4);
+    assert!((judged.true_frequency / slope.sqrt() - 1.0).abs() < 1e-3);
+    assert!(judged.relative_error.unwrap().abs() < 1e-3);
+}
+
+#[test]
+fn what_is_no_equilibrium_has_no_formula() {
+    for method in Method::ALL {
+        for equation in [
+            "x'' + x^2 + x^3 = 0",
+            "x'' - x + x^3 = 0",
+            "x'' + sin(x) - 2*sin(x)*cos(x) = 0",
+        ] {
+            let refusal = by(&oscillator(equation), method).unwrap_err();
+            assert!(
+                matches!(refusal, Refusal::Oscillator(OscillatorError::Unstable { .. })),
+                "{equation} {method:?}: {refusal}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_pole_is_no_equilibrium() {
+    // The linear frequency about x = 1 is 2; x = 0 is a pole.
+    let pole = oscillator("x'' + x - 1/x^3 = 0");
+    let answers: Vec<Solution> = Method::ALL
+        .into_iter()
+        .filter_map(|method| by(&pole, method).ok())
+        .collect();
+    assert!(answers.len() >= 8, "{}", answers.len());
+    for solution in answers {
+        assert_eq!(solution.equilibrium, Expr::one(), "{:?}", solution.method);
+        let frequency = squared(&pole, &solution, 1e-3);
+        assert!((frequency - 4.0).abs() < 1e-4, "{:?}: {frequency}", solution.method);
+    }
+}

@@ -10,14 +10,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::{Equation, Expr, ExprError, ParseError, parse_equation};
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::Definition;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// An equation of motion `x'' + force = 0` for one coordinate.
 #[derive(Clone, Debug, PartialEq)]
@@ -287,6 +287,24 @@ impl Oscillator {
         self.coordinate.derivative()
     }
 
+    /// The names that mean something in the equation: parameters, coordinate and time. What a method introduces is named by
+    /// [`fresh`](crate::symbol::fresh) beside them.
+    pub fn names(&self) -> Vec<Symbol> {
+        let own = [self.coordinate, Symbol::new("t")];
+        self.parameters.iter().copied().chain(own).collect()
+    }
+
+    /// The name of the linear frequency in running text: `omega0`, unless the equation uses that for something else.
+    pub fn linear_frequency_name(&self, linear: &Polynomial) -> Symbol {
+        let omega0 = Symbol::new("omega0");
+        let square = Polynomial::term(Monomial::power_of(omega0, 2), num_traits::One::one());
+        if *linear == square {
+            omega0
+        } else {
+            fresh("omega0", &self.names())
+        }
+    }
+
     /// The equation in normal form, as text.
     pub fn equation(&self) -> String {
         let acceleration = Expr::from(self.velocity().derivative());
@@ -393,13 +411,9 @@ impl Oscillator {
     /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic or no polynomial.
     pub fn expand(&self, small: SmallParameter, order: u32) -> Result<PerturbedForce, OscillatorError> {
         let force = self.expand_with_any_stiffness(small, order)?;
-        let negative = force
-            .linear
-            .single_term()
-            .is_some_and(|(_, number)| number.is_negative());
-        if force.linear.is_zero() || negative {
+        if force.lacks_restoring_force() {
             return Err(OscillatorError::NoRestoringForce(
-                (&Expr::from(&force.linear) * &Expr::from(self.coordinate)).to_string(),
+                (&force.linear_in_full() * &Expr::from(self.coordinate)).to_string(),
             ));
         }
         Ok(force)
@@ -498,15 +512,15 @@ fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
 }
 
 /// Names for constants that are no polynomials.
-struct Names<'a> {
-    taken: &'a [Symbol],
+struct Names {
+    taken: Vec<Symbol>,
     definitions: Vec<Definition>,
 }
 
-impl<'a> Names<'a> {
-    fn new(oscillator: &'a Oscillator) -> Self {
+impl Names {
+    fn new(oscillator: &Oscillator) -> Self {
         Self {
-            taken: &oscillator.parameters,
+            taken: oscillator.names(),
             definitions: vec![],
         }
     }
@@ -523,11 +537,8 @@ impl<'a> Names<'a> {
         {
             return Some(known.symbol);
         }
-        let numbered = (1..).map(|number| Symbol::new(&format!("c{number}")));
-        let used = |symbol: &Symbol| {
-            self.taken.contains(symbol) || self.definitions.iter().any(|definition| definition.symbol == *symbol)
-        };
-        let symbol = numbered.into_iter().find(|symbol| !used(symbol))?;
+        let stem = fresh_stem("c", &self.taken);
+        let symbol = Symbol::new(&format!("{stem}{}", self.definitions.len() + 1));
         self.definitions.push(Definition {
             symbol,
             meaning: constant.clone(),
@@ -537,18 +548,49 @@ impl<'a> Names<'a> {
 }
 
 impl PerturbedForce {
-    /// `omega0` as a single term: a fraction, a product of powers of parameters, or the symbol `omega0` with its definition.
-    pub fn linear_frequency(&self) -> (Polynomial, Option<Definition>) {
+    /// The linear frequency as a single term: a fraction, a product of powers of parameters, or a symbol with its definition,
+    /// `omega0` where `names` leave it free.
+    pub fn linear_frequency(&self, names: &[Symbol]) -> (Polynomial, Option<Definition>) {
         if let Some(root) = self.linear.single_term_root() {
             return (root, None);
         }
-        let symbol = Symbol::new("omega0");
+        let symbol = fresh("omega0", names);
         // Negative numbers were refused; nothing else under the root is known to be negative.
-        let linear = Expr::from(&self.linear);
+        let linear = self.linear_in_full();
         let meaning = linear.sqrt().unwrap_or(linear);
         (
             Polynomial::term(Monomial::power_of(symbol, 1), num_traits::One::one()),
             Some(Definition { symbol, meaning }),
         )
+    }
+
+    /// The coefficient of the linear force, its named constants written out.
+    fn linear_in_full(&self) -> Expr {
+        let linear = Expr::from(&self.linear);
+        let meanings = self
+            .definitions
+            .iter()
+            .map(|entry| (entry.symbol, entry.meaning.clone()));
+        linear.substitute_all(&meanings.collect()).unwrap_or(linear)
+    }
+
+    /// Whether the linear force is known not to restore: nothing, a negative number, or a negative multiple of one product of
+    /// parameters, which are taken to be positive.
+    fn lacks_restoring_force(&self) -> bool {
+        /// What a sum of constants has left of its terms where it is zero but for rounding.
+        const ROUNDING: f64 = 1e-14;
+        let named = |symbol: &Symbol| self.definitions.iter().any(|entry| entry.symbol == *symbol);
+        let parameters: Vec<Symbol> = self.linear.symbols().into_iter().filter(|name| !named(name)).collect();
+        if self.linear.is_zero() || (!parameters.is_empty() && self.linear.single_term().is_none()) {
+            return self.linear.is_zero();
+        }
+        let ones = parameters.into_iter().map(|name| (name, 1.0)).collect();
+        let full = self.linear_in_full();
+        let sizes = full
+            .terms()
+            .iter()
+            .filter_map(|term| Some(term.evaluate(&ones).ok()?.abs()));
+        let size: f64 = sizes.sum();
+        full.evaluate(&ones).is_ok_and(|value| value <= ROUNDING * size)
     }
 }

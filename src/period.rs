@@ -117,6 +117,20 @@ pub fn conservative_motion(
     equilibrium: f64,
     start: f64,
 ) -> Result<(f64, Vec<f64>), PeriodError> {
+    weighted_motion(force, &|_| 1.0, equilibrium, start)
+}
+
+/// As [`conservative_motion`] where the energy is `M x'^2/2 + U`: `force` is `U'` and `weight` the root of `M`, by which
+/// every instant takes longer.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn weighted_motion(
+    force: &dyn Fn(f64) -> f64,
+    weight: &dyn Fn(f64) -> f64,
+    equilibrium: f64,
+    start: f64,
+) -> Result<(f64, Vec<f64>), PeriodError> {
     const FEWEST: usize = 64;
     const MOST: usize = 1024;
     const HARMONICS: usize = 64;
@@ -126,7 +140,10 @@ pub fn conservative_motion(
     loop {
         let angle = |i: usize| pi * (i as f64 + 0.5) / points as f64;
         let rates: Vec<f64> = (0..points)
-            .map(|i| time_per_angle(force, start, end, 0.5 * pi - angle(i)))
+            .map(|i| {
+                let x = 0.5 * (start + end) + 0.5 * (start - end) * angle(i).cos();
+                time_per_angle(force, start, end, 0.5 * pi - angle(i)).map(|rate| rate * weight(x))
+            })
             .collect::<Result<_, _>>()?;
         let mean = rates.iter().sum::<f64>() / points as f64;
         let settled = (mean - last).abs() <= 1e-13 * mean;

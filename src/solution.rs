@@ -4,6 +4,7 @@
 
 mod branch;
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use num_traits::{One, Signed};
@@ -16,7 +17,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// The method that derived a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -372,6 +373,29 @@ impl Solution {
             .fold(polynomial.clone(), |rest, name| rest.truncated(name, 0))
     }
 
+    /// The names that mean something in this answer already: parameters, coordinate, definitions, `t`. What a report introduces is
+    /// named by [`fresh`](crate::symbol::fresh) beside them.
+    pub fn names(&self) -> Vec<Symbol> {
+        let own = ["t", self.coordinate()].map(Symbol::new);
+        let defined = self.definitions.iter().map(|definition| definition.symbol);
+        self.parameters.iter().copied().chain(own).chain(defined).collect()
+    }
+
+    /// The name of the linear frequency: `omega0`, unless the equation uses that for something else.
+    pub fn linear_frequency_name(&self) -> Symbol {
+        let own = self.definitions.iter().map(|definition| definition.symbol);
+        let mut own = own.filter(|symbol| symbol.name().trim_end_matches('_') == "omega0");
+        let omega0 = Symbol::new("omega0");
+        let square = Polynomial::term(Monomial::power_of(omega0, 2), One::one());
+        let squared = self.frequency_squared.as_ref().or(self.relation.as_ref());
+        let at_rest = squared.map(|law| self.leading(law).truncated(self.amplitude.symbol(), 0));
+        match own.next() {
+            Some(symbol) => symbol,
+            None if at_rest.is_some_and(|law| law == square) => omega0,
+            None => fresh("omega0", &self.names()),
+        }
+    }
+
     fn defines(&self, symbol: Symbol) -> bool {
         self.definitions.iter().any(|definition| definition.symbol == symbol)
     }
@@ -413,8 +437,10 @@ impl Solution {
                 let names: Vec<&str> = self.small_parameters().map(|symbol| symbol.name()).collect();
                 format!("to order {order} in {}", names.join(" and "))
             }
-            Method::HomotopyPerturbation | Method::ParameterExpansion => format!("to order {order} in p"),
-            Method::HomotopyAnalysis => format!("to order {order} in q"),
+            Method::HomotopyPerturbation | Method::ParameterExpansion => {
+                format!("to order {order} in {}", fresh("p", &self.names()))
+            }
+            Method::HomotopyAnalysis => format!("to order {order} in {}", fresh("q", &self.names())),
             Method::IterationPerturbation if order == 1 => "after one pass".to_owned(),
             Method::IterationPerturbation => format!("after {order} passes"),
             Method::HarmonicBalance if order == 1 => "with one harmonic".to_owned(),
@@ -449,15 +475,25 @@ impl Solution {
         } else {
             return self.by_numbers().unwrap_or_default();
         };
-        let definitions = self.definitions.iter().filter(|definition| {
-            let name = definition.symbol;
-            let laws = [&self.frequency_squared, &self.frequency, &self.relation];
-            laws.into_iter().flatten().any(|law| law.symbols().contains(&name))
-                || self.closed_form.as_ref().is_some_and(|form| form.value.contains(name))
-        });
+        let laws = [&self.frequency_squared, &self.frequency, &self.relation];
+        let mut used: BTreeSet<Symbol> = laws.into_iter().flatten().flat_map(Polynomial::symbols).collect();
+        used.extend(self.closed_form.iter().flat_map(|form| form.value.symbols()));
+        let definitions = self.definitions_behind(used).into_iter();
         let definitions =
             definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
         std::iter::once(law).chain(definitions).collect()
+    }
+
+    /// The definitions that a formula in these symbols needs, those that they are made of included.
+    pub fn definitions_behind(&self, mut symbols: BTreeSet<Symbol>) -> Vec<&Definition> {
+        // A definition may use those before it.
+        for definition in self.definitions.iter().rev() {
+            if symbols.contains(&definition.symbol) {
+                symbols.extend(definition.meaning.symbols());
+            }
+        }
+        let definitions = self.definitions.iter();
+        definitions.filter(|entry| symbols.contains(&entry.symbol)).collect()
     }
 
     /// A polynomial with the lowest power of the small parameter first.

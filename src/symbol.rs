@@ -73,6 +73,25 @@ pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
     Symbol::new(&name)
 }
 
+/// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken` continues with digits.
+///
+/// ```
+/// use lindstedt::symbol::fresh_stem;
+/// assert_eq!(fresh_stem("W", &["k".into()]), "W");
+/// assert_eq!(fresh_stem("W", &["W2".into()]), "W_");
+/// ```
+pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
+    let continues = |stem: &str, symbol: &Symbol| {
+        let rest = symbol.name().strip_prefix(stem);
+        rest.is_some_and(|rest| rest.bytes().all(|letter| letter.is_ascii_digit()) && !rest.is_empty())
+    };
+    let mut stem = wanted.to_owned();
+    while taken.iter().any(|symbol| continues(&stem, symbol)) {
+        stem.push('_');
+    }
+    stem
+}
+
 impl fmt::Display for Symbol {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.0)

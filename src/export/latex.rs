@@ -135,29 +135,34 @@ const GREEK: [&str; 22] = [
     "tau", "phi", "chi", "psi", "omega", "Omega", "Gamma", "Lambda",
 ];
 
-/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter.
+/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter,
+/// underscores at the end as tildes. No two names look alike: where two spellings would meet, the index of the one with an
+/// underscore takes another shape, `k1` being `k_{1}` and `k_1` being `k_{\mathit{1}}`.
 pub fn symbol(symbol: Symbol) -> String {
     let bare = symbol.coordinate().name();
-    let (stem, index) = match bare.split_once('_') {
-        Some((stem, index)) => (stem, index.to_owned()),
+    let name = bare.trim_end_matches('_');
+    let (stem, index) = match name.split_once('_') {
+        Some((stem, index)) if index.bytes().all(|letter| letter.is_ascii_digit()) => {
+            (stem, format!("\\mathit{{{index}}}"))
+        }
+        // The barrier's position `xc` is written like this already.
+        Some(("x", "c")) => ("x", "\\mathrm{c}".to_owned()),
+        Some((stem, index)) => (stem, index.replace('_', "\\_")),
+        None if name == "xc" => ("x", "c".to_owned()),
         None => {
-            let stem = bare.trim_end_matches(|letter: char| letter.is_ascii_digit());
-            (stem, bare[stem.len()..].to_owned())
+            let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+            (stem, name[stem.len()..].to_owned())
         }
     };
-    // The barrier's position is written x_c.
-    let (stem, index) = if stem == "xc" {
-        ("x", "c".to_owned())
-    } else {
-        (stem, index)
-    };
     let letter = match stem {
-        "eps" | "epsilon" => "\\varepsilon".to_owned(),
+        "eps" => "\\varepsilon".to_owned(),
+        "epsilon" => "\\epsilon".to_owned(),
         "hbar" => "\\hbar".to_owned(),
         _ if GREEK.contains(&stem) => format!("\\{stem}"),
         _ if stem.chars().count() == 1 => stem.to_owned(),
-        _ => format!("\\mathrm{{{}}}", stem.replace('_', "\\_")),
+        _ => format!("\\mathrm{{{stem}}}"),
     };
+    let letter = (name.len()..bare.len()).fold(letter, |letter, _| format!("\\tilde{{{letter}}}"));
     let letter = match symbol.primes() {
         0 => letter,
         1 => format!("\\dot{{{letter}}}"),
@@ -165,7 +170,7 @@ pub fn symbol(symbol: Symbol) -> String {
     };
     match index.is_empty() {
         true => letter,
-        false => format!("{letter}_{{{}}}", index.replace('_', "\\_")),
+        false => format!("{letter}_{{{index}}}"),
     }
 }
 
@@ -461,11 +466,7 @@ fn formula(solution: &Solution) -> String {
     } else {
         return "by numbers".to_owned();
     };
-    let used = solution
-        .definitions
-        .iter()
-        .filter(|definition| used.contains(&definition.symbol));
-    let definitions = used.map(|definition| {
+    let definitions = solution.definitions_behind(used).into_iter().map(|definition| {
         format!(
             ", \\; {} = {}",
             symbol(definition.symbol),
@@ -513,11 +514,56 @@ mod tests {
             ("sqrt(k + 1)", r"\sqrt{1 + k}"),
             ("-x/2", r"-\frac{x}{2}"),
             ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
-            ("mass_1*x", r"\mathrm{mass}_{1} x"),
+            ("mass1*x", r"\mathrm{mass}_{1} x"),
             ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
         ] {
             let parsed = parse_expression(text).expect(text);
             assert_eq!(expression(&parsed), expected, "{text}");
         }
+    }
+
+    /// Every name of up to four signs over an alphabet of letters, digits and underscores, and those with a meaning of
+    /// their own: as many spellings as names.
+    #[test]
+    fn no_two_names_are_spelt_alike() {
+        let stems = [
+            "k",
+            "x",
+            "xc",
+            "eps",
+            "epsilon",
+            "varepsilon",
+            "mu",
+            "omega",
+            "Omega",
+            "hbar",
+            "c",
+            "W",
+            "nu",
+            "v",
+            "A",
+            "K",
+        ];
+        let mut ends = vec![String::new()];
+        for length in 0..4 {
+            let longer = ends.iter().filter(|end| end.len() == length);
+            let longer: Vec<String> = longer
+                .flat_map(|end| ["0", "1", "_", "c", "k"].map(|sign| format!("{end}{sign}")))
+                .collect();
+            ends.extend(longer);
+        }
+        let mut seen = std::collections::BTreeMap::new();
+        for name in stems
+            .iter()
+            .flat_map(|stem| ends.iter().map(move |end| format!("{stem}{end}")))
+        {
+            if let Some(other) = seen.insert(symbol(Symbol::new(&name)), name.clone()) {
+                assert_eq!(other, name);
+            }
+        }
+        assert!(seen.len() > 10_000);
+        assert_eq!(symbol("k1".into()), "k_{1}");
+        assert_eq!(symbol("k_1".into()), r"k_{\mathit{1}}");
+        assert_eq!(symbol("omega0_".into()), r"\tilde{\omega}_{0}");
     }
 }

@@ -213,7 +213,7 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
             .map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}")),
     );
     for (name, value) in &verification.chosen {
-        let how = if name.name() == HBAR {
+        let how = if name.name().starts_with(HBAR) {
             " (least squared residual)"
         } else {
             ""

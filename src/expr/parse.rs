@@ -33,8 +33,9 @@ pub use error::ParseError;
 use error::shortened;
 use lexer::{Kind, Token};
 
-/// Names that an equation may not use for parameters: the answers are written with them.
-pub const RESERVED_NAMES: [&str; 5] = ["A", "a", "theta", "omega", "omega0"];
+/// Names that an equation may not use for parameters: the answers are written with them. `omega0` is none of them: where
+/// an equation uses it for something else than its linear frequency, the answer writes `omega0_` for that.
+pub const RESERVED_NAMES: [&str; 4] = ["A", "a", "theta", "omega"];
 
 /// Spellings of what is no number.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];

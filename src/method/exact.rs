@@ -39,7 +39,7 @@ use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{ClosedForm, Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::fresh;
 
 /// The exact law of a conservative oscillator; its motion is known by numbers.
 ///
@@ -74,7 +74,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
     let (x, amplitude) = (oscillator.coordinate, Expr::symbol("A"));
     let odd = is_odd(force, x)?;
-    let variable = Symbol::new(if x.name() == "u" { "v" } else { "u" });
+    let names = oscillator.names();
+    let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| fresh(name, &names));
     let mut lines = Vec::new();
     // What the potential has fallen by from the turning point: in closed form, or as an integral of the force.
     let potential = potential(force, x).map(|potential| {
@@ -95,7 +96,7 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, 
     let (factor, from) = if odd {
         (4, Expr::zero())
     } else {
-        (2, Expr::symbol("x1"))
+        (2, Expr::from(turning_back))
     };
     if !odd {
         let work = Formula::Integral {
@@ -105,7 +106,9 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, 
             integrand: Box::new(force.into()),
             variable: x,
         };
-        lines.push(Line::equal([work, Expr::zero().into()]).because("the other turning point x1 < 0"));
+        lines.push(
+            Line::equal([work, Expr::zero().into()]).because(format!("the other turning point {turning_back} < 0")),
+        );
     }
     let period = Formula::Integral {
         factor: Expr::from(factor),
@@ -114,8 +117,8 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, 
         integrand: Box::new(Formula::OverRoot(Expr::one(), Box::new(gained))),
         variable: x,
     };
-    lines.push(Line::equation("T", period).because("the period, from the energy"));
-    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::symbol("T"))?;
+    lines.push(Line::equation(total, period).because("the period, from the energy"));
+    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
     lines.push(Line::equation("omega", frequency));
     Ok(lines)
 }

@@ -34,7 +34,7 @@ use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{Method, Solution, System};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
 
@@ -153,13 +153,10 @@ pub(super) fn harmonics(order: u32, odd: bool) -> Vec<usize> {
     }
 }
 
-/// `a1`, `a3`, ...; another letter where the equation uses one of these.
-fn coefficient_names(oscillator: &Oscillator, harmonics: &[usize]) -> Vec<Symbol> {
-    let with =
-        |letter: &str| -> Vec<Symbol> { harmonics.iter().map(|k| Symbol::new(&format!("{letter}{k}"))).collect() };
-    let free = |names: &Vec<Symbol>| names.iter().all(|name| !oscillator.parameters.contains(name));
-    let mut letters = ["a", "b", "h", "u"].into_iter().map(with);
-    letters.find(free).unwrap_or_else(|| with("a_"))
+/// `a1`, `a3`, ...; another stem where the equation uses one of these.
+pub(super) fn coefficient_names(oscillator: &Oscillator, harmonics: &[usize]) -> Vec<Symbol> {
+    let stem = fresh_stem("a", &oscillator.names());
+    harmonics.iter().map(|k| Symbol::new(&format!("{stem}{k}"))).collect()
 }
 
 /// The balance of every harmonic and the amplitude condition, where the force allows it in closed form.

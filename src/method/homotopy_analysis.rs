@@ -34,7 +34,7 @@ use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::fourier::{linear_combination, sum_of_products};
 use crate::solution::{Definition, Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HomotopyAnalysis;
 
@@ -44,8 +44,13 @@ const HIGHEST: u32 = 20;
 /// The most terms of one coefficient before the derivation is given up.
 const MOST_TERMS: usize = 20_000;
 
-/// The name of the convergence-control parameter.
+/// The name of the convergence-control parameter, with underscores behind it where the equation uses the name.
 pub const HBAR: &str = "hbar";
+
+/// The convergence-control parameter in an answer.
+pub fn convergence_control(solution: &Solution) -> Symbol {
+    fresh(HBAR, &solution.names())
+}
 
 /// Frequency and motion to an order in the embedding parameter; two by default.
 ///
@@ -68,11 +73,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
     let mut solution = unsolved(oscillator, options, METHOD, order);
     solution.definitions.clone_from(&force.definitions);
+    let symbol = convergence_control(&solution);
     let hbar = match &options.hbar {
-        None => Polynomial::symbol(Symbol::new(HBAR)),
+        None => Polynomial::symbol(symbol),
         Some(value) => match value.to_polynomial(&mut |_| None)? {
             Some(number) => number,
-            None => Polynomial::symbol(Symbol::new(HBAR)),
+            None => Polynomial::symbol(symbol),
         },
     };
     let series = expand(&force, order as usize, hbar, &mut solution)?;
@@ -82,14 +88,19 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.frequency = Some(constant(&sum(&series.frequency)));
     solution.displacement = sum(&series.displacement);
-    solution.validity.push(format!("truncated after q^{}", order - 1));
+    solution.validity.push(format!(
+        "truncated after {}^{}",
+        fresh("q", &solution.names()),
+        order - 1
+    ));
     if polynomial.is_none() {
         let line = format!("the force entered as its Taylor polynomial of degree {degree}");
         solution.validity.push(line);
     }
     if options.hbar.is_none() && order > 1 {
-        let line = "hbar controls the convergence; numbers are given with the one of least squared residual";
-        solution.validity.push(line.to_owned());
+        solution.validity.push(format!(
+            "{symbol} controls the convergence; numbers are given with the one of least squared residual"
+        ));
     }
     Ok(solution)
 }
@@ -252,11 +263,7 @@ fn linear_frequency(squared: &Polynomial, solution: &mut Solution) -> Polynomial
     if let Some(root) = squared.single_term_root() {
         return root;
     }
-    let mut name = "w0".to_owned();
-    while solution.parameters.contains(&Symbol::new(&name)) {
-        name.push('_');
-    }
-    let symbol = Symbol::new(&name);
+    let symbol = Symbol::new(&(fresh_stem("w", &solution.names()) + "0"));
     let square = Expr::from(squared);
     let meaning = match square.sqrt() {
         // A number under the root of a product is taken out of it.

@@ -34,7 +34,7 @@ use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter, Term};
 use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// Derives the relation between frequency and amplitude, and the motion, to an order in the bookkeeping parameter.
 ///
@@ -101,7 +101,9 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         _ => amplitude,
     };
     let mut validity = vec![format!(
-        "truncated after p^{order}; the frequency is the root that continues omega0^2 from A = 0"
+        "truncated after {}^{order}; the frequency is the root that continues {}^2 from A = 0",
+        fresh("p", &oscillator.names()),
+        oscillator.linear_frequency_name(&force.linear)
     )];
     if oscillator.polynomial_degree()?.is_none() {
         validity.push(format!("the force entered as its Taylor polynomial of degree {degree}"));
@@ -129,7 +131,10 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         numerical: false,
         validity,
         steps: series.steps,
-        derivation: vec![Line::equation(Expr::symbol("omega0").integer_power(2)?, &force.linear)],
+        derivation: vec![Line::equation(
+            Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
+            &force.linear,
+        )],
     })
 }
 

@@ -34,7 +34,7 @@ use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
 use crate::solution::{Definition, Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::IterationPerturbation;
 
@@ -88,6 +88,7 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
     let amplitude = Expr::symbol("A");
     let degree = oscillator.polynomial_degree()?.map(|degree| degree as usize);
     let highest = degree.unwrap_or(HIGHEST_HARMONIC);
+    let stem = fresh_stem("c", &oscillator.names());
     let mut motion = solution.displacement.clone();
     for k in (0..=highest).filter(|&k| k != 1) {
         let Some(coefficient) = cosine_coefficient(force, oscillator.coordinate, &amplitude, k) else {
@@ -99,7 +100,7 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
         let mut polynomial = match coefficient.to_polynomial(&mut |_| None)? {
             Some(polynomial) => polynomial,
             None => {
-                let symbol = free_name(&format!("c{k}"), solution);
+                let symbol = Symbol::new(&format!("{stem}{k}"));
                 solution.definitions.push(Definition {
                     symbol,
                     meaning: coefficient,
@@ -121,17 +122,6 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
     }
     solution.displacement = motion;
     Ok(())
-}
-
-fn free_name(name: &str, solution: &Solution) -> Symbol {
-    let mut name = name.to_owned();
-    let taken = |symbol: Symbol| {
-        solution.parameters.contains(&symbol) || solution.definitions.iter().any(|entry| entry.symbol == symbol)
-    };
-    while taken(Symbol::new(&name)) {
-        name.push('_');
-    }
-    Symbol::new(&name)
 }
 
 /// Several passes for a polynomial force: an implicit relation in even powers of omega.
@@ -172,7 +162,8 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     solution.displacement = motion;
     solution.derivation = lines;
     solution.validity.push(format!(
-        "after {passes} passes; the frequency is the root that continues omega0^2 from A = 0"
+        "after {passes} passes; the frequency is the root that continues {}^2 from A = 0",
+        solution.linear_frequency_name()
     ));
     Ok(solution)
 }

@@ -60,9 +60,16 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         order,
         bookkeeping,
     } = perturbation(oscillator, &parts, options)?;
-    let (linear_frequency, definition) = force.linear_frequency();
-    let mut definitions: Vec<Definition> = force.definitions.iter().cloned().chain(definition).collect();
-    let mut taken = oscillator.parameters.clone();
+    let mut taken = oscillator.names();
+    let (linear_frequency, definition) = force.linear_frequency(&taken);
+    // Constants of the linear force alone are written out in its definition.
+    let used = |name: Symbol| {
+        let coefficients = force.terms.iter().map(|term| &term.coefficient);
+        let mut coefficients = coefficients.chain([&linear_frequency]);
+        coefficients.any(|coefficient| coefficient.symbols().contains(&name))
+    };
+    let constants = force.definitions.iter().filter(|entry| used(entry.symbol)).cloned();
+    let mut definitions: Vec<Definition> = definition.clone().into_iter().chain(constants).collect();
     taken.extend(definitions.iter().map(|definition| definition.symbol));
 
     let units = Units::new(&force, linear_frequency.clone());
@@ -118,8 +125,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         None => (Polynomial::symbol(symbol), Amplitude::Free),
         Some(cycle) => (cycle.unit.clone(), Amplitude::Determined),
     };
-    definitions.extend(cycle.and_then(|cycle| cycle.definition.clone()));
-    let positive = definitions.clone();
+    let of_cycle = cycle.and_then(|cycle| cycle.definition.clone());
+    definitions.extend(of_cycle.clone());
+    let positive: Vec<Definition> = definition.into_iter().chain(of_cycle).collect();
     definitions.extend(bookkeeping.clone());
     let normalisation = match convention {
         AmplitudeConvention::Initial => Normalisation::Initial,
@@ -218,7 +226,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         numerical: false,
         validity,
         steps,
-        derivation: vec![Line::equation(Expr::symbol("omega0").integer_power(2)?, &force.linear)],
+        derivation: vec![Line::equation(
+            Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
+            &force.linear,
+        )],
     })
 }
 
@@ -308,7 +319,7 @@ fn may_balance(force: &PerturbedForce) -> bool {
 }
 
 fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
-    AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency().0))
+    AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency(&[]).0))
 }
 
 fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {

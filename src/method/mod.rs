@@ -13,6 +13,7 @@ pub mod hamiltonian;
 pub mod harmonic_balance;
 pub mod homotopy_analysis;
 pub mod homotopy_perturbation;
+pub mod inertia;
 pub mod iteration_perturbation;
 pub mod joint_expansion;
 pub mod limit_cycle;
@@ -107,7 +108,7 @@ pub enum Refusal {
     /// A limit cycle exists or may exist, but not in closed form.
     #[error("the amplitude of the limit cycle follows from `{equation} = 0`, {reason}")]
     LimitCycle {
-        /// The polynomial in z = amplitude^2 whose root is needed.
+        /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z of its own.
         equation: String,
         /// Why that is not possible.
         reason: &'static str,
@@ -363,7 +364,10 @@ fn by_method(method: Method, oscillator: &Oscillator, options: &Options) -> Resu
         Method::Pade => pade::solve,
         Method::Exact => exact::solve,
     };
-    solve(oscillator, options)
+    match inertia::solve(method, oscillator, options)? {
+        Some(solution) => Ok(solution),
+        None => solve(oscillator, options),
+    }
 }
 
 /// Whether a method puts a Taylor polynomial of a chosen degree in place of the force.

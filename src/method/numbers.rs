@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use num_traits::One;
 
-use super::{balance, energy_balance, harmonic_balance, homotopy_analysis, one_term};
+use super::{balance, energy_balance, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
@@ -116,7 +116,7 @@ pub fn frequency_squared_of(
 
 /// The symbol of homotopy analysis that is to be chosen, where there is one.
 fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
-    let hbar = Symbol::new(homotopy_analysis::HBAR);
+    let hbar = homotopy_analysis::convergence_control(solution);
     let open = solution.method == Method::HomotopyAnalysis && !numbers.contains_key(&hbar);
     (open && contains(solution, hbar)).then_some(hbar)
 }
@@ -362,6 +362,17 @@ fn solve(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<(f64, FourierSeries<f64>), NoNumbers> {
+    if oscillator.force.contains(oscillator.velocity()) {
+        let found = || {
+            let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
+            let (squared, motion) = inertia::at_numbers(oscillator, solution, numbers)?;
+            Some((
+                squared,
+                motion.sum(&FourierSeries::constant(equilibrium, Integer::one())),
+            ))
+        };
+        return found().ok_or(NoNumbers::NoValue);
+    }
     if solution.method == Method::Exact {
         return exact_motion(oscillator, solution, numbers).ok_or(NoNumbers::NoValue);
     }

@@ -151,7 +151,12 @@ impl<'a> Lexer<'a> {
                     true => format!("`{letter}` (U+{:04X})", u32::from(letter)),
                     false => format!("the character U+{:04X}", u32::from(letter)),
                 };
-                let help = ascii_spelling(letter).map_or("", |spelling| spelling);
+                // The index behind a letter belongs to its name: omega0 may be used, omega alone may not.
+                let index = self.rest().starts_with(['0', '_', '\u{2080}']);
+                let help = match letter {
+                    'ω' if index => "try `omega0`",
+                    _ => ascii_spelling(letter).map_or("", |spelling| spelling),
+                };
                 (format!("{name} is not understood"), help)
             }
         };
@@ -210,7 +215,7 @@ pub(super) fn ascii_spelling(letter: char) -> Option<&'static str> {
         'ε' | 'ϵ' => "try `eps`",
         'ζ' => "try `zeta`",
         'η' => "try `eta`",
-        'θ' | 'ϑ' => "try `theta`",
+        'θ' | 'ϑ' => "try `phi`: `theta` is the phase in the answer",
         'κ' => "try `kappa`",
         'λ' => "try `lambda`",
         'μ' | 'µ' => "try `mu`",
@@ -223,7 +228,7 @@ pub(super) fn ascii_spelling(letter: char) -> Option<&'static str> {
         'φ' | 'ϕ' => "try `phi`",
         'χ' => "try `chi`",
         'ψ' => "try `psi`",
-        'ω' => "try `omega`",
+        'ω' => "try `Omega` or `w`: `omega` is the frequency in the answer",
         'Ω' | '\u{2126}' => "try `Omega`",
         '\u{a0}' | '\u{2009}' | '\u{202f}' | '\u{3000}' => "try a plain blank",
         '\u{ff1d}' => "try `=`",

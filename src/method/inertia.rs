@@ -1,0 +1,704 @@
+//! Inertia that depends on the position: `x'' + g(x) x'^2 + h(x) = 0`, a bead on a turning wire or a mass on a rod.
+//!
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.1 and 4.1; P. M. Mathews,
+//! M. Lakshmanan, *On a unique nonlinear oscillator*, Quart. Appl. Math. 32 (1974) 215-218 (a case that is known exactly).
+//!
+//! ```text
+//! M = exp(2 int g dx),   U' = M h:     M x'^2/2 + U = U(A)              the energy
+//! exact:              T = 2 int_(x_1)^A sqrt(M)/sqrt(2 (U(A) - U)) dx
+//! energy balance:     M(x) omega^2 A^2/4 = U(A) - U(x),   x = A/sqrt(2)   x = A cos(theta) at theta = pi/4
+//! Hamiltonian:        omega^2 dK/dA = dP/dA,   K = <M (A^2 - x^2)>/2,   P = <U>   means over x = A cos(theta)
+//! harmonic balance:   the equation as it was typed, projected on cos(k theta), with x' = omega x_theta
+//! ```
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! let oscillator = Oscillator::parse("(1 + x^2)*x'' + x*x'^2 + x = 0")?;
+//! let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
+//! assert_eq!(solve(&oscillator, &options)?.closed_form.unwrap().to_string(), "omega^2 = 2/(2 + A^2)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use num_traits::{One, Zero};
+
+use super::energy_balance::positive_amplitude;
+use super::harmonic_balance::{coefficient_names, harmonics};
+use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
+use super::{Options, Refusal};
+use crate::conservative::is_odd;
+use crate::conservative::potential::potential;
+use crate::conservative::projection::cosine_coefficient;
+use crate::derivation::{Formula, Line};
+use crate::exact::rational::ratio;
+use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
+use crate::ode::quadrature::integrate_smooth;
+use crate::oscillator::Oscillator;
+use crate::period;
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Method, Solution, System};
+use crate::symbol::Symbol;
+
+/// The two functions of `x'' + g x'^2 + h = 0`, and what the energy is made of.
+pub(super) struct VariableMass {
+    growth: Expr,
+    force: Expr,
+    /// `M`, where the integral of `g` has a closed form.
+    mass: Option<Expr>,
+}
+
+impl VariableMass {
+    /// The parts of an equation whose inertia depends on the position; `None` for any other.
+    ///
+    /// # Errors
+    /// The force cannot be written out.
+    pub(super) fn of(oscillator: &Oscillator) -> Result<Option<Self>, Refusal> {
+        let parts = oscillator.parts()?;
+        let velocity = oscillator.velocity();
+        if parts.inertia.is_zero() || !parts.damping.is_zero() || !parts.forcing.is_zero() {
+            return Ok(None);
+        }
+        let growth = Expr::divide(&parts.inertia, &Expr::from(velocity).integer_power(2)?)?.expand()?;
+        if growth.contains(velocity) {
+            return Ok(None);
+        }
+        let mass = integrating_factor(&growth, oscillator.coordinate);
+        Ok(Some(Self {
+            growth,
+            force: parts.restoring,
+            mass,
+        }))
+    }
+
+    /// Whether the motion has odd harmonics alone.
+    fn is_odd(&self, oscillator: &Oscillator) -> Result<bool, ExprError> {
+        Ok(is_odd(&self.force, oscillator.coordinate)? && is_odd(&self.growth, oscillator.coordinate)?)
+    }
+
+    /// `M h`, whose integral is the potential energy.
+    fn weighted_force(&self) -> Option<Expr> {
+        (self.mass.as_ref()? * &self.force).expand().ok()
+    }
+
+    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium.
+    fn mass_at(&self, oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Option<Box<dyn Fn(f64) -> f64>> {
+        if let Some(mass) = &self.mass {
+            return Some(Box::new(compiled(oscillator, mass, numbers)?));
+        }
+        let growth = compiled(oscillator, &self.growth, numbers)?;
+        Some(Box::new(move |x: f64| {
+            let integral = integrate_smooth(&growth, 0.0, x, 1e-13);
+            integral.map_or(f64::NAN, |(value, _)| (2.0 * value).exp())
+        }))
+    }
+}
+
+/// `exp(2 int g dx)`, logarithms in the exponent written as powers.
+fn integrating_factor(growth: &Expr, coordinate: Symbol) -> Option<Expr> {
+    let exponent = (Expr::from(2) * potential(growth, coordinate)?).expand().ok()?;
+    let factor = |term: &Expr| -> Result<Expr, ExprError> {
+        let (number, factors) = term.factors();
+        match factors {
+            [logarithm] if let Node::Function(Function::Log, arguments) = logarithm.node() => {
+                let argument = arguments.first().cloned().unwrap_or_else(Expr::one);
+                Expr::power(&argument, &Expr::number(number))
+            }
+            _ => Expr::function(Function::Exp, vec![term.clone()]),
+        }
+    };
+    let factors = exponent
+        .terms()
+        .iter()
+        .map(factor)
+        .collect::<Result<Vec<_>, _>>()
+        .ok()?;
+    Some(Expr::product(factors))
+}
+
+/// The answer of a method that takes such an equation as it is; `None` where it does not, or the equation is another.
+///
+/// # Errors
+/// As for the method on any other equation.
+pub(super) fn solve(method: Method, oscillator: &Oscillator, options: &Options) -> Result<Option<Solution>, Refusal> {
+    let by = match method {
+        Method::Exact => exact,
+        Method::EnergyBalance => energy_balance,
+        Method::Hamiltonian => hamiltonian,
+        Method::HarmonicBalance => harmonic_balance,
+        _ => return Ok(None),
+    };
+    let Some(moving) = VariableMass::of(oscillator)? else {
+        return Ok(None);
+    };
+    if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
+        return Err(Refusal::Convention { method: method.title() });
+    }
+    by(&moving, oscillator, options).map(Some)
+}
+
+/// The name of `M` in a derivation.
+const MASS: &str = "M";
+
+fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line>, Refusal> {
+    let (x, velocity) = (oscillator.coordinate, Expr::from(oscillator.velocity()));
+    let mass = match &moving.mass {
+        Some(mass) => Line::equation(MASS, mass),
+        None => {
+            let variable = Symbol::new("u");
+            let exponent = Formula::Integral {
+                factor: Expr::from(2),
+                from: Expr::zero(),
+                to: x.into(),
+                integrand: Box::new(moving.growth.substitute(x, &variable.into())?.into()),
+                variable,
+            };
+            let logarithm = Expr::function(Function::Log, vec![Expr::symbol(MASS)])?;
+            Line::equation(logarithm, exponent)
+        }
+    };
+    let kinetic = Expr::symbol(MASS) * velocity.integer_power(2)?;
+    let energy = Expr::divide(&kinetic, &Expr::from(2))? + Expr::symbol("U");
+    let slope = Formula::Slope {
+        factor: Expr::one(),
+        of: "U".into(),
+        by: x,
+    };
+    let weighted = moving
+        .weighted_force()
+        .unwrap_or_else(|| Expr::symbol(MASS) * &moving.force);
+    Ok(vec![
+        mass.because("times M the equation has an energy"),
+        Line::equation("E", energy),
+        Line::equation(slope, weighted),
+    ])
+}
+
+fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let mut solution = unsolved(oscillator, options, Method::Exact, 0);
+    solution.displacement = FourierSeries::zero();
+    let x = oscillator.coordinate;
+    let (mass, force) = match (&moving.mass, moving.weighted_force()) {
+        (Some(mass), Some(force)) => (mass.clone(), force),
+        _ => (Expr::symbol(MASS), Expr::symbol(MASS) * &moving.force),
+    };
+    let variable = Symbol::new("u");
+    let gained = Formula::Integral {
+        factor: Expr::from(2),
+        from: x.into(),
+        to: Expr::symbol("A"),
+        integrand: Box::new(force.substitute(x, &variable.into())?.into()),
+        variable,
+    };
+    let period = Formula::Integral {
+        factor: Expr::from(2),
+        from: Expr::symbol("x1"),
+        to: Expr::symbol("A"),
+        integrand: Box::new(Formula::OverRoot(mass.sqrt()?, Box::new(gained))),
+        variable: x,
+    };
+    let work = Formula::Integral {
+        factor: Expr::one(),
+        from: Expr::symbol("x1"),
+        to: Expr::symbol("A"),
+        integrand: Box::new(force.into()),
+        variable: x,
+    };
+    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::symbol("T"))?;
+    let mut lines = match moving.mass {
+        Some(_) => vec![],
+        None => mass_lines(moving, oscillator)?.into_iter().take(1).collect(),
+    };
+    lines.extend([
+        Line::equal([work, Expr::zero().into()]).because("the other turning point x1 < 0"),
+        Line::equation("T", period).because("the period, from the energy"),
+        Line::equation("omega", frequency),
+    ]);
+    solution.derivation = mass_lines(moving, oscillator)?;
+    solution
+        .derivation
+        .extend(lines.iter().skip(usize::from(moving.mass.is_none())).cloned());
+    solution.by_quadrature = Some(lines);
+    solution
+        .validity
+        .push("exact wherever the motion is periodic, by quadrature of the energy".to_owned());
+    Ok(solution)
+}
+
+fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::EnergyBalance;
+    first_order_only(options, METHOD)?;
+    require_odd(oscillator, &moving.force, METHOD)?;
+    require_odd(oscillator, &moving.growth, METHOD)?;
+    let mut solution = unsolved(oscillator, options, METHOD, 1);
+    let x = oscillator.coordinate;
+    let amplitude = Expr::symbol("A");
+    let eighth = Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?;
+    let squared = Expr::symbol("omega").integer_power(2)?;
+    let quarter = Expr::divide(&amplitude.integer_power(2)?, &Expr::from(4))?;
+    solution.derivation = mass_lines(moving, oscillator)?;
+    let law = || {
+        let (mass, weighted) = (moving.mass.as_ref()?, moving.weighted_force()?);
+        // A difference of other potentials loses its digits at small amplitudes: the work is integrated instead.
+        weighted.to_polynomial(&mut |_| None).ok()??;
+        let potential = potential(&weighted, x)?;
+        let at = |function: &Expr, place: &Expr| {
+            let value = function.substitute(x, place).ok()?;
+            positive_amplitude(&value).unwrap_or(value).expand().ok()
+        };
+        let rise = (at(&potential, &amplitude)? - at(&potential, &eighth)?).expand().ok()?;
+        let inertia = at(mass, &eighth)?;
+        let law = Expr::divide(&rise, &(&quarter * &inertia)).ok()?;
+        let law = law.expand().ok().filter(|law| law.terms().len() < 2).unwrap_or(law);
+        Some((rise, inertia, law))
+    };
+    match law() {
+        Some((rise, inertia, law)) => {
+            let kinetic = &quarter * &squared * &inertia;
+            solution
+                .derivation
+                .push(Line::equation(kinetic, rise).because("the energy of A*cos(theta) at theta = pi/4"));
+            solution.derivation.push(Line::equation(squared, &law));
+            set_law(&mut solution, &law)?;
+        }
+        None => {
+            let weighted = moving
+                .weighted_force()
+                .unwrap_or_else(|| Expr::symbol(MASS) * &moving.force);
+            let mass = match &moving.mass {
+                Some(mass) => mass.substitute(x, &eighth)?,
+                None => Expr::symbol("M_eighth"),
+            };
+            let work = Formula::Integral {
+                factor: Expr::one(),
+                from: eighth,
+                to: amplitude,
+                integrand: Box::new(weighted.into()),
+                variable: x,
+            };
+            let line = Line::equation(quarter * squared * mass, work)
+                .because("the energy of A*cos(theta) at theta = pi/4, M_eighth the value of M there");
+            solution.derivation.push(line);
+            solution.by_quadrature = Some(solution.derivation.clone());
+        }
+    }
+    solution
+        .validity
+        .push("one term, collocated at theta = pi/4: the instant is a convention of the method".to_owned());
+    Ok(solution)
+}
+
+fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::Hamiltonian;
+    first_order_only(options, METHOD)?;
+    let mut solution = unsolved(oscillator, options, METHOD, 1);
+    let x = oscillator.coordinate;
+    let amplitude = Expr::symbol("A");
+    let squared = Expr::symbol("omega").integer_power(2)?;
+    solution.derivation = mass_lines(moving, oscillator)?;
+    let law = || {
+        let (mass, weighted) = (moving.mass.as_ref()?, moving.weighted_force()?);
+        let half = Expr::number(ratio(1, 2));
+        let mean = |function: &Expr| {
+            let twice = cosine_coefficient(&function.expand().ok()?, x, &amplitude, 0)?;
+            (twice * &half).expand().ok()
+        };
+        let rest = amplitude.integer_power(2).ok()? - Expr::from(x).integer_power(2).ok()?;
+        let kinetic = mean(&(mass * &rest * &half))?;
+        let potential = mean(&potential(&weighted, x)?)?;
+        // Both slopes are odd in A: the common factor goes.
+        let slope = |of: &Expr| {
+            Expr::divide(&of.differentiate("A".into()).ok()?, &amplitude)
+                .ok()?
+                .expand()
+                .ok()
+        };
+        let law = Expr::divide(&slope(&potential)?, &slope(&kinetic)?).ok()?;
+        Some((kinetic, potential, law))
+    };
+    match law() {
+        Some((kinetic, potential, law)) => {
+            let slope = |of: &str, factor: Expr| Formula::Slope {
+                factor,
+                of: of.into(),
+                by: "A".into(),
+            };
+            solution.derivation.extend([
+                Line::equation("K", kinetic).because("mean kinetic energy of A*cos(theta) over omega^2"),
+                Line::equation("P", potential).because("mean potential energy"),
+                Line::equal([slope("K", squared.clone()), slope("P", Expr::one())]).because("stationary in A"),
+                Line::equation(squared, &law),
+            ]);
+            set_law(&mut solution, &law)?;
+        }
+        None => {
+            let (cosine, sine) = (Expr::symbol("theta").cos()?, Expr::symbol("theta").sin()?);
+            let along = &amplitude * &cosine;
+            let mass = match &moving.mass {
+                Some(mass) => mass.substitute(x, &along)?,
+                None => Expr::symbol(MASS),
+            };
+            let (growth, force) = (
+                moving.growth.substitute(x, &along)?,
+                moving.force.substitute(x, &along)?,
+            );
+            let over_half = |factor: Expr, integrand: Expr| Formula::Integral {
+                factor,
+                from: Expr::zero(),
+                to: Expr::pi(),
+                integrand: Box::new(integrand.into()),
+                variable: "theta".into(),
+            };
+            let bracket = &amplitude * &cosine.integer_power(2)?
+                - amplitude.integer_power(2)? * growth * sine.integer_power(2)? * &cosine;
+            let line = Line::equal([
+                over_half(squared, &mass * &bracket),
+                over_half(Expr::one(), mass * force * cosine),
+            ]);
+            solution
+                .derivation
+                .push(line.because("M times the equation has no cos(theta) along A*cos(theta)"));
+            solution.by_quadrature = Some(solution.derivation.clone());
+        }
+    }
+    solution
+        .validity
+        .push("one term: exact for a linear equation, the first step beyond it otherwise".to_owned());
+    Ok(solution)
+}
+
+/// The powers of `x`, `x'` and `x''` in a term, and the rest of it.
+type TypedTerm = ([u32; 3], Polynomial);
+
+/// The terms of the equation as typed, where it is a polynomial in `x`, `x'` and `x''`.
+fn typed_terms(oscillator: &Oscillator) -> Result<Option<Vec<TypedTerm>>, Refusal> {
+    let own = [
+        oscillator.coordinate,
+        oscillator.velocity(),
+        oscillator.velocity().derivative(),
+    ];
+    let Some(polynomial) = oscillator.residual.expand()?.to_polynomial(&mut |_| None)? else {
+        return Ok(None);
+    };
+    let term = |(monomial, number): (&crate::exact::polynomial::Monomial, &Rational)| {
+        let mut powers = [0; 3];
+        for (power, &name) in powers.iter_mut().zip(&own) {
+            *power = u32::try_from(monomial.exponent(name)).ok()?;
+        }
+        let rest = own.iter().fold(monomial.clone(), |rest, &name| rest.without(name));
+        Some((powers, Polynomial::term(rest, number.clone())))
+    };
+    Ok(polynomial.terms().map(term).collect())
+}
+
+fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    const METHOD: Method = Method::HarmonicBalance;
+    /// The most harmonics of an equation with inertia terms.
+    const HIGHEST: u32 = 40;
+    /// The longest system that is written out, in harmonics.
+    const WRITTEN_OUT: usize = 6;
+    let order = options.order.unwrap_or(2);
+    if order == 0 || order > HIGHEST {
+        return Err(Refusal::HighestOrder {
+            method: METHOD.title(),
+            highest: HIGHEST,
+        });
+    }
+    let x = oscillator.coordinate;
+    let odd = moving.is_odd(oscillator)?;
+    let harmonics = harmonics(order, odd);
+    let mut solution = unsolved(oscillator, options, METHOD, order);
+    let names = match harmonics.as_slice() {
+        [1] => vec![Symbol::new("A")],
+        _ => coefficient_names(oscillator, &harmonics),
+    };
+    let mut cosine = vec![Polynomial::zero(); harmonics.last().map_or(0, |last| last + 1)];
+    for (&k, &name) in harmonics.iter().zip(&names) {
+        cosine[k] = Polynomial::symbol(name);
+    }
+    solution.displacement = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    let typed = Line::equal([(&oscillator.residual).into(), Expr::zero().into()]);
+    solution.derivation = vec![
+        typed.because("balanced as it stands"),
+        Line::equation(x, solution.displacement.clone()),
+    ];
+    let terms = typed_terms(oscillator)?.filter(|_| harmonics.len() <= WRITTEN_OUT);
+    let balances: Option<Vec<Polynomial>> = terms.map(|terms| {
+        let omega = FourierSeries::constant(Polynomial::symbol("omega".into()), Integer::one());
+        let motion = &solution.displacement;
+        let velocity = motion.derivative().product(&omega);
+        let acceleration = velocity.derivative().product(&omega);
+        let factors = [motion, &velocity, &acceleration];
+        let mut along = FourierSeries::zero();
+        for (powers, coefficient) in &terms {
+            let mut product = FourierSeries::constant(coefficient.clone(), Integer::one());
+            for (factor, &power) in factors.iter().zip(powers) {
+                if power > 0 {
+                    product = product.product(&factor.power(power));
+                }
+            }
+            along = along.sum(&product);
+        }
+        let balance = |&k: &usize| {
+            let coefficient = along.cosine(k);
+            let (mut value, denominator) = coefficient.mean();
+            value.divide(denominator);
+            value
+        };
+        harmonics.iter().map(balance).collect()
+    });
+    let squared = Expr::symbol("omega").integer_power(2)?;
+    match (balances, names.as_slice()) {
+        (Some(balances), [_]) => {
+            let balance = Expr::from(&balances[0]);
+            let still = balance.substitute("omega".into(), &Expr::zero())?;
+            let inertia = Expr::divide(&(&still - &balance).expand()?, &squared)?.expand()?;
+            let amplitude = Expr::symbol("A");
+            let law = Expr::divide(
+                &Expr::divide(&still, &amplitude)?.expand()?,
+                &Expr::divide(&inertia, &amplitude)?.expand()?,
+            )?;
+            solution
+                .derivation
+                .push(Line::equation(balance, Expr::zero()).because("the cos(theta) part"));
+            solution.derivation.push(Line::equation(squared, &law));
+            set_law(&mut solution, &law)?;
+        }
+        (Some(balances), names) => {
+            let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
+            let mut equations: Vec<Expr> = balances.iter().map(Expr::from).collect();
+            equations.push((sum - Expr::symbol("A")).expand()?);
+            let unknowns = std::iter::once(Symbol::new("omega"))
+                .chain(names.iter().copied())
+                .collect();
+            solution.system = Some(System { unknowns, equations });
+        }
+        (None, names) => {
+            let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
+            let projection = Formula::Integral {
+                factor: Expr::one(),
+                from: Expr::zero(),
+                to: Expr::pi(),
+                integrand: Box::new(
+                    (&oscillator.residual * &(Expr::symbol("k") * Expr::symbol("theta")).cos()?).into(),
+                ),
+                variable: "theta".into(),
+            };
+            let line = Line::equal([projection, Expr::zero().into()]);
+            solution
+                .derivation
+                .push(line.because(format!("for k = {}", kept.join(", "))));
+            let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
+            if names.len() > 1 {
+                solution.derivation.push(Line::equation("A", sum));
+            }
+            solution.by_quadrature = Some(solution.derivation.clone());
+        }
+    }
+    let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
+    solution
+        .validity
+        .push(format!("harmonics {} balanced, those above left out", kept.join(", ")));
+    Ok(solution)
+}
+
+/// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out; `None` where the law is
+/// explicit, or there are none.
+pub(super) fn at_numbers(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<(f64, FourierSeries<f64>)> {
+    // Seen from the equilibrium, as the formulas are.
+    let equilibrium = solution.equilibrium.clone();
+    let moved = &Expr::from(oscillator.coordinate) + &equilibrium;
+    let mut centred = oscillator.clone();
+    centred.force = oscillator.force.substitute(oscillator.coordinate, &moved).ok()?;
+    centred.residual = oscillator.residual.substitute(oscillator.coordinate, &moved).ok()?;
+    let oscillator = &centred;
+    let moving = VariableMass::of(oscillator).ok()??;
+    let amplitude = *numbers.get(&solution.amplitude.symbol())?;
+    let mass = moving.mass_at(oscillator, numbers)?;
+    let force = compiled(oscillator, &moving.force, numbers)?;
+    let weighted = |x: f64| mass(x) * force(x);
+    let one_term = |squared: f64| {
+        let motion = FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one());
+        squared.is_finite().then_some((squared, motion))
+    };
+    match solution.method {
+        Method::Exact => {
+            let (period, cosine) = period::weighted_motion(&weighted, &|x| mass(x).sqrt(), 0.0, amplitude).ok()?;
+            let frequency = std::f64::consts::TAU / period;
+            let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
+            Some((frequency * frequency, motion))
+        }
+        Method::EnergyBalance => {
+            let eighth = amplitude / f64::sqrt(2.0);
+            let rise = integrate_smooth(weighted, eighth, amplitude, 1e-12).ok()?.0;
+            one_term(4.0 * rise / (amplitude * amplitude * mass(eighth)))
+        }
+        Method::Hamiltonian => {
+            let growth = compiled(oscillator, &moving.growth, numbers)?;
+            let mean = |function: &dyn Fn(f64, f64) -> f64| {
+                let value = |theta: f64| function(theta.cos(), theta.sin());
+                integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-12).map(|(value, _)| value)
+            };
+            let inertia = mean(&|c, s| {
+                let x = amplitude * c;
+                mass(x) * (c * c - amplitude * growth(x) * s * s * c)
+            });
+            let work = mean(&|c, _| weighted(amplitude * c) * c);
+            one_term(work.ok()? / (amplitude * inertia.ok()?))
+        }
+        _ => {
+            let odd = moving.is_odd(oscillator).ok()?;
+            balanced(oscillator, numbers, &harmonics(solution.order, odd), amplitude)
+        }
+    }
+}
+
+/// The balance of the equation as typed by Newton's iteration, the amplitude raised in steps from a nearly linear one.
+fn balanced(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, f64>,
+    harmonics: &[usize],
+    amplitude: f64,
+) -> Option<(f64, FourierSeries<f64>)> {
+    const FEWEST_STEPS: i32 = 16;
+    const SMALLEST_STEP: f64 = 1e-4;
+    let first = harmonics.iter().position(|&k| k == 1)?;
+    let balance = Balance::new(oscillator, numbers, harmonics)?;
+    let (mut part, mut step) = (0.0, 1.0 / f64::from(FEWEST_STEPS));
+    let mut unknowns = DVector::zeros(harmonics.len() + 1);
+    unknowns[0] = balance.linear()?;
+    while part < 1.0 {
+        let next = f64::min(part + step, 1.0);
+        let mut start = unknowns.clone();
+        if part == 0.0 {
+            start[first + 1] = next * amplitude;
+        } else {
+            start *= next / part;
+            start[0] = unknowns[0];
+        }
+        let found = balance.newton(start, next * amplitude);
+        match found.filter(|found| found[0] > 0.0 && (found[0] / unknowns[0]).ln().abs() < 0.3) {
+            Some(found) => {
+                (unknowns, part) = (found, next);
+                step = f64::min(2.0 * step, 1.0 / f64::from(FEWEST_STEPS));
+            }
+            None => step *= 0.5,
+        }
+        if step < SMALLEST_STEP {
+            return None;
+        }
+    }
+    let mut cosine = vec![0.0; harmonics.last()? + 1];
+    for (index, &k) in harmonics.iter().enumerate() {
+        cosine[k] = unknowns[index + 1];
+    }
+    Some((unknowns[0], FourierSeries::from_parts(cosine, vec![], Integer::one())))
+}
+
+/// The equation as typed and its slopes in `x`, `x'` and `x''`, sampled along a motion.
+struct Balance {
+    /// The residual, then its three slopes.
+    functions: Vec<CompiledFunction>,
+    arguments: Vec<f64>,
+    harmonics: Vec<usize>,
+    points: usize,
+}
+
+impl Balance {
+    fn new(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, harmonics: &[usize]) -> Option<Self> {
+        const FEWEST: usize = 128;
+        let own = [
+            oscillator.coordinate,
+            oscillator.velocity(),
+            oscillator.velocity().derivative(),
+        ];
+        let names: Vec<Symbol> = own.into_iter().chain(numbers.keys().copied()).collect();
+        let slopes = own.iter().map(|&name| oscillator.residual.differentiate(name).ok());
+        let expressions: Vec<Expr> = std::iter::once(Some(oscillator.residual.clone()))
+            .chain(slopes)
+            .collect::<Option<_>>()?;
+        let functions = expressions
+            .iter()
+            .map(|expression| CompiledFunction::new(expression, &names).ok());
+        Some(Self {
+            functions: functions.collect::<Option<_>>()?,
+            arguments: [0.0; 3].into_iter().chain(numbers.values().copied()).collect(),
+            harmonics: harmonics.to_vec(),
+            points: FEWEST.max(16 * (harmonics.last()? + 1)),
+        })
+    }
+
+    /// Residual and slopes at a state.
+    fn at(&self, state: [f64; 3]) -> Vec<f64> {
+        let mut arguments = self.arguments.clone();
+        arguments[..3].copy_from_slice(&state);
+        self.functions
+            .iter()
+            .map(|function| function.call(&arguments))
+            .collect()
+    }
+
+    /// omega0^2 at rest.
+    fn linear(&self) -> Option<f64> {
+        let at_rest = self.at([0.0; 3]);
+        let squared = at_rest[1] / at_rest[3];
+        (squared > 0.0 && squared.is_finite()).then_some(squared)
+    }
+
+    /// The solution `[omega^2, a_k...]` near a start.
+    fn newton(&self, mut unknowns: DVector<f64>, amplitude: f64) -> Option<DVector<f64>> {
+        const ITERATIONS: usize = 40;
+        let count = self.harmonics.len();
+        for _ in 0..ITERATIONS {
+            let squared = unknowns[0];
+            let omega = squared.sqrt();
+            let mut residual = DVector::zeros(count + 1);
+            let mut jacobian = DMatrix::zeros(count + 1, count + 1);
+            for point in 0..self.points {
+                let theta = std::f64::consts::PI * (point as f64 + 0.5) / self.points as f64;
+                let waves: Vec<(f64, f64, f64)> = self
+                    .harmonics
+                    .iter()
+                    .map(|&k| (k as f64, (k as f64 * theta).cos(), (k as f64 * theta).sin()))
+                    .collect();
+                let (mut x, mut slope, mut bend) = (0.0, 0.0, 0.0);
+                for (&coefficient, (k, cosine, sine)) in unknowns.iter().skip(1).zip(&waves) {
+                    x += coefficient * cosine;
+                    slope -= coefficient * k * sine;
+                    bend -= coefficient * k * k * cosine;
+                }
+                let values = self.at([x, omega * slope, squared * bend]);
+                let by_frequency = values[2] * slope / (2.0 * omega) + values[3] * bend;
+                for (row, wave) in waves.iter().enumerate() {
+                    residual[row] += values[0] * wave.1;
+                    jacobian[(row, 0)] += by_frequency * wave.1;
+                    for (column, (k, cosine, sine)) in waves.iter().enumerate() {
+                        let change =
+                            values[1] * cosine - values[2] * omega * k * sine - values[3] * squared * k * k * cosine;
+                        jacobian[(row, column + 1)] += change * wave.1;
+                    }
+                }
+            }
+            residual[count] = unknowns.rows(1, count).sum() - amplitude;
+            for column in 0..count {
+                jacobian[(count, column + 1)] = 1.0;
+            }
+            let change = jacobian.lu().solve(&residual)?;
+            unknowns -= &change;
+            if !unknowns.iter().all(|value| value.is_finite()) || unknowns[0] <= 0.0 {
+                return None;
+            }
+            let scale = unknowns.rows(1, count).amax();
+            if change[0].abs() <= 1e-12 * unknowns[0] && change.rows(1, count).amax() <= 1e-12 * scale {
+                return Some(unknowns);
+            }
+        }
+        None
+    }
+}

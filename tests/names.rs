@@ -1,0 +1,165 @@
+//! Names of the user and names of the program: an equation means the same whatever its parameters are called.
+
+use std::collections::BTreeMap;
+
+use lindstedt::export::{latex, text};
+use lindstedt::method::numbers::evaluate;
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::Method;
+use lindstedt::{Oscillator, Solution, Symbol};
+
+/// Every name that some answer introduces, and some that look like them.
+const NAMES: [&str; 31] = [
+    "hbar", "hbar_", "W1", "W2", "y0", "y1", "y2", "w0", "w1", "w_0", "c1", "c2", "c3", "c_1", "a0", "a1", "a3", "b1",
+    "z", "p", "q", "x0", "x1", "omega0", "chi", "u_1", "u1", "s", "k", "V", "T",
+];
+
+const EQUATIONS: [&str; 4] = [
+    "x'' + x + NAME*x^3 = 0",
+    "x'' + sqrt(2)*x + NAME*x^3/2 = 0",
+    "x'' + sin(x) + NAME*x^3/3 = 0",
+    "x'' + NAME*x + x^3 + sqrt(3)*x^5/100 = 0",
+];
+
+fn answer(equation: &str, name: &str, method: Method) -> Option<Solution> {
+    let oscillator = Oscillator::parse(&equation.replace("NAME", name)).expect("an equation");
+    let options = Options {
+        method: Some(method),
+        small: Some("A".to_owned()),
+        ..Options::default()
+    };
+    solve(&oscillator, &options).ok()
+}
+
+fn omega(equation: &str, name: &str, solution: &Solution) -> Option<f64> {
+    let oscillator = Oscillator::parse(&equation.replace("NAME", name)).expect("an equation");
+    let at = BTreeMap::from([(Symbol::new("A"), 0.5), (Symbol::new(name), 0.75)]);
+    Some(evaluate(&oscillator, solution, &at).ok()?.frequency_squared.sqrt())
+}
+
+#[test]
+fn no_name_of_a_parameter_changes_a_number() {
+    for equation in EQUATIONS {
+        for method in Method::ALL {
+            let plain = answer(equation, "kappa", method).map(|solution| omega(equation, "kappa", &solution));
+            for name in NAMES {
+                let solution = answer(equation, name, method);
+                let value = solution.map(|solution| omega(equation, name, &solution));
+                // A name moves terms, and with them the last digits of a sum.
+                let same = match (plain, value) {
+                    (Some(Some(plain)), Some(Some(value))) => (value / plain - 1.0).abs() < 1e-12,
+                    (plain, value) => plain == value,
+                };
+                assert!(
+                    same,
+                    "{equation} with {name} by {}: {plain:?}, {value:?}",
+                    method.name()
+                );
+            }
+        }
+    }
+}
+
+/// The names in a text, with how often each occurs.
+fn words(text: &str) -> BTreeMap<&str, usize> {
+    let mut words = BTreeMap::new();
+    for word in text.split(|letter: char| !(letter.is_ascii_alphanumeric() || letter == '_')) {
+        *words.entry(word).or_default() += 1;
+    }
+    words
+}
+
+#[test]
+fn a_name_of_the_program_is_never_one_of_the_user() {
+    for equation in EQUATIONS {
+        for method in Method::ALL {
+            let Some(plain) = answer(equation, "kappa", method) else {
+                continue;
+            };
+            let report = |solution: &Solution| text::solution(solution, None, 0.01);
+            let expected = words(&report(&plain))["kappa"];
+            for name in NAMES {
+                let solution = answer(equation, name, method).expect("as with kappa");
+                assert!(
+                    solution.definitions.iter().all(|entry| entry.symbol.name() != name),
+                    "{name}"
+                );
+                let report = report(&solution);
+                let found = words(&report)[name];
+                assert_eq!(found, expected, "{name} by {}:\n{report}", method.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn latex_tells_all_names_of_an_answer_apart() {
+    for (equation, pairs) in [
+        ("x'' + k1*x + k_1*x^3 + k_*x^5 = 0", ["k1", "k_1", "k_"]),
+        (
+            "x'' + omega0^2*x + omega_0*x^3 + omega0_*x^5 = 0",
+            ["omega0", "omega_0", "omega0_"],
+        ),
+        ("x'' + epsilon*x + eps*x^3 + eps_*x^5 = 0", ["epsilon", "eps", "eps_"]),
+    ] {
+        let solution = solve(
+            &Oscillator::parse(equation).unwrap(),
+            &Options {
+                small: Some("A".to_owned()),
+                ..Options::default()
+            },
+        )
+        .unwrap();
+        let document = latex::solution(&solution, None);
+        let spellings = pairs.map(|name| latex::symbol(Symbol::new(name)));
+        assert!(
+            spellings.iter().all(|spelling| document.contains(spelling.as_str())),
+            "{document}"
+        );
+        assert!(spellings[0] != spellings[1] && spellings[1] != spellings[2] && spellings[0] != spellings[2]);
+    }
+}
+
+/// omega^2 = omega0^2 + 3/4 x3 A^2 + ... and the judge's true frequency bound the value from two sides.
+#[test]
+fn linear_coefficients_that_are_no_fractions() {
+    for (linear, value) in [
+        ("sqrt(2)", 2_f64.sqrt()),
+        ("exp(1)", 1_f64.exp()),
+        ("sin(1)", 1_f64.sin()),
+        ("sqrt(NAME)", 0.75_f64.sqrt()),
+        ("sqrt(2)*NAME", 0.75 * 2_f64.sqrt()),
+        ("(sqrt(2) + NAME)", 0.75 + 2_f64.sqrt()),
+        ("pi*sqrt(3)/NAME", 3_f64.sqrt() * std::f64::consts::PI / 0.75),
+    ] {
+        let equation = format!("x'' + {linear}*x + x^3 = 0");
+        for method in [Method::LindstedtPoincare, Method::Pade] {
+            let solution = answer(&equation, "kappa", method).expect(linear);
+            let found = omega(&equation, "kappa", &solution).expect("real");
+            let rough = (value + 0.75 * 0.25).sqrt();
+            assert!((found / rough - 1.0).abs() < 2e-3, "{linear}: {found} {rough}");
+            let line = solution.formula();
+            for symbol in solution.frequency_squared.iter().flat_map(|law| law.symbols()) {
+                let known = symbol.name() == "A" || symbol.name() == "kappa" || symbol.name() == "pi";
+                assert!(known || line.contains(&format!("{symbol} = ")), "{line}");
+            }
+        }
+    }
+}
+
+/// A linear force whose coefficient is negative under another name is still none.
+#[test]
+fn negative_constants_are_no_stiffness() {
+    for equation in [
+        "x'' + (1 - sqrt(2))*x + eps*x^3 = 0",
+        "x'' + cos(2)*x + eps*x^3 = 0",
+        "x'' + cos(2)*k*x + eps*x^3 = 0",
+        "x'' + (sin(1)^2 + cos(1)^2 - 1)*x + eps*x^3 = 0",
+    ] {
+        let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
+        assert!(
+            refusal.to_string().contains("linear restoring force"),
+            "{equation}: {refusal}"
+        );
+    }
+}

@@ -32,6 +32,9 @@ const LONGEST: f64 = 1e4;
 const RATIO: f64 = 1.15;
 const RINGS: i32 = 30;
 
+/// Rings on end without a return after which a side is given up.
+const LOST_RINGS: usize = 4;
+
 /// `x'' = acceleration(x, x')`, and what to measure it with.
 pub struct Equation<'a> {
     /// The acceleration.
@@ -48,7 +51,7 @@ pub struct Equation<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoLimitCycle {
     /// There seems to be none.
-    #[error("no limit cycle with a turning point between x = {from} and x = {to}, forward or backward in time")]
+    #[error("no limit cycle with a turning point between x = {from:.3e} and x = {to:.3e}, forward or backward in time")]
     NoneBetween {
         /// Lower end of the search.
         from: f64,
@@ -114,6 +117,9 @@ pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Resul
                 Err(NoReturn::TooManySteps) => too_stiff = true,
             }
         }
+        if searched.is_empty() {
+            break;
+        }
         if let Some(cycle) = by_rings(equation, &searched) {
             return Ok(cycle);
         }
@@ -150,12 +156,18 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
     };
     // The growth at the inner and at the outer end of what was looked at, for each direction of time.
     let mut ends: Vec<[f64; 2]> = directions.iter().map(|&attracts| [growth(attracts, 1.0); 2]).collect();
+    let mut lost = vec![[0; 2]; directions.len()];
     for ring in 1..=RINGS {
-        for (&attracts, ends) in directions.iter().zip(&mut ends) {
+        for ((&attracts, ends), lost) in directions.iter().zip(&mut ends).zip(&mut lost) {
             for (side, sign) in [(0, -1), (1, 1)] {
+                // Where motions do not come back from several rings on end, they do not from beyond.
+                if lost[side] == LOST_RINGS {
+                    continue;
+                }
                 let [known, place] = [ring - 1, ring].map(|ring| RATIO.powi(sign * ring));
                 let (before, after) = (ends[side], growth(attracts, place));
                 ends[side] = after;
+                lost[side] = if after.is_nan() { lost[side] + 1 } else { 0 };
                 let (inner, outer) = if side == 0 { (after, before) } else { (before, after) };
                 if !(inner > 0.0 && outer <= 0.0) {
                     continue;

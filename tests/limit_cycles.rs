@@ -32,6 +32,8 @@ fn judged((oscillator, solution): &(Oscillator, Solution), at: &[(&str, &str)]) 
 #[test]
 fn cycles_are_judged_at_any_strength() {
     let van_der_pol = derive("x'' - mu*(1 - x^2)*x' + x = 0", &Options::default());
+    // Without mu every motion is periodic, and none attracts.
+    assert!(judged(&van_der_pol, &[("mu", "0")]).ranges.is_empty());
     // Periods by Taylor series of order 30: the digits that step tolerances of 1e-12 and 1e-16 have in common.
     for (mu, period) in [
         ("10", 19.078_369_566_94),
@@ -295,6 +297,12 @@ fn a_number_in_place_of_the_small_parameter() {
         let slope = verification.slope.expect(equation);
         assert!((slope - 4.0).abs() < 0.2, "{equation}: {slope}");
     }
+    // Without a linear damping term the force could be expanded in the amplitude, but that is not free: z/4 = z^2/16.
+    let problem = derive("x'' - 0.4*(x^2 - x^4/2)*x' + x = 0", &Options::default());
+    let cycle = problem.1.limit_cycle.as_ref().expect("a limit cycle");
+    assert_eq!(cycle.cycles[0].amplitude.to_string(), "2");
+    let slope = judged(&problem, &[]).slope.expect("a slope");
+    assert!((slope - 4.0).abs() < 0.2, "{slope}");
     // A parameter called delta is not touched.
     let (_, solution) = derive("x'' - 0.1*(1 - delta*x^2)*x' + x = 0", &Options::default());
     assert_eq!(solution.small_parameter.name(), "delta_");

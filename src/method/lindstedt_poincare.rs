@@ -195,7 +195,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             format!("truncated after order {order} in {names} together; an expansion for small {names}")
         }
         (Some(definition), _) => format!(
-            "truncated after {small}^{order}; {small} marks all terms but the linear one, {small} = {} in this equation; an expansion for small {small}",
+            "truncated after {small}^{order}; {small} marks all terms but the linear one, which are taken to be small, and is {} in this equation",
             definition.meaning
         ),
     }];
@@ -308,9 +308,13 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
     })
 }
 
-/// Whether the amplitude changes at first order.
+/// Whether the amplitude changes, at whatever order of an expansion in it.
 fn has_drift(force: &PerturbedForce) -> bool {
-    drift(force).is_some()
+    let mut together = force.clone();
+    for term in &mut together.terms {
+        term.order = 1;
+    }
+    drift(&together).is_some()
 }
 
 /// Whether terms feed energy at some amplitudes that others drain, or may do so.

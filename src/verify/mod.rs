@@ -240,7 +240,8 @@ pub fn judge(
         residual: residual.filter(|value| value.is_finite()),
         slope: slope(oscillator, solution, &numbers),
         ranges: truth
-            .about_the_cycle()
+            .about_the_cycle(solution.coordinate())
+            .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
             .chain(validity::ranges(oscillator, solution, &numbers, tolerance))
             .collect(),
@@ -430,14 +431,14 @@ impl TrueMotion {
     }
 
     /// Where a true limit cycle lies and what it does to its neighbours.
-    fn about_the_cycle(&self) -> Option<validity::Range> {
+    fn about_the_cycle(&self, coordinate: &str) -> Option<validity::Range> {
         let Orbit::LimitCycle(cycle) = &self.orbit else {
             return None;
         };
         let does = if cycle.attracts() { "attracts" } else { "repels" };
         Some(validity::Range {
             text: format!(
-                "the true limit cycle turns at x = {} and {does}",
+                "the true limit cycle turns at {coordinate} = {} and {does}",
                 decimal(cycle.at(0.0).0)
             ),
             outside: false,
@@ -525,12 +526,9 @@ impl Physics {
             frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
         };
         // Of cycles close to each other it is the one that attracts as the formula says.
-        let own = solution
-            .limit_cycle
-            .as_ref()
-            .and_then(|cycle| cycle.cycles.get(cycle.number.wrapping_sub(1)));
-        let condition = own.and_then(|cycle| cycle.attracts_where.as_ref()?.evaluate(numbers).ok());
-        let attracts = condition.filter(|value| *value != 0.0).map(|value| value > 0.0);
+        let attracts = attraction(solution, numbers)
+            .filter(|value| *value != 0.0)
+            .map(|value| value > 0.0);
         Ok(nearest_limit_cycle(&equation, attracts)?)
     }
 
@@ -553,6 +551,16 @@ impl Physics {
         }
         Err(PeriodError::NoReturn(self.longest).into())
     }
+}
+
+/// What is positive where the limit cycle of a formula attracts, negative where it repels, and zero where the amplitude is free.
+fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    let cycle = solution.limit_cycle.as_ref()?;
+    let own = cycle.cycles.get(cycle.number.wrapping_sub(1))?;
+    let mut numbers = numbers.clone();
+    // A small parameter that only marks terms is positive.
+    numbers.entry(solution.small_parameter).or_insert(1.0);
+    own.attracts_where.as_ref()?.evaluate(&numbers).ok()
 }
 
 /// The force as a function of position and velocity, with exact numbers in place of the parameters.

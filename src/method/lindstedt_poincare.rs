@@ -35,6 +35,7 @@ use crate::derivation::Line;
 use crate::exact::{Polynomial, Ring};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
+use crate::series::taylor::TaylorError;
 use crate::solution::{AmplitudeConvention, Definition, LimitCycle, Method, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -292,6 +293,12 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
         {
             return Err(Refusal::Damping { method: TITLE, term });
         }
+        // |x'| x', a dry friction and their like damp whether or not they have a series.
+        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(TaylorError::NotAnalytic { .. }))
+            if !parts.damping.is_zero() && (small == SmallParameter::Amplitude || parts.damping.terms().len() == 1) =>
+        {
+            return Err(damping_or_excitation(parts));
+        }
         expanded => expanded?,
     };
     let marker = match small {
@@ -357,4 +364,27 @@ fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
         }
     };
     terms.iter().map(scale).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_odd_in_the_velocity_damps_with_or_without_a_series() {
+        for (equation, term) in [
+            ("x'' + x + abs(x')*x' = 0", "x'*abs(x')"),
+            ("x'' + x + x^3 + mu*sgn(x') = 0", "mu*sgn(x')"),
+            ("x'' + x + eps*abs(x')*x' = 0", "eps*x'*abs(x')"),
+            ("x'' + x + x'*abs(x) = 0", "x'*abs(x)"),
+            ("x'' + x + c*x'^(1/3) = 0", "c*x'^(1/3)"),
+        ] {
+            let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
+            let expected = Refusal::Damping {
+                method: TITLE,
+                term: term.to_owned(),
+            };
+            assert_eq!(refusal, expected, "{equation}");
+        }
+    }
 }

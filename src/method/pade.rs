@@ -5,7 +5,7 @@
 //! ```text
 //! omega^2 = c_0 + c_1 s + c_2 s^2 + ...,   s = A^2, or the small parameter
 //! [L/M] = (p_0 + ... + p_L s^L)/(q_0 + ... + q_M s^M) = omega^2 + O(s^(L+M+1))
-//! sum_j q_j c_(L+k-j) = 0, k = 1..M    (q_j by cofactors),       p_i = sum_j q_j c_(i-j)
+//! sum_j q_j c_(L+k-j) = 0, k = 1..M    (q_0 = 1)      ,       p_i = sum_j q_j c_(i-j)
 //! ```
 //!
 //! `L = M + 1` suits a hardening spring, whose omega^2 grows like s; `L = M` one that saturates. The coefficients are those
@@ -38,7 +38,10 @@ const METHOD: Method = Method::Pade;
 
 /// The largest degrees.
 const LARGEST_NUMERATOR: u32 = 40;
-const LARGEST_DENOMINATOR: u32 = 8;
+const LARGEST_DENOMINATOR: u32 = 20;
+
+/// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums of factorially many products.
+const LARGEST_WITH_SYMBOLS: usize = 8;
 
 /// The approximant of the degrees in the options, `[2/1]` by default.
 ///
@@ -54,7 +57,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         })
     };
     if numerator_degree > LARGEST_NUMERATOR || denominator_degree > LARGEST_DENOMINATOR {
-        return refused("degrees go up to [40/8]");
+        return refused("degrees go up to [40/20]");
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Refusal::Convention { method: METHOD.title() });
@@ -82,14 +85,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Err(_) => Polynomial::zero(),
     };
     let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
-    let rows: Vec<Vec<Polynomial>> = (1..=m as i64)
-        .map(|k| (0..=m as i64).map(|j| coefficient(l + k - j)).collect())
-        .collect();
-    let mut below: Vec<Polynomial> = (0..=m).map(|j| cofactor(&rows, j)).collect();
-    let Some(first) = below.first().filter(|first| !first.is_zero()).cloned() else {
-        return refused("the equations for its denominator are singular");
+    let below = match denominator(&(0..=l + m as i64).map(coefficient).collect::<Vec<_>>(), l, m) {
+        Ok(below) => below,
+        Err(reason) => return refused(reason),
     };
-    normalise(&mut below, &first);
     let above: Vec<Polynomial> = (0..=l)
         .map(|i| {
             let mut sum = Polynomial::zero();
@@ -109,6 +108,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let values = (above.clone(), below.clone());
     let (above, below) = (with_powers(&above), with_powers(&below));
     let value = Expr::divide(&Expr::from(&above), &Expr::from(&below))?;
+    if !has_values(&value) {
+        return refused("its coefficients are too long for a value in double precision");
+    }
     let variable = if step == 2 {
         format!("{small}^2")
     } else {
@@ -194,6 +196,15 @@ fn linear_system(
     lines
 }
 
+/// Whether the quotient can be evaluated in double precision, where its whole numbers do not overflow.
+fn has_values(value: &Expr) -> bool {
+    let at = |place: f64| value.symbols().into_iter().map(|symbol| (symbol, place)).collect();
+    // One of the places may be a pole.
+    [1.0, 0.5]
+        .iter()
+        .any(|place| value.evaluate(&at(*place)).is_ok_and(f64::is_finite))
+}
+
 /// The terms of one power of the small parameter, without it.
 fn part(law: &Polynomial, small: Symbol, power: i32) -> Polynomial {
     let mut part = Polynomial::zero();
@@ -201,6 +212,85 @@ fn part(law: &Polynomial, small: Symbol, power: i32) -> Polynomial {
         part.add_term(monomial.without(small), number.clone());
     }
     part
+}
+
+/// `q_0, ..., q_m`, the first of them one where it is a single term; or why there are none.
+fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial>, &'static str> {
+    const SINGULAR: &str = "the equations for its denominator are singular";
+    if m > 0 && series.iter().skip(1).all(Polynomial::is_zero) {
+        return Err("omega^2 does not depend on the amplitude");
+    }
+    if let Some((unit, numbers)) = scaled(series) {
+        let zero = Rational::zero();
+        let number = |power: i64| usize::try_from(power).map_or(&zero, |power| &numbers[power]);
+        let row = |k: i64| (1..=m as i64).chain([0]).map(|j| number(l + k - j).clone()).collect();
+        let solved = solve_linear((1..=m as i64).map(row).collect()).ok_or(SINGULAR)?;
+        let one = std::iter::once(Rational::one());
+        let values = one.chain(solved.into_iter().map(|value| -value));
+        let term = |(j, value)| Polynomial::term(unit.power(j), value);
+        return Ok((0..).zip(values).map(term).collect());
+    }
+    if m > LARGEST_WITH_SYMBOLS {
+        return Err("with these symbols the denominator's degree is at most 8; give numbers for them");
+    }
+    let coefficient = |power: i64| {
+        let power = usize::try_from(power).ok();
+        power.map_or_else(Polynomial::zero, |power| series[power].clone())
+    };
+    let rows: Vec<Vec<Polynomial>> = (1..=m as i64)
+        .map(|k| (0..=m as i64).map(|j| coefficient(l + k - j)).collect())
+        .collect();
+    let mut below: Vec<Polynomial> = (0..=m).map(|j| cofactor(&rows, j)).collect();
+    let first = below
+        .first()
+        .filter(|first| !first.is_zero())
+        .cloned()
+        .ok_or(SINGULAR)?;
+    normalise(&mut below, &first);
+    Ok(below)
+}
+
+/// The numbers `n_k` of a series `c_k = c_0 unit^k n_k` whose symbols enter in step with the order, and the unit.
+fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)> {
+    let (base, _) = series.first()?.single_term()?;
+    let ratio = |c: &Polynomial| Some(c.single_term()?.0.product(&base.power(-1)));
+    let (k, first) = (1..).zip(&series[1..]).find(|(_, c)| !c.is_zero())?;
+    let mut unit = Monomial::one();
+    for &(symbol, exponent) in ratio(first)?.factors() {
+        unit = unit.product(&Monomial::power_of(
+            symbol,
+            (exponent % k == 0).then_some(exponent / k)?,
+        ));
+    }
+    let number = |(k, c): (i32, &Polynomial)| match c.is_zero() {
+        true => Some(Rational::zero()),
+        false => (ratio(c)? == unit.power(k)).then(|| c.single_term().map(|term| term.1.clone()))?,
+    };
+    let numbers: Option<Vec<Rational>> = (0..).zip(series).map(number).collect();
+    Some((unit, numbers?))
+}
+
+/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` where the rows depend on each other.
+fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
+    for column in 0..rows.len() {
+        let pivot = (column..rows.len()).find(|&row| !rows[row][column].is_zero())?;
+        rows.swap(column, pivot);
+        let inverse = rows[column][column].recip();
+        for value in &mut rows[column][column..] {
+            *value *= &inverse;
+        }
+        let pivot = rows[column].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(row, _)| *row != column) {
+            let factor = row[column].clone();
+            if factor.is_zero() {
+                continue;
+            }
+            for (value, above) in row.iter_mut().zip(&pivot).skip(column) {
+                *value -= &factor * above;
+            }
+        }
+    }
+    rows.iter().map(|row| row.last().cloned()).collect()
 }
 
 /// `(-1)^j` times the determinant of the rows without column `j`.
@@ -313,4 +403,72 @@ fn real_roots(coefficients: &[f64]) -> Vec<f64> {
         .iter()
         .filter(|value| value.im.abs() < 1e-9 * (1.0 + value.re.abs()));
     real.map(|value| value.re).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn approximant(equation: &str, degrees: (u32, u32)) -> Result<Expr, Refusal> {
+        let options = Options {
+            method: Some(METHOD),
+            pade: Some(degrees),
+            ..Options::default()
+        };
+        Ok(solve(&Oscillator::parse(equation).unwrap(), &options)?
+            .closed_form
+            .unwrap()
+            .value)
+    }
+
+    /// omega of the pendulum is pi/(2 K(sin(A/2)^2)), by the arithmetic-geometric mean 1/agm(1, cos(A/2)) of half its period.
+    #[test]
+    fn high_degrees_meet_the_pendulum_near_its_separatrix() {
+        let law = approximant("x'' + sin(x) = 0", (8, 8)).unwrap();
+        let amplitude: f64 = 2.5;
+        let (mut a, mut g) = (1.0, (amplitude / 2.0).cos());
+        for _ in 0..9 {
+            (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
+        }
+        let found = law.evaluate(&[(Symbol::new("A"), amplitude)].into()).unwrap().sqrt();
+        assert!((found / a - 1.0).abs() < 1e-6, "{found} {a}");
+    }
+
+    /// omega of Duffing's equation at eps A^2 = 4 is sqrt(5) agm(1, sqrt(1 - 2/5)).
+    #[test]
+    fn twelve_over_twelve() {
+        let (mut a, mut g) = (1.0, f64::sqrt(0.6));
+        for _ in 0..9 {
+            (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
+        }
+        let law = approximant("x'' + x + eps*x^3 = 0", (12, 12)).unwrap();
+        let found = law.evaluate(&[("A".into(), 2.0), ("eps".into(), 1.0)].into()).unwrap();
+        assert!((found.sqrt() / (f64::sqrt(5.0) * a) - 1.0).abs() < 1e-9, "{found}");
+    }
+
+    #[test]
+    fn elimination_and_cofactors_agree() {
+        let series: Vec<Polynomial> = [3, 1, -4, 1, 5, -9, 2, 6, 5]
+            .map(|number| Polynomial::constant(Rational::from_integer(number.into())))
+            .into();
+        let rows: Vec<Vec<Polynomial>> = (1..=4)
+            .map(|k| (0..=4).map(|j| series[4 + k - j].clone()).collect())
+            .collect();
+        let mut expected: Vec<Polynomial> = (0..=4).map(|j| cofactor(&rows, j)).collect();
+        let first = expected[0].clone();
+        normalise(&mut expected, &first);
+        assert_eq!(denominator(&series, 4, 4), Ok(expected));
+    }
+
+    #[test]
+    fn a_missing_approximant_says_why() {
+        for (equation, degrees, reason) in [
+            ("x'' + k*x = 0", (2, 1), "does not depend on the amplitude"),
+            ("x'' + x + k*x^3 + b*x^5 = 0", (9, 9), "give numbers"),
+            ("x'' + sin(x) = 0", (20, 21), "[40/20]"),
+        ] {
+            let refusal = approximant(equation, degrees).unwrap_err();
+            assert!(refusal.to_string().contains(reason), "{refusal}");
+        }
+    }
 }

@@ -440,7 +440,7 @@ impl Solution {
             Method::HomotopyPerturbation | Method::ParameterExpansion => {
                 format!("to order {order} in {}", fresh("p", &self.names()))
             }
-            Method::HomotopyAnalysis => format!("to order {order} in {}", fresh("q", &self.names())),
+            Method::HomotopyAnalysis => format!("of order {order}"),
             Method::IterationPerturbation if order == 1 => "after one pass".to_owned(),
             Method::IterationPerturbation => format!("after {order} passes"),
             Method::HarmonicBalance if order == 1 => "with one harmonic".to_owned(),

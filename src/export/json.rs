@@ -144,6 +144,7 @@ pub fn verification(verification: &Verification) -> Value {
     json!({
         "at": values(&verification.at),
         "frequency": verification.frequency,
+        "reason": verification.reason,
         "true_frequency": verification.true_frequency,
         "relative_error": verification.relative_error,
         "max_deviation": verification.max_deviation,
@@ -163,7 +164,8 @@ pub fn comparison(comparison: &Comparison) -> Value {
             "order": row.solution.order,
             "degrees": row.solution.degrees.map(|(numerator, denominator)| json!([numerator, denominator])),
             "applies": true,
-            "reason": null,
+            "reason": row.reason,
+            "chosen": row.chosen.iter().map(|(name, value)| (name.to_string(), json!(value))).collect::<Map<_, _>>(),
             "formula": row.solution.formula(),
             "frequency": row.frequency,
             "relative_error": row.relative_error,

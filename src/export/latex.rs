@@ -429,7 +429,7 @@ pub fn comparison(comparison: &Comparison) -> String {
         };
         let frequency = row
             .frequency
-            .map_or("not real".to_owned(), |value| format!("${}$", scientific(value)));
+            .map_or("--".to_owned(), |value| format!("${}$", scientific(value)));
         let _ = writeln!(
             text,
             "{} & {frequency} & {} & {} & {} \\\\",

@@ -191,7 +191,7 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
         "omega",
         verification
             .frequency
-            .map_or("not real: omega^2 <= 0".to_owned(), decimal),
+            .map_or_else(|| verification.reason.clone().unwrap_or_default(), decimal),
     );
     line("true omega", decimal(verification.true_frequency));
     if let Some(error) = verification.relative_error {
@@ -239,6 +239,21 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     text
 }
 
+/// What stands in the place of a frequency.
+fn without_number(row: &Row) -> &'static str {
+    match &row.reason {
+        Some(reason) if reason.starts_with("not real") => "not real",
+        _ => "none",
+    }
+}
+
+/// The formula of a row, and the hbar with which it was evaluated.
+fn with_hbar(row: &Row) -> String {
+    let hbar = row.chosen.iter().find(|entry| entry.0.name() == HBAR);
+    let value = hbar.map(|(name, value)| format!(", {name} = {}", significant(*value, 6)));
+    row.solution.formula() + &value.unwrap_or_default()
+}
+
 /// Every method in one table, and below it those that do not apply.
 pub fn comparison(comparison: &Comparison) -> String {
     let at: Vec<String> = comparison
@@ -259,12 +274,12 @@ pub fn comparison(comparison: &Comparison) -> String {
         let percent_of = |value: Option<f64>| value.map_or("-".to_owned(), size_in_percent);
         [
             row.solution.title(),
-            row.frequency.map_or("not real".to_owned(), decimal),
+            row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
             row.relative_error.map_or("-".to_owned(), percent),
             percent_of(row.max_deviation),
             if row.verdict == Verdict::Pass { "pass" } else { "fail" }.to_owned(),
             reach(row.reach, row.solution.amplitude.symbol()),
-            row.solution.formula(),
+            with_hbar(row),
         ]
     };
     let rows: Vec<[String; 7]> = std::iter::once(header).chain(comparison.rows.iter().map(row)).collect();
@@ -276,6 +291,16 @@ pub fn comparison(comparison: &Comparison) -> String {
             let _ = write!(line, "  {:>width$}", row[column], width = widths[column]);
         }
         let _ = writeln!(text, "{line}  {}", row[6]);
+    }
+    let mut without: Vec<&Row> = comparison.rows.iter().filter(|row| row.frequency.is_none()).collect();
+    without
+        .dedup_by(|second, first| second.solution.title() == first.solution.title() && second.reason == first.reason);
+    if !without.is_empty() {
+        text.push_str("\nNo frequency\n");
+        for row in without {
+            let reason = row.reason.as_deref().unwrap_or_default();
+            let _ = writeln!(text, "  {:<width$}  {reason}", row.solution.title(), width = widths[0]);
+        }
     }
     if !comparison.refused.is_empty() {
         text.push_str("\nNot applicable\n");

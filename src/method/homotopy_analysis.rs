@@ -88,11 +88,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.frequency = Some(constant(&sum(&series.frequency)));
     solution.displacement = sum(&series.displacement);
-    solution.validity.push(format!(
-        "truncated after {}^{}",
-        fresh("q", &solution.names()),
-        order - 1
-    ));
+    let embedding = fresh("q", &solution.names());
+    solution.validity.push(match order {
+        1 => format!("order 1: w0 alone, the terms without {embedding}"),
+        _ => format!(
+            "order {order}: w0 and {}, truncated after {embedding}^{}",
+            corrections(order - 1),
+            order - 1
+        ),
+    });
     if polynomial.is_none() {
         let line = format!("the force entered as its Taylor polynomial of degree {degree}");
         solution.validity.push(line);
@@ -103,6 +107,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         ));
     }
     Ok(solution)
+}
+
+fn corrections(count: u32) -> String {
+    match count {
+        1 => "one correction".to_owned(),
+        _ => format!("{count} corrections"),
+    }
 }
 
 struct Series {

@@ -215,6 +215,9 @@ impl Refusal {
             Self::Velocity { .. } => Some("try --method lindstedt-poincare".to_owned()),
             Self::NotOdd { .. } => Some("try --method harmonic-balance, which balances the drift as well".to_owned()),
             Self::HighestOrder { highest, .. } => Some(format!("try --order {highest}")),
+            Self::PolynomialOnly { method, .. } if *method == Method::IterationPerturbation.title() => {
+                Some("try --order 1, which takes any force, or --method homotopy-perturbation".to_owned())
+            }
             Self::PolynomialOnly { .. } => {
                 Some("try --order 1, which takes any force, or --taylor DEGREE".to_owned())
             }

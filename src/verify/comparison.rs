@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::validity::{self, Reach, Truth};
-use super::{TrueMotion, Values, Verdict, VerificationError, checked_numbers, formula_frequency, formula_motion};
+use super::{TrueMotion, Values, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -14,8 +14,12 @@ use crate::symbol::Symbol;
 pub struct Row {
     /// What it derived.
     pub solution: Solution,
-    /// omega by the formula; `None` where it is not real.
+    /// omega by the formula; `None` where there is none.
     pub frequency: Option<f64>,
+    /// Why there is none.
+    pub reason: Option<String>,
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    pub chosen: Vec<(Symbol, f64)>,
     /// `frequency / true_frequency - 1`.
     pub relative_error: Option<f64>,
     /// Largest deviation of the motion over one true period, over the amplitude.
@@ -140,16 +144,20 @@ fn row(
     tolerance: f64,
 ) -> Row {
     let true_frequency = true_motion.frequency;
-    let frequency = formula_frequency(oscillator, solution, numbers);
+    let (found, reason) = numbers_or_reason(oscillator, solution, numbers);
+    let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
-    let max_deviation = formula_motion(oscillator, solution, numbers)
-        .map(|(frequency, motion)| true_motion.largest_deviation(frequency, &motion))
+    let max_deviation = frequency
+        .zip(found.as_ref().and_then(|found| found.motion.as_ref()))
+        .map(|(frequency, motion)| true_motion.largest_deviation(frequency, motion))
         .filter(|deviation| deviation.is_finite());
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
     Row {
         solution: solution.clone(),
         frequency,
+        reason,
+        chosen: found.map_or_else(Vec::new, |found| found.chosen),
         relative_error,
         max_deviation,
         reach: match free {

@@ -21,7 +21,7 @@ use crate::conservative::is_smooth;
 use crate::decimal::decimal;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
-use crate::method::numbers::{evaluate, frequency_squared_of};
+use crate::method::numbers::{Numbers, evaluate, frequency_squared_of};
 use crate::ode::Trajectory;
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -138,8 +138,10 @@ pub enum Verdict {
 pub struct Verification {
     /// The values at which it was judged.
     pub at: Values,
-    /// omega by the formula; `None` where its square is not positive.
+    /// omega by the formula; `None` where there is none.
     pub frequency: Option<f64>,
+    /// Why there is none.
+    pub reason: Option<String>,
     /// omega of the true motion.
     pub true_frequency: f64,
     /// `frequency / true_frequency - 1`.
@@ -220,9 +222,10 @@ pub fn judge(
 ) -> Result<Verification, VerificationError> {
     let numbers = checked_numbers(solution, at)?;
     let truth = TrueMotion::of(oscillator, solution, &numbers)?;
-    let frequency = formula_frequency(oscillator, solution, &numbers);
+    let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
+    let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error = frequency.map(|frequency| frequency / truth.frequency - 1.0);
-    let motion = formula_motion(oscillator, solution, &numbers);
+    let motion = frequency.zip(found.as_ref().and_then(|found| found.motion.clone()));
     let max_deviation = motion
         .as_ref()
         .map(|(frequency, motion)| truth.largest_deviation(*frequency, motion));
@@ -234,6 +237,7 @@ pub fn judge(
     Ok(Verification {
         at: at.clone(),
         frequency,
+        reason,
         true_frequency: truth.frequency,
         relative_error,
         max_deviation: max_deviation.filter(|value| value.is_finite()),
@@ -245,7 +249,7 @@ pub fn judge(
             .into_iter()
             .chain(validity::ranges(oscillator, solution, &numbers, tolerance))
             .collect(),
-        chosen: evaluate(oscillator, solution, &numbers).map_or_else(|_| vec![], |found| found.chosen),
+        chosen: found.map_or_else(Vec::new, |found| found.chosen),
         verdict: if pass { Verdict::Pass } else { Verdict::Fail },
     })
 }
@@ -320,6 +324,19 @@ pub fn motions(
 fn formula_frequency(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let squared = frequency_squared_of(oscillator, solution, numbers).ok()?;
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
+}
+
+/// The numbers of a formula whose frequency is real, or why there are none.
+fn numbers_or_reason(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> (Option<Numbers>, Option<String>) {
+    match evaluate(oscillator, solution, numbers) {
+        Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => (Some(found), None),
+        Ok(_) => (None, Some("not real: omega^2 <= 0".to_owned())),
+        Err(reason) => (None, Some(reason.to_string())),
+    }
 }
 
 /// omega, the motion by the formula in theta, and what was chosen for it.

@@ -323,9 +323,6 @@ fn quotient_coefficient(below: &Expr, exponent: usize, coordinate: Symbol, ampli
     if k > 1 {
         return None;
     }
-    if k.is_odd() != exponent.is_odd() {
-        return Some(Expr::zero());
-    }
     let square = Expr::from(coordinate).integer_power(2).ok()?;
     let alpha = below.substitute(coordinate, &Expr::zero()).ok()?;
     let beta = Expr::divide(&(below - &alpha).expand().ok()?, &square)
@@ -334,6 +331,10 @@ fn quotient_coefficient(below: &Expr, exponent: usize, coordinate: Symbol, ampli
         .ok()?;
     if beta.is_zero() || beta.contains(coordinate) {
         return None;
+    }
+    // Only an even denominator leaves the parity to the power above it.
+    if k.is_odd() != exponent.is_odd() {
+        return Some(Expr::zero());
     }
     // (1/pi) int g^n/(alpha + beta g^2) = ((1/pi) int g^(n-2) - alpha (1/pi) int g^(n-2)/(...))/beta, g = A cos theta.
     let square = amplitude.integer_power(2).ok()?;
@@ -459,6 +460,8 @@ mod tests {
             "tan(x)",
             "(x - 1/2)^(3/2)*H(x - 1/2)",
             "sin(x)*sinh(x)",
+            "1/(2 - x)",
+            "k/(1 - c - x)",
             "sqrt(x)",
             "sin(x^2)",
             "1/x",

@@ -211,7 +211,9 @@ fn rational(random: &mut Random) -> Vec<Term> {
 }
 
 fn with_pole(random: &mut Random) -> Vec<Term> {
-    let mut terms = vec![term(positive(random), Shape::Gap(positive(random)))];
+    let d = positive(random);
+    let pole = random.choose(&[Shape::Gap(d), Shape::Pole(d)]);
+    let mut terms = vec![term(positive(random), pole)];
     if random.percent(60.0) {
         terms.push(stiffness(random));
     }

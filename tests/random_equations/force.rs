@@ -71,6 +71,8 @@ pub enum Shape {
     Stiffening(Number),
     /// `x/(d - x)^2`
     Gap(Number),
+    /// `1/(d - x) - 1/d`
+    Pole(Number),
     /// `max(x - d, 0)`
     Barrier(Number),
     /// `(x - d) H(x - d)`
@@ -171,7 +173,7 @@ impl Force {
     /// The interval about `origin` on which the force is finite.
     pub fn domain(&self, origin: f64) -> (f64, f64) {
         let poles = self.terms.iter().filter_map(|term| match term.shape {
-            Shape::Gap(d) => Some(d.value()),
+            Shape::Gap(d) | Shape::Pole(d) => Some(d.value()),
             _ => None,
         });
         poles.fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), pole| {
@@ -218,7 +220,7 @@ impl Term {
             Shape::Power(n) => length * (1 - n as i32),
             Shape::SignedPower(p, q) => length - length * p as i32 / q as i32,
             Shape::Stiffening(_) => -2 * length,
-            Shape::Gap(_) => 2 * length,
+            Shape::Gap(_) | Shape::Pole(_) => 2 * length,
             Shape::Saturating(_) | Shape::Barrier(_) | Shape::Step(_) | Shape::Walls(_) | Shape::Bump(..) => 0,
             _ => length,
         }
@@ -286,6 +288,7 @@ impl Shape {
             Self::Saturating(b) => format!("x/(1 + {}*x^2)", squared(b)),
             Self::Stiffening(b) => format!("x^3/(1 + {}*x^2)", squared(b)),
             Self::Gap(d) => format!("x/({} - x)^2", long(d)),
+            Self::Pole(d) => format!("(1/({d} - x) - 1/{d})", d = long(d)),
             Self::Barrier(d) => format!("max(x - {}, 0)", long(d)),
             Self::Step(d) => format!("(x - {d})*H(x - {d})", d = long(d)),
             Self::Walls(d) => format!("(max(x - {d}, 0) + min(x + {d}, 0))", d = long(d)),
@@ -315,6 +318,7 @@ impl Shape {
             Self::Saturating(b) => x / (1.0 + b.value() * x * x),
             Self::Stiffening(b) => x.powi(3) / (1.0 + b.value() * x * x),
             Self::Gap(d) => x / (d.value() - x).powi(2),
+            Self::Pole(d) => x / (d.value() * (d.value() - x)),
             Self::Barrier(d) | Self::Step(d) => (x - d.value()).max(0.0),
             Self::Walls(d) => (x - d.value()).max(0.0) + (x + d.value()).min(0.0),
             Self::Bump(d, s) => {
@@ -365,6 +369,7 @@ impl Shape {
                 x * x * (3.0 + square) / (1.0 + square).powi(2)
             }
             Self::Gap(d) => (d.value() + x) / (d.value() - x).powi(3),
+            Self::Pole(d) => (d.value() - x).powi(-2),
             Self::Barrier(d) | Self::Step(d) => f64::from(u8::from(x > d.value())),
             Self::Walls(d) => f64::from(u8::from(x.abs() > d.value())),
             Self::Bump(d, s) => {
@@ -440,6 +445,7 @@ impl Shape {
                 let square = product(&identity, &identity);
                 quotient(&product(&square, &identity), &sum(&one, &scaled(&square, b.value())))
             }
+            Self::Pole(d) => quotient(&scaled(&identity, d.value().recip()), &linear(-1.0, d.value())),
             Self::Gap(d) => {
                 let gap = linear(-1.0, d.value());
                 quotient(&identity, &product(&gap, &gap))
@@ -469,7 +475,7 @@ impl Shape {
             Self::Bump(d, s) => around(d.value(), s.value().sqrt().recip()),
             Self::Tanh(b) | Self::Arctangent(b) => around(0.0, b.value().recip()),
             Self::Saturating(b) | Self::Stiffening(b) => around(0.0, b.value().sqrt().recip()),
-            Self::Gap(d) => {
+            Self::Gap(d) | Self::Pole(d) => {
                 let side = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5];
                 side.iter()
                     .flat_map(|n| [d.value() * (1.0 - n), d.value() * (1.0 + n)])
@@ -487,6 +493,7 @@ impl Shape {
             | Self::Cosine(_)
             | Self::Exponential(_)
             | Self::Gap(_)
+            | Self::Pole(_)
             | Self::Barrier(_)
             | Self::Step(_) => false,
             _ => true,

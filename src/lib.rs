@@ -22,6 +22,7 @@
 //!
 //! | stage | module | what it holds |
 //! | --- | --- | --- |
+//! | below all | [`interrupt`] | a request to stop, which long work looks at |
 //! | names and numbers | [`symbol`], [`spelling`], [`decimal`], [`exact`] | symbols, fractions, polynomials, the coefficient ring |
 //! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
 //! | series | [`series`] | Taylor, Fourier, running convolutions |
@@ -37,6 +38,8 @@
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+
+pub mod interrupt;
 
 pub mod symbol;
 

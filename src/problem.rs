@@ -147,6 +147,8 @@ pub struct Run {
     pub duration: f64,
     /// Error allowed in one step.
     pub integrator_tolerance: f64,
+    /// Steps after which an integration gives up.
+    pub step_limit: u32,
 }
 
 impl Default for Pendulum {
@@ -184,6 +186,7 @@ impl Default for Run {
         Self {
             duration: 50.0,
             integrator_tolerance: 1e-10,
+            step_limit: 250_000,
         }
     }
 }

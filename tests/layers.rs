@@ -6,8 +6,10 @@
 
 use std::path::{Path, PathBuf};
 
-/// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only and uses nothing at all.
-const LAYERS: [&[&str]; 18] = [
+/// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only: it
+/// uses nothing but the request to stop.
+const LAYERS: [&[&str]; 19] = [
+    &["interrupt"],
     &["symbol", "spelling", "ode"],
     &["exact", "period", "return_map"],
     &["decimal"],

@@ -5,7 +5,7 @@ use lindstedt::catalog::{CATALOG, Entry, methods};
 use lindstedt::export::latex;
 use serde_json::{Value, json};
 
-use super::{Common, Failure, Format, Outcome, json_text};
+use super::{Common, Failure, Format, Outcome, json_text, whole};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -30,10 +30,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     };
     Ok(Outcome {
-        text,
+        result: whole(text),
         picture: None,
         note: None,
         verdict: None,
+        partial: false,
     })
 }
 

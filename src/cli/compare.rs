@@ -6,13 +6,14 @@ use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
-use super::derive::{exact_values, oscillator, problem, with_known_equilibrium};
-use super::{Common, Failure, Format, Outcome, json_text, tolerance};
+use super::derive::{exact_values, oscillator, with_known_equilibrium};
+use super::problem::problem;
+use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
 #[derive(Args)]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
-    problem: String,
+    pub problem: String,
     /// A value, exact (1.5, 3/2, pi/3): where the methods are compared; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -56,10 +57,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let failed = comparison.rows.iter().any(|row| row.verdict == Verdict::Fail);
     Ok(Outcome {
-        text,
+        result: whole(text),
         picture,
         note: None,
         verdict: Some(if failed { Verdict::Fail } else { Verdict::Pass }),
+        partial: false,
     })
 }
 

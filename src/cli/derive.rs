@@ -1,9 +1,6 @@
 //! `lindstedt derive PROBLEM`.
 
-use std::path::Path;
-
 use clap::{Args, ValueEnum};
-use lindstedt::catalog;
 use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
@@ -14,12 +11,13 @@ use lindstedt::spelling::nearest;
 use lindstedt::verify::{self, Values, VerificationError};
 use lindstedt::{Oscillator, Symbol};
 
-use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
+use super::problem::problem;
+use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
 #[derive(Args)]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
-    problem: String,
+    pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
     /// parameter-expansion, harmonic-balance, energy-balance, max-min, amplitude-frequency, hamiltonian,
     /// variational-iteration, frequency-formula, pade or exact
@@ -142,10 +140,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         _ => None,
     };
     Ok(Outcome {
-        text,
+        result: whole(text),
         picture,
         note: None,
         verdict: verification.map(|verification| verification.verdict),
+        partial: false,
     })
 }
 
@@ -215,52 +214,6 @@ pub(super) fn with_known_equilibrium(
     Ok(match numerical {
         Some(numerical) => (numerical, Some(rest)),
         None => (oscillator, Some(given)),
-    })
-}
-
-/// An equation, or what a file says. A name that ends in `.toml`, or a file that exists, is a file.
-pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
-    let parsed = |text: String| -> Result<Problem, Failure> {
-        text.parse()
-            .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))
-    };
-    let path = Path::new(text);
-    if text == "-" {
-        let text = read(path)?;
-        // Standard input may be a bare equation as well as TOML: only TOML assigns to a bare key.
-        let is_toml = text.lines().any(|line| {
-            let line = line.trim_start();
-            let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
-        });
-        return if is_toml {
-            parsed(text)
-        } else {
-            Ok(Problem {
-                equation: Some(text),
-                ..Problem::default()
-            })
-        };
-    }
-    if text.ends_with(".toml") || path.is_file() {
-        return parsed(read(path)?);
-    }
-    if let Some(entry) = catalog::find(text) {
-        return Ok(Problem {
-            equation: Some(entry.equation.to_owned()),
-            ..Problem::default()
-        });
-    }
-    // A single word that is no equation is a name with a slip in it.
-    let is_word = text.len() > 3 && text.chars().all(|letter| letter.is_ascii_alphabetic() || letter == '-');
-    if is_word && let Some(near) = nearest(text, catalog::CATALOG.iter().map(|entry| entry.name)) {
-        let message =
-            format!("`{text}` is neither an equation nor a name of the catalogue\n  help: did you mean `{near}`?");
-        return Err(Failure::Refused(message));
-    }
-    Ok(Problem {
-        equation: Some(text.to_owned()),
-        ..Problem::default()
     })
 }
 

@@ -8,12 +8,13 @@ use lindstedt::export::{json, latex, text};
 use lindstedt::impact::{Impact, Setup, solve};
 use lindstedt::problem::{Barrier, Order, Problem};
 
-use super::{Common, Failure, Format, Outcome, json_text, read, tolerance};
+use super::problem::from_file;
+use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
 #[derive(Args)]
 pub struct Arguments {
     /// A TOML file, or - for standard input; without it the paper's swing
-    file: Option<PathBuf>,
+    pub file: Option<PathBuf>,
     #[command(flatten)]
     pub common: Common,
 }
@@ -35,9 +36,7 @@ impl Default for Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.file {
         None => Problem::default(),
-        Some(path) => read(path)?
-            .parse()
-            .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))?,
+        Some(path) => from_file(path)?,
     };
     let impact = solve(setup(&problem)?).map_err(|error| Failure::refused(&error, None))?;
     let tolerance = tolerance(&arguments.common);
@@ -52,10 +51,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(path) => Some((path.clone(), picture(&impact)?)),
     };
     Ok(Outcome {
-        text,
+        result: whole(text),
         picture,
         note: None,
         verdict: Some(impact.verdict(Column::Paper, tolerance)),
+        partial: false,
     })
 }
 

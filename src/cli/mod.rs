@@ -1,20 +1,23 @@
 //! Arguments -> calls -> printing: the only place that reads or prints. One file per command.
 //!
 //! Results go to standard output or the file of `--output`, all else to standard error. Exit codes: 0 done, 1 refused or
-//! failed, 2 wrong usage, 3 verdict failed, 70 internal error.
+//! failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a partial result, 70 internal error.
 
 mod catalog;
 mod compare;
 mod derive;
+mod files;
 mod impact;
+mod problem;
 mod simulate;
 
 use std::fmt::Display;
-use std::io::{ErrorKind, Read as _, Write as _};
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use lindstedt::problem::LARGEST_FILE;
@@ -31,7 +34,8 @@ struct Cli {
 const AFTER_HELP: &str = "\
 Without a command: lindstedt impact, the paper's pendulum and barrier.
 
-Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance).";
+Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance); 4 stopped
+before the end: what is printed is partial and says so.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -53,10 +57,10 @@ struct Common {
     /// What to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// Write the result to this file instead of standard output
+    /// Write the result to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw to this SVG file: the motion against Runge-Kutta; of compare, omega against the amplitude
+    /// Draw to this SVG file (- for standard output): the motion against Runge-Kutta; of compare, omega against the amplitude
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
@@ -103,16 +107,26 @@ impl Failure {
     }
 }
 
+/// Writes a result to where it is to go.
+type Writer = Box<dyn FnOnce(&mut dyn std::io::Write) -> std::io::Result<()> + Send>;
+
+/// The writer of a text.
+fn whole(text: String) -> Writer {
+    Box::new(move |to| to.write_all(text.as_bytes()))
+}
+
 /// What a command hands back.
 struct Outcome {
     /// The result.
-    text: String,
+    result: Writer,
     /// A picture and where it goes.
     picture: Option<(PathBuf, String)>,
     /// Said on standard error.
     note: Option<String>,
     /// The verdict, where there is one.
     verdict: Option<Verdict>,
+    /// Whether the work stopped before its end, so that this is only a part.
+    partial: bool,
 }
 
 /// The program.
@@ -136,61 +150,117 @@ pub fn run() -> ExitCode {
         Command::Simulate(arguments) => arguments.common.clone(),
         Command::Catalog(arguments) => arguments.common.clone(),
     };
+    let input = match &command {
+        Command::Derive(arguments) => problem::path(&arguments.problem),
+        Command::Compare(arguments) => problem::path(&arguments.problem),
+        Command::Impact(arguments) => arguments.file.as_deref(),
+        Command::Simulate(arguments) => arguments.file.as_deref(),
+        Command::Catalog(_) => None,
+    };
+    let checked = files::check(&common, input);
+    if let Err(Failure::Refused(message)) = &checked {
+        return fail(1, message);
+    }
+    if let Err(Failure::Usage(message)) = &checked {
+        return fail(2, message);
+    }
+    // Only a simulation has parts worth waiting for; to add up what a long one did takes a while.
+    let patience = match &command {
+        Command::Simulate(_) => Duration::from_secs(60),
+        _ => Duration::ZERO,
+    };
     let (sender, receiver) = channel();
+    let interrupted = sender.clone();
+    // The first interrupt asks for what there is, the second ends the program.
+    let handler = ctrlc::set_handler(move || {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+        let _ = interrupted.send(Message::Interrupt);
+    });
+    // Without a handler an interrupt just ends the program, as it would any other.
+    drop(handler);
     // The work has a thread of its own so that a time limit can end it, wherever it is.
     let worker = std::thread::spawn(move || {
-        let outcome = match command {
+        let outcome = std::panic::catch_unwind(|| match command {
             Command::Derive(arguments) => derive::run(&arguments),
             Command::Compare(arguments) => compare::run(&arguments),
             Command::Impact(arguments) => impact::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Catalog(arguments) => catalog::run(&arguments),
-        };
-        let _ = sender.send(outcome);
+        });
+        let _ = sender.send(Message::Done(outcome.ok()));
     });
-    let outcome = match common.timeout {
+    let limit = common
+        .timeout
+        .map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    let first = match limit {
         None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
-        Some(seconds) => {
-            let limit = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-            receiver.recv_timeout(limit)
+        Some(limit) => receiver.recv_timeout(limit),
+    };
+    let (message, in_vain) = match first {
+        Ok(Message::Done(outcome)) => (Some(outcome), None),
+        Ok(Message::Interrupt) => (
+            wait_for_part(&receiver, patience),
+            Some((INTERRUPTED, "interrupted without a result".to_owned())),
+        ),
+        Err(_) => {
+            let seconds = common.timeout.unwrap_or_default();
+            let message =
+                format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout");
+            (wait_for_part(&receiver, patience), Some((1, message)))
         }
     };
-    match outcome {
-        Ok(Ok(outcome)) => finish(outcome, &common),
-        Ok(Err(Failure::Refused(message))) => fail(1, &message),
-        Ok(Err(Failure::Usage(message))) => fail(2, &message),
-        Err(RecvTimeoutError::Timeout) => {
-            let seconds = common.timeout.unwrap_or_default();
-            fail(
-                1,
-                &format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout"),
-            )
-        }
-        Err(RecvTimeoutError::Disconnected) => {
+    match (message, in_vain) {
+        (Some(Some(Ok(outcome))), _) => finish(outcome, &common),
+        (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
+        (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
+        (None, Some((code, message))) => fail(code, &message),
+        (Some(None), _) | (None, None) => {
             let _ = worker.join();
             fail(70, "internal error: please report the command and its input")
         }
     }
 }
 
+/// Set by an interrupt or at the time limit; work that can hand back a part looks at it.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// The exit code of a program ended by an interrupt, by the convention of shells.
+const INTERRUPTED: u8 = 130;
+
+/// What reaches the main thread.
+enum Message {
+    /// The work is done; nothing where it broke.
+    Done(Option<Result<Outcome, Failure>>),
+    /// The user wants it to end.
+    Interrupt,
+}
+
+/// Asks the work to hand back what it has, and waits a little for it.
+fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Option<Result<Outcome, Failure>>> {
+    STOP.store(true, Ordering::Relaxed);
+    let end = Instant::now() + patience;
+    while let Ok(message) = receiver.recv_timeout(end.saturating_duration_since(Instant::now())) {
+        if let Message::Done(outcome) = message {
+            return Some(outcome);
+        }
+    }
+    None
+}
+
 fn finish(outcome: Outcome, common: &Common) -> ExitCode {
-    if let Some((path, picture)) = &outcome.picture
-        && let Err(error) = write_file(path, picture)
+    if let Some((path, picture)) = outcome.picture
+        && let Err(error) = files::write(Some(&path), whole(picture))
     {
         return fail(1, &error);
     }
     if let Some(note) = outcome.note.filter(|_| !common.quiet) {
         eprintln!("{note}");
     }
-    let written = match &common.output {
-        Some(path) => write_file(path, &outcome.text),
-        None => match std::io::stdout().lock().write_all(outcome.text.as_bytes()) {
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
-            _ => Ok(()),
-        },
-    };
-    match written {
+    match files::write(common.output.as_deref(), outcome.result) {
         Err(error) => fail(1, &error),
+        Ok(()) if outcome.partial => ExitCode::from(4),
         Ok(()) if common.tolerance.is_some() && outcome.verdict == Some(Verdict::Fail) => ExitCode::from(3),
         Ok(()) => ExitCode::SUCCESS,
     }
@@ -199,10 +269,6 @@ fn finish(outcome: Outcome, common: &Common) -> ExitCode {
 fn fail(code: u8, message: &str) -> ExitCode {
     let _ = writeln!(std::io::stderr(), "error: {message}");
     ExitCode::from(code)
-}
-
-fn write_file(path: &Path, text: &str) -> Result<(), String> {
-    std::fs::write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
 /// Refuses `--format csv` where there is no trajectory.

@@ -7,15 +7,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::damper::sweep::{Axis, MOST_MOTIONS, Summary, sweep, sweep_on};
 use lindstedt::damper::{Integrator, Simulation, simulate};
 use lindstedt::export::simulation::{Report, SweepReport, csv, json, sweep_csv, sweep_json, sweep_text, text};
+use lindstedt::interrupt::Interrupt;
 use lindstedt::problem::{DamperError, Problem};
 use lindstedt::verify::Verdict;
 
-use super::{Common, Failure, Format, Outcome, json_text, read};
+use super::problem::from_file;
+use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
 
 #[derive(Args)]
 pub struct Arguments {
     /// A TOML file, or - for standard input; without it the paper's pendulum and barrier
-    file: Option<PathBuf>,
+    pub file: Option<PathBuf>,
     /// Report the state at this time (repeatable)
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     sample: Vec<f64>,
@@ -58,9 +60,7 @@ const ENERGY_TOLERANCE: f64 = 1e-6;
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.file {
         None => Problem::default(),
-        Some(path) => read(path)?
-            .parse()
-            .map_err(|error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help()))?,
+        Some(path) => from_file(path)?,
     };
     if arguments.common.format == Format::Latex {
         return Err(Failure::Usage(
@@ -80,7 +80,8 @@ fn refused(error: DamperError) -> Failure {
 }
 
 fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
-    let damper = problem.damper().map_err(refused)?;
+    let mut damper = problem.damper().map_err(refused)?;
+    damper.options.interrupt = Interrupt::by(&STOP);
     let duration = damper.options.duration;
     if let Some(late) = arguments.sample.iter().find(|sample| **sample > duration) {
         return Err(Failure::Refused(format!(
@@ -121,10 +122,11 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         .find(|motion| !motion.stop.is_complete());
     let note = broken.map(|motion| format!("warning: stopped early, what there is is kept: {}", motion.stop));
     Ok(Outcome {
-        text,
+        result: whole(text),
         picture,
         note,
         verdict: Some(verdict(&motion, judge.as_ref(), arguments.common.tolerance)),
+        partial: broken.is_some(),
     })
 }
 
@@ -174,7 +176,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Ok(())
     };
     for axis in &arguments.sweep {
-        if axis.name == "duration" || axis.name == "integrator_tolerance" {
+        if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name.as_str()) {
             return Err(Failure::Refused(format!(
                 "`{}` is the same for all motions of a sweep: give it in [run]",
                 axis.name
@@ -202,9 +204,10 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         }
         _ => {}
     }
-    let Some(options) = options else {
+    let Some(mut options) = options else {
         return Err(Failure::Usage("the sweep has no motion".to_owned()));
     };
+    options.interrupt = Interrupt::by(&STOP);
     // Draws on standard error, and only where that is a terminal.
     let bar = if arguments.common.quiet {
         ProgressBar::hidden()
@@ -225,22 +228,32 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         axes: &arguments.sweep,
         rows: &rows,
     };
-    let text = match arguments.common.format {
-        Format::Csv => sweep_csv(&report),
-        Format::Json => json_text(&sweep_json(&report)),
-        Format::Text | Format::Latex => sweep_text(&report),
-    };
     let picture = match &arguments.common.plot {
         None => None,
         Some(path) => Some((path.clone(), sweep_picture(&report)?)),
     };
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
+    let write = match arguments.common.format {
+        Format::Csv => sweep_csv,
+        Format::Json => sweep_json,
+        Format::Text | Format::Latex => sweep_text,
+    };
+    let axes = arguments.sweep.clone();
     Ok(Outcome {
-        text,
+        result: Box::new(move |to| {
+            write(
+                &SweepReport {
+                    axes: &axes,
+                    rows: &rows,
+                },
+                to,
+            )
+        }),
         picture,
         note,
         verdict: Some(if incomplete == 0 { Verdict::Pass } else { Verdict::Fail }),
+        partial: incomplete > 0,
     })
 }
 

@@ -234,6 +234,7 @@ pub(super) fn follow(model: &Model, start: Start, options: &Options) -> Result<S
         absolute_tolerance: options.absolute_tolerance,
         maximum_steps: options.maximum_steps,
         maximum_step,
+        interrupt: options.interrupt,
     };
     let begin = ode::State {
         t: 0.0,
@@ -294,6 +295,7 @@ fn told(
         StopReason::Event { .. } => Stop::Calm,
         StopReason::NonFinite { time } => Stop::NotFinite { t: time },
         StopReason::MaximumSteps { time } => Stop::Steps { t: time },
+        StopReason::Interrupted { time } => Stop::Interrupted { t: time },
         StopReason::StepTooSmall { time } => Stop::StepTooSmall { t: time },
         StopReason::SwitchingStalled { time } => Stop::Stalled { t: time },
     };

@@ -51,6 +51,7 @@ pub use path::{Path, Piece, State};
 pub use rest::{NoRest, REST_FRACTION, Rest};
 
 use crate::decimal::significant;
+use crate::interrupt::Interrupt;
 use crate::ode::IntegrationError;
 
 /// By which method a motion is followed.
@@ -76,6 +77,8 @@ pub struct Options {
     pub maximum_steps: usize,
     /// Stop as soon as the energy (units of m g L) is no more than this.
     pub rest_energy: Option<f64>,
+    /// Who may ask the run to stop where it is.
+    pub interrupt: Interrupt,
     /// Keep the motion as a function of time; without it there are impacts, turning points and the end.
     pub keep_path: bool,
 }
@@ -88,6 +91,7 @@ impl Default for Options {
             absolute_tolerance: 1e-14,
             maximum_steps: 250_000,
             rest_energy: None,
+            interrupt: Interrupt::default(),
             keep_path: true,
         }
     }
@@ -127,6 +131,11 @@ pub enum Stop {
         /// The last time reached.
         t: f64,
     },
+    /// Somebody asked it to.
+    Interrupted {
+        /// The last time reached.
+        t: f64,
+    },
     /// The tolerance asks for steps that do not advance the clock.
     StepTooSmall {
         /// The last time reached.
@@ -146,6 +155,21 @@ impl Stop {
     }
 }
 
+impl Stop {
+    /// In a word or two, for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Duration => "duration",
+            Self::Calm => "rest energy",
+            Self::NotFinite { .. } => "not finite",
+            Self::Steps { .. } => "step limit",
+            Self::Interrupted { .. } => "interrupted",
+            Self::StepTooSmall { .. } => "step too small",
+            Self::Stalled { .. } => "stalled",
+        }
+    }
+}
+
 impl fmt::Display for Stop {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let time = |t: &f64| significant(*t, 12);
@@ -161,9 +185,10 @@ impl fmt::Display for Stop {
             }
             Self::Steps { t } => write!(
                 formatter,
-                "the allowed number of steps was used up at t = {}: shorten the duration or loosen the tolerance",
+                "the allowed number of steps was used up at t = {}: raise step_limit in [run], or shorten the duration",
                 time(t)
             ),
+            Self::Interrupted { t } => write!(formatter, "the run was stopped from outside at t = {}", time(t)),
             Self::StepTooSmall { t } => write!(
                 formatter,
                 "the tolerance could not be reached at t = {}: the steps became too small; loosen it",
@@ -297,6 +322,25 @@ impl Simulation {
     /// Whether a barrier was touched at all.
     pub fn touches(&self) -> bool {
         !self.impacts.is_empty()
+    }
+
+    /// Whether it is certain that no barrier will ever be touched: nothing drives the motion, and the energy it has left is
+    /// not enough to get there.
+    pub fn never_touches(&self) -> bool {
+        let left_over = self.model.energy(self.end_x, self.end_velocity);
+        let out_of_reach = |barrier: f64| {
+            barrier.abs() < std::f64::consts::PI
+                && barrier.abs() > self.end_x.abs()
+                && self.model.swing_energy(barrier, 0.0) > left_over * (1.0 + 1e-9)
+        };
+        // Beyond the upright position a barrier is out of reach of any motion that does not turn over.
+        let upright = |barrier: f64| barrier.abs() >= std::f64::consts::PI && left_over < 2.0;
+        let barriers = [self.model.left, self.model.right].into_iter().flatten();
+        !self.touches()
+            && self.model.beta == 0.0
+            && barriers
+                .into_iter()
+                .all(|barrier| out_of_reach(barrier) || upright(barrier))
     }
 }
 

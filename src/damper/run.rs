@@ -221,6 +221,10 @@ impl Runner {
             self.stop = Some(Stop::Steps { t: self.t });
             return None;
         }
+        if self.options.interrupt.is_requested() {
+            self.stop = Some(Stop::Interrupted { t: self.t });
+            return None;
+        }
         self.steps += 1;
         if self.velocity == 0.0 && self.state == State::Free {
             self.lean();

@@ -86,15 +86,18 @@ impl FromStr for Axis {
 }
 
 impl Axis {
+    /// The value of this number, counted from zero.
+    pub fn value(&self, index: usize) -> f64 {
+        let last = self.count.saturating_sub(1).max(1);
+        match index >= last {
+            true => self.to,
+            false => self.from + (self.to - self.from) * (index as f64 / last as f64),
+        }
+    }
+
     /// The values, in order.
     pub fn values(&self) -> Vec<f64> {
-        let last = self.count.saturating_sub(1).max(1) as f64;
-        (0..self.count)
-            .map(|index| match index {
-                _ if index + 1 == self.count => self.to,
-                _ => self.from + (self.to - self.from) * (index as f64 / last),
-            })
-            .collect()
+        (0..self.count).map(|index| self.value(index)).collect()
     }
 }
 
@@ -103,7 +106,7 @@ impl Axis {
 pub struct Summary {
     /// Number of contacts.
     pub impacts: usize,
-    /// When the envelope fell to a tenth of the start.
+    /// When the envelope fell to a tenth of the first swing.
     pub rest_time: Result<f64, NoRest>,
     /// The greatest depth in a barrier, rad; 0 without contact.
     pub deepest: f64,
@@ -129,7 +132,12 @@ impl Summary {
             rest_time: motion.rest().time,
             deepest: largest(|impact| impact.penetration),
             fastest: largest(|impact| impact.speed_in),
-            energy_lost: motion.impacts.iter().filter_map(|impact| impact.energy_lost).sum(),
+            // The sum of nothing is minus zero.
+            energy_lost: motion
+                .impacts
+                .iter()
+                .filter_map(|impact| impact.energy_lost)
+                .fold(0.0, |sum, lost| sum + lost),
             end_time: motion.end_time,
             end_x: motion.end_x,
             end_velocity: motion.end_velocity,

@@ -16,6 +16,7 @@ use thiserror::Error;
 use super::State;
 use super::event::{Action, Event, Watch};
 use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
+use crate::interrupt::Interrupt;
 
 /// How closely and how long to integrate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +29,8 @@ pub struct Options {
     pub maximum_steps: usize,
     /// Longest step: infinity, unless a right side or an event varies faster than the motion.
     pub maximum_step: f64,
+    /// Who may ask the run to stop where it is.
+    pub interrupt: Interrupt,
 }
 
 impl Default for Options {
@@ -45,6 +48,7 @@ impl Options {
             absolute_tolerance: tolerance,
             maximum_steps: 200_000,
             maximum_step: f64::INFINITY,
+            interrupt: Interrupt::default(),
         }
     }
 }
@@ -299,6 +303,9 @@ impl Leg<'_, '_> {
             }
             if *attempts >= self.options.maximum_steps {
                 return LegEnd::Stopped(StopReason::MaximumSteps { time: state.t });
+            }
+            if self.options.interrupt.is_requested() {
+                return LegEnd::Stopped(StopReason::Interrupted { time: state.t });
             }
             *attempts += 1;
             let wanted = solver.h().min(self.options.maximum_step).min(remaining);

@@ -61,6 +61,11 @@ pub enum StopReason {
         /// The last time reached.
         time: f64,
     },
+    /// Somebody asked the run to stop.
+    Interrupted {
+        /// The last time reached.
+        time: f64,
+    },
     /// The steps became too small to advance the clock: a singularity, or a tolerance beyond double precision.
     StepTooSmall {
         /// The last time reached.
@@ -76,6 +81,7 @@ pub enum StopReason {
 impl fmt::Display for StopReason {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Interrupted { time } => write!(formatter, "the run was stopped from outside at t = {time}"),
             Self::EndReached => write!(formatter, "the end time was reached"),
             Self::Event { phase, event } => write!(formatter, "event {event} of phase {phase} stopped the run"),
             Self::NonFinite { time } => write!(

@@ -51,6 +51,9 @@ pub enum DamperError {
     /// A tolerance that cannot be kept.
     #[error("[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
     Tolerance(f64),
+    /// A limit that nothing or too much fits into: every step of a motion is kept.
+    #[error("[run] step_limit must be a whole number from 1 to {MOST_STEPS}, not {0}")]
+    StepLimit(u32),
     /// A duration that is none.
     #[error("[run] duration must be a positive number, not {0}")]
     Duration(f64),
@@ -76,6 +79,9 @@ impl DamperError {
         }
     }
 }
+
+/// The most steps a run may be given: some gigabytes of power series.
+pub const MOST_STEPS: u32 = 10_000_000;
 
 /// The parameters that a sweep may vary.
 pub const PARAMETERS: [&str; 17] = [
@@ -159,6 +165,9 @@ impl Problem {
         if !(1e-15..=0.01).contains(&tolerance) {
             return Err(DamperError::Tolerance(tolerance));
         }
+        if !(1..=MOST_STEPS).contains(&self.run.step_limit) {
+            return Err(DamperError::StepLimit(self.run.step_limit));
+        }
         let duration = self.run.duration;
         if !(duration > 0.0 && duration.is_finite()) {
             return Err(DamperError::Duration(duration));
@@ -168,6 +177,7 @@ impl Problem {
             // The errors of some hundred steps add up, and impacts multiply them.
             relative_tolerance: (1e-2 * tolerance).max(1e-15),
             absolute_tolerance: 1e-4 * tolerance,
+            maximum_steps: self.run.step_limit as usize,
             ..Options::default()
         };
         Ok(Damper {

@@ -1,6 +1,7 @@
 //! Comma-separated values: one line per point, every number to its last digit.
 
 use std::fmt::Write as _;
+use std::io;
 
 use super::{Report, SweepReport};
 
@@ -32,24 +33,33 @@ pub fn simulation(report: &Report) -> String {
             }
         }
     }
+    // A table that ends early says so, in a line that readers of tables can skip.
+    if !motion.stop.is_complete() {
+        let _ = writeln!(text, "# incomplete: {}", motion.stop);
+    }
     text
 }
 
-/// The sweep: the parameters, then what came of them.
-pub fn sweep(report: &SweepReport) -> String {
-    let mut text = String::new();
+/// The sweep: the parameters, then what came of them; a line at a time, for there may be a million.
+///
+/// # Errors
+/// What the writer says.
+pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     for axis in report.axes {
-        let _ = write!(text, "{},", axis.name);
+        write!(to, "{},", axis.name)?;
     }
-    text.push_str("impacts,rest_time,penetration,speed_in,energy_lost,t,x,velocity,complete\n");
+    writeln!(
+        to,
+        "impacts,rest_time,penetration,speed_in,energy_lost,t,x,velocity,complete,stopped"
+    )?;
     for (row, summary) in report.rows.iter().enumerate() {
         for value in report.values(row) {
-            let _ = write!(text, "{value},");
+            write!(to, "{value},")?;
         }
         let rest = summary.rest_time.map_or(String::new(), |time| time.to_string());
-        let _ = writeln!(
-            text,
-            "{},{rest},{},{},{},{},{},{},{}",
+        writeln!(
+            to,
+            "{},{rest},{},{},{},{},{},{},{},{}",
             summary.impacts,
             summary.deepest,
             summary.fastest,
@@ -57,8 +67,9 @@ pub fn sweep(report: &SweepReport) -> String {
             summary.end_time,
             summary.end_x,
             summary.end_velocity,
-            summary.stop.is_complete()
-        );
+            summary.stop.is_complete(),
+            summary.stop.name()
+        )?;
     }
-    text
+    Ok(())
 }

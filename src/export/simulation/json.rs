@@ -1,8 +1,11 @@
 //! Kinds `simulation` and `sweep`.
 
+use std::io;
+
 use serde_json::{Value, json};
 
 use super::{COMPARED, Report, SweepReport, friction, notes};
+use crate::damper::sweep::Summary;
 use crate::damper::{Integrator, Simulation};
 
 /// One run.
@@ -101,29 +104,39 @@ fn final_state(motion: &Simulation) -> Value {
     json!({ "t": motion.end_time, "x": motion.end_x, "velocity": motion.end_velocity })
 }
 
-/// A sweep.
-pub fn sweep(report: &SweepReport) -> Value {
+/// A sweep, a row at a time, for there may be a million.
+///
+/// # Errors
+/// What the writer says.
+pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     let axes: Vec<Value> = report
         .axes
         .iter()
         .map(|axis| json!({ "name": axis.name, "from": axis.from, "to": axis.to, "count": axis.count }))
         .collect();
-    let rows: Vec<Value> = report
-        .rows
-        .iter()
-        .enumerate()
-        .map(|(row, summary)| {
-            json!({
-                "values": report.values(row),
-                "impacts": summary.impacts,
-                "rest_time": summary.rest_time.ok(),
-                "penetration": summary.deepest,
-                "speed_in": summary.fastest,
-                "energy_lost": summary.energy_lost,
-                "final_state": { "t": summary.end_time, "x": summary.end_x, "velocity": summary.end_velocity },
-                "complete": summary.stop.is_complete(),
-            })
-        })
-        .collect();
-    json!({ "schema": "lindstedt/sweep/1", "axes": axes, "rows": rows })
+    // The document without its rows, cut open before its last brace.
+    let head = format!("{:#}", json!({ "schema": "lindstedt/sweep/1", "axes": axes }));
+    let open = head.trim_end_matches(['\n', '}']);
+    write!(to, "{open},\n  \"rows\": [")?;
+    for (row, summary) in report.rows.iter().enumerate() {
+        let separator = if row == 0 { "" } else { "," };
+        let text = format!("{:#}", document(&report.values(row), summary));
+        write!(to, "{separator}\n    {}", text.replace('\n', "\n    "))?;
+    }
+    writeln!(to, "\n  ]\n}}")
+}
+
+/// A row of a sweep.
+fn document(values: &[f64], summary: &Summary) -> Value {
+    json!({
+        "values": values,
+        "impacts": summary.impacts,
+        "rest_time": summary.rest_time.ok(),
+        "penetration": summary.deepest,
+        "speed_in": summary.fastest,
+        "energy_lost": summary.energy_lost,
+        "final_state": { "t": summary.end_time, "x": summary.end_x, "velocity": summary.end_velocity },
+        "complete": summary.stop.is_complete(),
+        "stopped": summary.stop.to_string(),
+    })
 }

@@ -12,6 +12,7 @@ pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::damper::sweep::{Axis, Summary};
 use crate::damper::{Friction, Simulation};
+use crate::decimal::decimal;
 
 /// What is handed on of one run.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +49,7 @@ impl SweepReport<'_> {
             .map(|axis| {
                 let index = rest % axis.count.max(1);
                 rest /= axis.count.max(1);
-                axis.values().get(index).copied().unwrap_or(axis.to)
+                axis.value(index)
             })
             .collect();
         values.reverse();
@@ -76,10 +77,16 @@ fn notes(report: &Report) -> Vec<String> {
             .flatten()
             .map(|barrier| barrier.to_string())
             .collect();
-        notes.push(format!(
-            "no contact: the motion never reaches the barrier at {}; it is that of the plain pendulum",
-            barriers.join(" or ")
-        ));
+        let barriers = barriers.join(" or ");
+        notes.push(match motion.never_touches() {
+            true => format!(
+                "no contact: the motion never reaches the barrier at {barriers}; it is that of the plain pendulum"
+            ),
+            false => format!(
+                "no contact with the barrier at {barriers} until t = {}",
+                decimal(motion.end_time)
+            ),
+        });
     }
     if motion.impacts.last().is_some_and(|impact| impact.exit_time.is_none()) {
         notes.push("the run ends in contact: the last impact has no exit".to_owned());

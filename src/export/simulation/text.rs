@@ -1,6 +1,7 @@
 //! To read in a terminal.
 
 use std::fmt::Write as _;
+use std::io;
 
 use super::{COMPARED, Report, SweepReport, friction, notes};
 use crate::damper::{Integrator, Model, Simulation};
@@ -232,20 +233,22 @@ fn energy(text: &mut String, motion: &Simulation) {
     );
 }
 
-/// A sweep.
-pub fn sweep(report: &SweepReport) -> String {
-    let mut text = String::new();
+/// A sweep, a line at a time, for there may be a million.
+///
+/// # Errors
+/// What the writer says.
+pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     for axis in report.axes {
-        let _ = write!(text, "{:>14}", axis.name);
+        write!(to, "{:>14}", axis.name)?;
     }
-    let _ = writeln!(
-        text,
+    writeln!(
+        to,
         "{:>9}{:>13}{:>13}{:>11}{:>13}{:>13}",
         "impacts", "rest time", "penetration", "speed in", "energy lost", "stopped at"
-    );
+    )?;
     for (row, summary) in report.rows.iter().enumerate() {
         for value in report.values(row) {
-            let _ = write!(text, "{:>14}", decimal(value));
+            write!(to, "{:>14}", decimal(value))?;
         }
         let rest = summary.rest_time.map_or("-".to_owned(), decimal);
         let warning = if summary.stop.is_complete() { "" } else { "  incomplete" };
@@ -254,15 +257,15 @@ pub fn sweep(report: &SweepReport) -> String {
         } else {
             summary.energy_lost
         };
-        let _ = writeln!(
-            text,
+        writeln!(
+            to,
             "{:>9}{rest:>13}{:>13}{:>11}{:>13}{:>13}{warning}",
             summary.impacts,
             decimal(summary.deepest),
             decimal(summary.fastest),
             decimal(lost),
             decimal(summary.end_time)
-        );
+        )?;
     }
-    text
+    Ok(())
 }

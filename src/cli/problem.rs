@@ -1,0 +1,80 @@
+//! PROBLEM on the command line: an equation in quotes, a TOML file, a name of the catalogue, or - for standard input.
+
+use std::path::Path;
+
+use lindstedt::catalog;
+use lindstedt::problem::{Problem, ProblemError};
+use lindstedt::spelling::nearest;
+
+use super::files::is_standard;
+use super::{Failure, read};
+
+/// What a PROBLEM says. A name that ends in `.toml`, or a file that exists, is a file.
+///
+/// # Errors
+/// A file that cannot be read or is no problem; a single word that is neither an equation nor a name.
+pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
+    match path(text) {
+        Some(path) => from_file(path),
+        None => from_words(text),
+    }
+}
+
+/// The file that a PROBLEM names, where it names one.
+pub(super) fn path(text: &str) -> Option<&Path> {
+    let path = Path::new(text);
+    (is_standard(path) || text.ends_with(".toml") || path.is_file()).then_some(path)
+}
+
+/// What a file says, or standard input for `-`, which may also hold a bare equation or a name.
+///
+/// # Errors
+/// See [`problem`].
+pub(super) fn from_file(path: &Path) -> Result<Problem, Failure> {
+    let text = read(path)?;
+    // Only TOML assigns to a bare key.
+    let is_toml = text.lines().any(|line| {
+        let line = line.trim_start();
+        let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
+    });
+    if is_standard(path) && !is_toml && !text.trim().is_empty() {
+        return from_words(text.trim_end());
+    }
+    text.parse().map_err(|error: ProblemError| {
+        let name = if is_standard(path) {
+            "standard input".into()
+        } else {
+            path.to_string_lossy()
+        };
+        Failure::refused(&format!("{name}: {error}"), error.help())
+    })
+}
+
+/// A name of the catalogue, or an equation.
+fn from_words(text: &str) -> Result<Problem, Failure> {
+    let with_equation = |equation: &str| Problem {
+        equation: Some(equation.to_owned()),
+        ..Problem::default()
+    };
+    if let Some(entry) = catalog::find(text.trim()) {
+        return Ok(with_equation(entry.equation));
+    }
+    // A single word cannot be an equation: it is a name with a slip in it, or a file that is not there.
+    let word = text.trim();
+    let is_word = word.len() > 1
+        && word.starts_with(|letter: char| letter.is_ascii_alphabetic())
+        && word
+            .chars()
+            .all(|letter| letter.is_ascii_alphanumeric() || "-_./".contains(letter));
+    if is_word {
+        let help = match nearest(word, catalog::CATALOG.iter().map(|entry| entry.name)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "write an equation such as \"x'' + sin(x) = 0\"; `lindstedt catalog` lists the names".to_owned(),
+        };
+        return Err(Failure::Refused(format!(
+            "`{word}` is no equation, no file, and no name of the catalogue\n  help: {help}"
+        )));
+    }
+    Ok(with_equation(text))
+}

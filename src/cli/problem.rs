@@ -38,7 +38,7 @@ pub(super) fn from_file(path: &Path) -> Result<Problem, Failure> {
         let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
         line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
     });
-    if is_standard(path) && !is_toml && !text.trim().is_empty() {
+    if is_standard(path) && !is_toml {
         return from_words(text.trim_end());
     }
     text.parse().map_err(|error: ProblemError| {

@@ -147,6 +147,8 @@ pub fn verification(verification: &Verification) -> Value {
         "reason": verification.reason,
         "true_frequency": verification.true_frequency,
         "relative_error": verification.relative_error,
+        "judged_on": verification.judged_on,
+        "error_of_omega": verification.error_of_omega,
         "max_deviation": verification.max_deviation,
         "residual": verification.residual,
         "slope": verification.slope,

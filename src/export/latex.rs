@@ -272,7 +272,19 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
             .relative_error
             .map_or("none".to_owned(), |error| decimal(100.0 * error) + " %");
         let truth = decimal(verification.true_frequency);
-        let _ = writeln!(text, "% true omega {truth}, relative error {error}, verdict {verdict}");
+        let other = verification.error_of_omega.filter(|other| {
+            verification
+                .relative_error
+                .is_none_or(|error| (other - error).abs() > 1e-9)
+        });
+        let other = other.map_or(String::new(), |other| {
+            format!("; of the series of omega itself {} %", decimal(100.0 * other))
+        });
+        let law = verification.judged_on;
+        let _ = writeln!(
+            text,
+            "% true omega {truth}, relative error {error} (by {law}{other}), verdict {verdict}"
+        );
     }
     let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
     text

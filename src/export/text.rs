@@ -197,6 +197,22 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     if let Some(error) = verification.relative_error {
         line("relative error", percent(error));
     }
+    match verification.error_of_omega {
+        Some(other)
+            if verification
+                .relative_error
+                .is_none_or(|error| (other - error).abs() > 1e-9) =>
+        {
+            line(
+                "judged on",
+                format!(
+                    "the root of omega^2; the series of omega itself errs by {}",
+                    percent(other)
+                ),
+            )
+        }
+        _ => line("judged on", verification.judged_on.to_owned()),
+    }
     if let Some(deviation) = verification.max_deviation {
         line(
             "largest deviation",
@@ -334,7 +350,7 @@ fn reach(reach: Option<Reach>, amplitude: Symbol) -> String {
         None => "-".to_owned(),
         Some(Reach::Nowhere) => "nowhere".to_owned(),
         Some(Reach::UpTo(end)) => format!("{amplitude} = {}", significant(end, 3)),
-        Some(Reach::Everywhere(_)) => "everywhere".to_owned(),
+        Some(Reach::Everywhere(searched)) => format!("past {amplitude} = {}", significant(searched, 3)),
     }
 }
 

@@ -529,7 +529,8 @@ pub(super) fn at_numbers(
     };
     match solution.method {
         Method::Exact => {
-            let (period, cosine) = period::weighted_motion(&weighted, &|x| mass(x).sqrt(), 0.0, amplitude).ok()?;
+            let (period, cosine) =
+                period::weighted_motion(&period::Force::smooth(&weighted), &|x| mass(x).sqrt(), 0.0, amplitude).ok()?;
             let frequency = std::f64::consts::TAU / period;
             let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
             Some((frequency * frequency, motion))

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use num_traits::One;
 
 use super::{balance, energy_balance, harmonic_balance, homotopy_analysis, inertia, one_term};
+use crate::conservative::features::Features;
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
@@ -405,6 +406,9 @@ fn exact_motion(
     let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
     let amplitude = *numbers.get(&solution.amplitude.symbol()).unwrap_or(&1.0);
     let force = one_term::compiled(oscillator, &oscillator.force, numbers)?;
+    let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
+    let cuts = |from, to| features.cuts(from, to);
+    let force = period::Force::with_cuts(&force, &cuts);
     let (period, cosine) = period::conservative_motion(&force, equilibrium, equilibrium + amplitude).ok()?;
     let frequency = std::f64::consts::TAU / period;
     Some((

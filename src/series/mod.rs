@@ -3,6 +3,7 @@
 
 pub mod convolution;
 pub mod fourier;
+pub mod numeric;
 pub mod taylor;
 pub mod terms;
 

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::validity::{self, Reach, Truth};
+use super::reach::{Truth, reach};
+use super::validity::{self, Reach};
 use super::{TrueMotion, Values, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
@@ -149,8 +150,7 @@ fn row(
     let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
     let max_deviation = frequency
         .zip(found.as_ref().and_then(|found| found.motion.as_ref()))
-        .map(|(frequency, motion)| true_motion.largest_deviation(frequency, motion))
-        .filter(|deviation| deviation.is_finite());
+        .and_then(|(frequency, motion)| true_motion.largest_deviation(frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
     Row {
@@ -161,7 +161,7 @@ fn row(
         relative_error,
         max_deviation,
         reach: match free {
-            true => validity::reach(oscillator, solution, truth, tolerance),
+            true => reach(oscillator, solution, truth, tolerance),
             false => None,
         },
         verdict: if pass { Verdict::Pass } else { Verdict::Fail },

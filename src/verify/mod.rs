@@ -11,24 +11,27 @@
 //! slope          = log2( error(delta) / error(delta/2) )     -> the exponent of the first missing term
 //! ```
 
+mod amplitude_series;
 pub mod comparison;
+pub mod convergence;
+mod reach;
 pub mod validity;
+pub mod well;
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use crate::conservative::is_smooth;
+use crate::conservative::features::Features;
 use crate::decimal::decimal;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::numbers::{Numbers, evaluate, frequency_squared_of};
-use crate::ode::Trajectory;
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
-use crate::period::{self, PeriodError};
+use crate::period::{self, Force, PeriodError, Swing};
 use crate::return_map::{Equation, LimitCycle, NoLimitCycle, nearest_limit_cycle};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Solution};
+use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
 
 /// The error of the frequency below which a formula passes when the user names no tolerance: 1 %.
@@ -146,6 +149,10 @@ pub struct Verification {
     pub true_frequency: f64,
     /// `frequency / true_frequency - 1`.
     pub relative_error: Option<f64>,
+    /// Which law the frequency comes from: `omega^2`, of which it is the root, or `omega`.
+    pub judged_on: &'static str,
+    /// The error of the other law, the series of omega itself, where the formula has both.
+    pub error_of_omega: Option<f64>,
     /// Largest deviation over one true period, over the amplitude.
     pub max_deviation: Option<f64>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
@@ -228,7 +235,7 @@ pub fn judge(
     let motion = frequency.zip(found.as_ref().and_then(|found| found.motion.clone()));
     let max_deviation = motion
         .as_ref()
-        .map(|(frequency, motion)| truth.largest_deviation(*frequency, motion));
+        .and_then(|(frequency, motion)| truth.largest_deviation(*frequency, motion));
     let residual = match &motion {
         Some((frequency, motion)) => Some(residual(oscillator, &numbers, *frequency, motion)?),
         None => None,
@@ -240,7 +247,9 @@ pub fn judge(
         reason,
         true_frequency: truth.frequency,
         relative_error,
-        max_deviation: max_deviation.filter(|value| value.is_finite()),
+        judged_on: judged_on(solution),
+        error_of_omega: series_of_omega(solution, &numbers).map(|omega| omega / truth.frequency - 1.0),
+        max_deviation,
         residual: residual.filter(|value| value.is_finite()),
         slope: slope(oscillator, solution, &numbers),
         ranges: truth
@@ -306,7 +315,7 @@ pub fn motions(
         return Ok(None);
     };
     let velocity = motion.derivative();
-    let times = (0..=SAMPLES).map(|k| truth.orbit.period() * k as f64 / SAMPLES as f64);
+    let times = (0..=SAMPLES).map(|k| truth.period() * k as f64 / SAMPLES as f64);
     let formula = |t: f64| {
         (
             t,
@@ -339,6 +348,24 @@ fn numbers_or_reason(
     }
 }
 
+/// The law that [`formula_frequency`] takes.
+fn judged_on(solution: &Solution) -> &'static str {
+    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
+    let by_integral = solution.by_quadrature.is_some() && solution.method != Method::Exact;
+    match &solution.closed_form {
+        _ if solution.frequency_squared.is_some() || solution.relation.is_some() || by_integral => "omega^2",
+        Some(form) => form.name(),
+        None => "omega",
+    }
+}
+
+/// omega by its own series, where the formula has one of omega^2 as well.
+fn series_of_omega(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    solution.frequency_squared.as_ref()?;
+    let series = solution.frequency.as_ref()?;
+    solution.evaluate(series, &|symbol| numbers.get(&symbol).copied()).ok()
+}
+
 /// omega, the motion by the formula in theta, and what was chosen for it.
 fn formula_motion(
     oscillator: &Oscillator,
@@ -351,14 +378,14 @@ fn formula_motion(
 
 /// One period of a true motion, from a turning point.
 enum Orbit {
-    Swing(Trajectory),
+    Swing(Swing),
     LimitCycle(LimitCycle),
 }
 
 impl Orbit {
     fn period(&self) -> f64 {
         match self {
-            Self::Swing(path) => path.end().t,
+            Self::Swing(path) => path.period(),
             Self::LimitCycle(cycle) => cycle.period(),
         }
     }
@@ -375,7 +402,8 @@ impl Orbit {
 /// The true periodic motion that a formula is meant for.
 struct TrueMotion {
     frequency: f64,
-    orbit: Orbit,
+    /// `None` where the energy gives the period but Runge-Kutta cannot follow the motion.
+    orbit: Option<Orbit>,
     /// The instant of the path that is `t = 0` of the formula.
     shift: f64,
     amplitude: f64,
@@ -387,6 +415,8 @@ impl TrueMotion {
         solution: &Solution,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
+        /// How well the Runge-Kutta return and the energy must agree for the path to be used.
+        const AGREEMENT: f64 = 1e-6;
         let physics = Physics::new(oscillator, solution, numbers)?;
         if solution.limit_cycle.is_some() {
             let cycle = physics.limit_cycle(solution, numbers)?;
@@ -400,18 +430,23 @@ impl TrueMotion {
             ));
         }
         let start = physics.start(solution, numbers)?;
-        // The energy knows first whether there is an orbit at all, and says why not.
-        let by_energy = match physics.by_energy {
-            true => Some(period::conservative_period(
-                &physics.force(),
-                physics.equilibrium,
-                start,
-            )?),
-            false => None,
+        if physics.by_energy && solution.amplitude == AmplitudeConvention::Initial {
+            // The energy knows first whether there is an orbit at all, and says why not.
+            let period = physics.period(start)?;
+            let path = physics.swing(start, 2.0 * period).ok();
+            let path = path.filter(|path| (path.period() / period - 1.0).abs() < AGREEMENT);
+            return Ok(Self {
+                frequency: TAU / period,
+                orbit: path.map(Orbit::Swing),
+                shift: 0.0,
+                amplitude: (start - physics.equilibrium).abs(),
+            });
+        }
+        let path = physics.swing(start, physics.longest)?;
+        let frequency = match physics.by_energy {
+            true => TAU / physics.period(start)?,
+            false => TAU / path.period(),
         };
-        let longest = by_energy.map_or(physics.longest, |period| 2.0 * period);
-        let path = period::swing(&physics.acceleration(), physics.equilibrium, start, longest)?;
-        let frequency = TAU / by_energy.unwrap_or(path.end().t);
         Ok(Self::from_orbit(
             solution,
             numbers,
@@ -441,7 +476,7 @@ impl TrueMotion {
         };
         Self {
             frequency,
-            orbit,
+            orbit: Some(orbit),
             shift,
             amplitude,
         }
@@ -449,7 +484,7 @@ impl TrueMotion {
 
     /// Where a true limit cycle lies and what it does to its neighbours.
     fn about_the_cycle(&self, coordinate: &str) -> Option<validity::Range> {
-        let Orbit::LimitCycle(cycle) = &self.orbit else {
+        let Some(Orbit::LimitCycle(cycle)) = &self.orbit else {
             return None;
         };
         let does = if cycle.attracts() { "attracts" } else { "repels" };
@@ -462,27 +497,38 @@ impl TrueMotion {
         })
     }
 
+    fn period(&self) -> f64 {
+        self.orbit.as_ref().map_or(TAU / self.frequency, Orbit::period)
+    }
+
     /// The true motion at the time `t` of the formula.
     fn sample(&self, t: f64) -> Sample {
-        let (x, v) = self.orbit.at((t + self.shift).rem_euclid(self.orbit.period()));
+        let place = (t + self.shift).rem_euclid(self.period());
+        let (x, v) = self
+            .orbit
+            .as_ref()
+            .map_or((f64::NAN, f64::NAN), |orbit| orbit.at(place));
         (t, x, v)
     }
 
-    /// Largest `|x_true - x_formula|` over one true period, over the amplitude.
-    fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<f64>) -> f64 {
+    /// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path is not known.
+    fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<f64>) -> Option<f64> {
+        self.orbit.as_ref()?;
         let deviation = |index: usize| {
-            let t = self.orbit.period() * index as f64 / SAMPLES as f64;
+            let t = self.period() * index as f64 / SAMPLES as f64;
             (self.sample(t).1 - motion.evaluate(frequency * t)).abs()
         };
-        (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / self.amplitude
+        let largest = (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / self.amplitude;
+        largest.is_finite().then_some(largest)
     }
 }
 
 /// The equation with numbers for its parameters.
 struct Physics {
     force: CompiledFunction,
+    features: Features,
     equilibrium: f64,
-    /// Whether the period follows from the energy, by a quadrature that converges fast.
+    /// Whether the period follows from the energy.
     by_energy: bool,
     longest: f64,
 }
@@ -494,27 +540,62 @@ impl Physics {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let parts = oscillator.parts()?;
-        let conservative = [&parts.inertia, &parts.damping, &parts.forcing]
+        let by_energy = [&parts.inertia, &parts.damping, &parts.forcing]
             .iter()
             .all(|part| part.is_zero());
         let force = compiled_force(oscillator, numbers)?;
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
-        let by_energy = conservative && is_smooth(&oscillator.force, oscillator.coordinate);
-        let guess = match by_energy {
-            true => 1.0,
-            false => formula_frequency(oscillator, solution, numbers).unwrap_or(1.0),
-        };
-        // A thousand periods of the formula: a motion that has not turned by then is not swinging.
-        Ok(Self {
+        let mut physics = Self {
             force,
+            features: Features::new(&oscillator.force, oscillator.coordinate, numbers),
             equilibrium,
             by_energy,
-            longest: 1000.0 * TAU / guess,
+            longest: f64::INFINITY,
+        };
+        // A thousand periods of the formula, or of a linear force as strong at the start: a motion that has not turned by
+        // then is not swinging.
+        let by_formula = match by_energy {
+            true => None,
+            false => formula_frequency(oscillator, solution, numbers),
+        };
+        let slowest = match by_formula {
+            Some(frequency) => frequency,
+            None => {
+                let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+                let rate = (physics.force_at(equilibrium + amplitude) / amplitude).abs().sqrt();
+                if rate.is_normal() { rate } else { 1.0 }
+            }
+        };
+        physics.longest = 1000.0 * TAU / slowest;
+        Ok(physics)
+    }
+
+    fn force_at(&self, x: f64) -> f64 {
+        self.force.call(&[x, 0.0])
+    }
+
+    /// What `run` makes of the force and its cuts.
+    fn with_force<T>(&self, run: impl FnOnce(&Force) -> T) -> T {
+        let (value, cuts) = (|x| self.force_at(x), |from, to| self.features.cuts(from, to));
+        run(&match self.features.is_empty() {
+            true => Force::smooth(&value),
+            false => Force::with_cuts(&value, &cuts),
         })
     }
 
-    fn force(&self) -> impl Fn(f64) -> f64 + '_ {
-        |x| self.force.call(&[x, 0.0])
+    /// The period of a conservative motion released from rest.
+    fn period(&self, start: f64) -> Result<f64, PeriodError> {
+        self.with_force(|force| period::conservative_period(force, self.equilibrium, start))
+    }
+
+    /// One swing by Runge-Kutta.
+    fn swing(&self, start: f64, longest: f64) -> Result<Swing, PeriodError> {
+        let end = match self.by_energy {
+            true => self.with_force(|force| period::turning_point(force, self.equilibrium, start))?,
+            false => 2.0 * self.equilibrium - start,
+        };
+        let cuts = self.features.cuts(start, end);
+        period::swing_with_cuts(&self.acceleration(), &cuts, self.equilibrium, start, longest)
     }
 
     fn acceleration(&self) -> impl Fn(f64, f64, f64) -> f64 + '_ {
@@ -557,7 +638,7 @@ impl Physics {
             return Ok(self.equilibrium + amplitude);
         }
         let excess = |start: f64| {
-            let path = period::swing(&self.acceleration(), self.equilibrium, start, self.longest);
+            let path = self.swing(start, self.longest);
             path.map_or(f64::NAN, |path| first_harmonic(&Orbit::Swing(path)).0 - amplitude)
         };
         let at = |factor: f64| self.equilibrium + factor * amplitude;
@@ -637,14 +718,16 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         Some((oscillator, solution, numbers)) => (oscillator, solution, numbers),
         None => (oscillator, solution, numbers),
     };
-    // The truth is good to 1e-15 by quadrature and 1e-11 by Runge-Kutta: an error hundreds of times that is measured to
-    // less than a per cent.
-    let conservative = oscillator
-        .parts()
-        .ok()
-        .is_some_and(|parts| parts.inertia.is_zero() && parts.damping.is_zero());
-    let by_energy = conservative && is_smooth(&oscillator.force, oscillator.coordinate);
-    let floor = if by_energy { 2e-13 } else { 1e-8 };
+    // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an error hundreds of times
+    // that is measured to less than a per cent.
+    let parts = oscillator.parts().ok()?;
+    let conservative = parts.inertia.is_zero() && parts.damping.is_zero();
+    let pieces = !Features::new(&oscillator.force, oscillator.coordinate, numbers).is_empty();
+    let floor = match (conservative, pieces) {
+        (true, false) => 2e-13,
+        (true, true) => 1e-10,
+        (false, _) => 1e-8,
+    };
     let formula_at = |factor: f64| {
         let mut numbers = numbers.clone();
         for small in solution.small_parameters() {
@@ -715,8 +798,7 @@ fn true_frequency(
 ) -> Result<f64, VerificationError> {
     let physics = Physics::new(oscillator, solution, numbers)?;
     if physics.by_energy && solution.amplitude == AmplitudeConvention::Initial {
-        let start = physics.start(solution, numbers)?;
-        return Ok(TAU / period::conservative_period(&physics.force(), physics.equilibrium, start)?);
+        return Ok(TAU / physics.period(physics.start(solution, numbers)?)?);
     }
     TrueMotion::of(oscillator, solution, numbers).map(|truth| truth.frequency)
 }

@@ -1,0 +1,383 @@
+//! The radius of convergence of the series behind a formula, estimated from its coefficients.
+//!
+//! References: C. Domb, M. F. Sykes, Proc. R. Soc. Lond. A 240 (1957) 214-228 (ratios of coefficients); D. L. Hunter, G. A.
+//! Baker, Phys. Rev. B 19 (1979) 3808-3821 (recurrences of coefficients: integral approximants).
+//!
+//! ```text
+//! one singularity at s_0:     c_k/c_(k-1) -> (1/s_0)(1 + b/k + ...)
+//! a pair at R e^(+-i phi):    c_k = (a_0 + a_1/k + a_2/k^2) c_(k-1) + (b_0 + b_1/k + b_2/k^2) c_(k-2),
+//!                             a_0 = 2 cos(phi)/R,  b_0 = -1/R^2
+//! ```
+//!
+//! An estimate is given only where two windows of coefficients, the last ones and those before, agree on it.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+use super::amplitude_series::amplitude_series;
+use super::validity::Range;
+use crate::decimal::significant;
+use crate::exact::Integer;
+use crate::expr::Expr;
+use crate::method::secular::{Amplitude, Detuning, ForceTerm, Normalisation, Scheme, expand};
+use crate::oscillator::{Oscillator, SmallParameter};
+use crate::series::FourierSeries;
+use crate::series::numeric::numeric_taylor;
+use crate::solution::Solution;
+use crate::symbol::Symbol;
+
+/// Coefficients of the series from which its radius of convergence is estimated.
+const SERIES_TERMS: usize = 24;
+
+/// The estimate of a series' nearest singularity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Singularity {
+    /// Its distance from zero: the radius of convergence.
+    pub radius: f64,
+    /// Its angle in the complex plane: 0 on the positive axis, pi on the negative one.
+    pub angle: f64,
+}
+
+/// Coefficients to which a law of ratios is fitted.
+const WINDOW: usize = 8;
+
+/// How well, relative to the radius, two windows must agree.
+const AGREEMENT: f64 = 0.01;
+
+/// The radius of convergence of the series of `solution` in its small parameter, in words; nothing where its coefficients show
+/// no law.
+pub(super) fn convergence(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<Range> {
+    let small = solution.small_parameter;
+    let value = numbers.get(&small).copied()?;
+    let series = match small == solution.amplitude.symbol() {
+        true => in_the_amplitude(oscillator, solution, numbers, value)?,
+        false => in_a_parameter(oscillator, solution, numbers, small)?,
+    };
+    let even = series.coefficients.iter().skip(1).step_by(2).all(|c| *c == 0.0);
+    let coefficients: Vec<f64> = series
+        .coefficients
+        .iter()
+        .step_by(if even { 2 } else { 1 })
+        .copied()
+        .collect();
+    let found = nearest_singularity(&coefficients)?;
+    let (variable, radius, size) = match even {
+        true => (
+            format!("{small}^2"),
+            series.unit * found.radius.sqrt(),
+            series.unit.powi(2) * found.radius,
+        ),
+        false => (
+            small.to_string(),
+            series.unit * found.radius,
+            series.unit * found.radius,
+        ),
+    };
+    let size = significant(size, 3);
+    let place = match found.angle {
+        angle if angle < 1e-9 => format!("{variable} = {size}"),
+        angle if angle > std::f64::consts::PI - 1e-9 => format!("{variable} = -{size}"),
+        angle => format!("{variable} = {size} e^(+-{}i)", significant(angle, 3)),
+    };
+    Some(Range {
+        text: format!(
+            "the series converges for |{small}| < about {}: from {} coefficients the nearest singularity is at {place}",
+            significant(radius, 3),
+            coefficients.len() - 1,
+        ),
+        outside: value.abs() >= radius,
+    })
+}
+
+/// omega^2 in powers of the small parameter over a unit, up to a factor.
+struct Series {
+    coefficients: Vec<f64>,
+    unit: f64,
+}
+
+/// The unit of `x` in which the largest Taylor coefficient of the force is of the size of the linear one, given the
+/// coefficients in another unit.
+fn growth(force: &[f64]) -> f64 {
+    let linear = force[1];
+    let rate = |(k, value): (usize, &f64)| (value / linear).abs().powf(1.0 / (k as f64 - 1.0));
+    force.iter().enumerate().skip(2).map(rate).fold(0.0, f64::max)
+}
+
+/// In the amplitude of a force of the position alone.
+fn in_the_amplitude(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    amplitude: f64,
+) -> Option<Series> {
+    let (highest, few) = (2 * SERIES_TERMS + 1, 9);
+    if oscillator.force.contains(oscillator.velocity()) {
+        return None;
+    }
+    let force = with_numbers(oscillator, numbers, solution.amplitude.symbol())?.force;
+    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
+    let taylor = |unit: f64, degree: usize| numeric_taylor(&force, oscillator.coordinate, equilibrium, unit, degree);
+    // First in the unit of the amplitude, then in that of the nonlinearity, in which powers neither vanish nor explode.
+    let mut unit = amplitude.abs();
+    for degree in [few, highest] {
+        let rate = growth(&taylor(unit, degree)?);
+        if !rate.is_normal() {
+            return None;
+        }
+        unit /= rate;
+    }
+    let mut coefficients = taylor(unit, highest)?;
+    let linear = coefficients[1];
+    if linear <= 0.0 || !linear.is_normal() {
+        return None;
+    }
+    coefficients.iter_mut().for_each(|c| *c /= linear);
+    // About an equilibrium that is rounded, what should be zero is not quite.
+    for k in 0..coefficients.len() {
+        if coefficients[k].abs() < 1e-14 {
+            coefficients[k] = 0.0;
+        }
+    }
+    (coefficients[1], coefficients[0]) = (1.0, 0.0);
+    Some(Series {
+        coefficients: amplitude_series(&coefficients)?,
+        unit,
+    })
+}
+
+/// In a parameter, at the amplitude given: secular terms removed in floating-point numbers.
+fn in_a_parameter(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    small: Symbol,
+) -> Option<Series> {
+    /// Longer products would cost more than the rest of the answer.
+    const MOST_TERMS: usize = 8;
+    const HIGHEST_POWER: u32 = 9;
+    let amplitude = *numbers.get(&solution.amplitude.symbol())?;
+    let numerical = with_numbers(oscillator, numbers, small)?;
+    let centred = crate::equilibrium::centred(&numerical, 1).ok()?;
+    let expanded = centred
+        .oscillator
+        .expand(SmallParameter::Parameter(small), SERIES_TERMS as u32);
+    let force = expanded.ok()?;
+    if force.terms.len() > MOST_TERMS
+        || force
+            .terms
+            .iter()
+            .any(|term| term.position + term.velocity > HIGHEST_POWER)
+    {
+        return None;
+    }
+    let number = |polynomial: &crate::exact::Polynomial| {
+        let value = |symbol| {
+            let meaning = force
+                .definitions
+                .iter()
+                .find(|definition| definition.symbol == symbol)?;
+            meaning.meaning.evaluate(numbers).ok()
+        };
+        let pi = Symbol::new("pi");
+        let value = |symbol| value(symbol).or((symbol == pi).then_some(std::f64::consts::PI));
+        polynomial.evaluate(value).ok()
+    };
+    let linear = number(&force.linear).filter(|linear| *linear > 0.0)?;
+    // C_j = c_j A^(p+q-1) omega0^(q-2), and the unit of the parameter in which the largest is one.
+    let scaled = |term: &crate::oscillator::Term| {
+        let power = i32::try_from(term.position + term.velocity).ok()? - 1;
+        let value = number(&term.coefficient)? / linear * amplitude.powi(power);
+        Some(value * linear.sqrt().powi(i32::try_from(term.velocity).ok()?))
+    };
+    let values: Vec<f64> = force.terms.iter().map(scaled).collect::<Option<_>>()?;
+    let sizes = values.iter().zip(&force.terms);
+    let largest = sizes
+        .map(|(value, term)| value.abs().powf(1.0 / term.order as f64))
+        .fold(0.0, f64::max);
+    if !largest.is_normal() {
+        return None;
+    }
+    let terms: Vec<ForceTerm<f64>> = values
+        .iter()
+        .zip(&force.terms)
+        .map(|(value, term)| ForceTerm {
+            order: term.order,
+            position: term.position,
+            velocity: term.velocity,
+            coefficient: FourierSeries::constant(value / largest.powi(term.order as i32), Integer::from(1)),
+        })
+        .collect();
+    let scheme = Scheme {
+        normalisation: Normalisation::Initial,
+        amplitude: Amplitude::Free,
+        detuning: Detuning::Acceleration,
+    };
+    let expansion = expand(&terms, SERIES_TERMS, &scheme).ok()?;
+    Some(Series {
+        coefficients: expansion
+            .frequency_squared
+            .iter()
+            .map(|constant| constant.mean().0)
+            .collect(),
+        unit: 1.0 / largest,
+    })
+}
+
+/// The equation with exact numbers for all parameters but one.
+fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: Symbol) -> Option<Oscillator> {
+    let names = oscillator.parameters.iter().filter(|&&name| name != but);
+    let exact = |name: &Symbol| {
+        let value = crate::decimal::rounded(*numbers.get(name)?);
+        Some((*name, Expr::number(value)))
+    };
+    let values = names.map(exact).collect::<Option<_>>()?;
+    oscillator.with_values(&values).ok()
+}
+
+/// The nearest singularity of a power series, from its coefficients; `None` where they show no regular pattern.
+pub fn nearest_singularity(coefficients: &[f64]) -> Option<Singularity> {
+    let earlier = coefficients.len().checked_sub(3)?;
+    let (last, before) = (estimate(coefficients)?, estimate(&coefficients[..earlier])?);
+    let agree = (last.radius / before.radius - 1.0).abs() < AGREEMENT && (last.angle - before.angle).abs() < 0.05;
+    agree.then_some(last)
+}
+
+fn estimate(coefficients: &[f64]) -> Option<Singularity> {
+    if coefficients.len() < 2 * WINDOW + 4
+        || coefficients
+            .iter()
+            .rev()
+            .take(WINDOW + 3)
+            .any(|c| *c == 0.0 || !c.is_finite())
+    {
+        return None;
+    }
+    let ratio = |k: usize| coefficients[k] / coefficients[k - 1];
+    let last = coefficients.len() - 1;
+    let window: Vec<usize> = (last + 1 - WINDOW..=last).collect();
+    let signs: f64 = window.iter().map(|&k| ratio(k).signum()).sum();
+    if signs.abs() == WINDOW as f64 {
+        let inverse = extrapolated(&window, &ratio)?;
+        // The limit must be near the ratios themselves, or they follow no such law.
+        if (inverse / ratio(last)).ln().abs() < 0.5 && inverse * signs > 0.0 {
+            let angle = if inverse > 0.0 { 0.0 } else { std::f64::consts::PI };
+            return Some(Singularity {
+                radius: 1.0 / inverse.abs(),
+                angle,
+            });
+        }
+    }
+    pair(coefficients)
+}
+
+/// A pair of complex singularities: the recurrence in the head of this file, by least squares.
+fn pair(coefficients: &[f64]) -> Option<Singularity> {
+    const ROWS: usize = 16;
+    const UNKNOWNS: usize = 6;
+    let first = coefficients.len().checked_sub(ROWS).filter(|first| *first >= 2)?;
+    let mut matrix = DMatrix::zeros(ROWS, UNKNOWNS);
+    let mut right = DVector::zeros(ROWS);
+    for row in 0..ROWS {
+        let k = first + row;
+        let [own, one, two] = [0, 1, 2].map(|back| coefficients[k - back]);
+        // Every row counts alike, however fast the coefficients grow.
+        let size = own.abs().max(one.abs()).max(two.abs());
+        let inverse = 1.0 / k as f64;
+        let columns = [
+            one,
+            one * inverse,
+            one * inverse * inverse,
+            two,
+            two * inverse,
+            two * inverse * inverse,
+        ];
+        for (column, value) in columns.into_iter().enumerate() {
+            matrix[(row, column)] = value / size;
+        }
+        right[row] = own / size;
+    }
+    if matrix.iter().chain(right.iter()).any(|value| !value.is_finite()) {
+        return None;
+    }
+    let solved = matrix.clone().svd(true, true).solve(&right, 1e-14).ok()?;
+    // What is left over says whether the coefficients follow the law at all.
+    let left_over = (&matrix * &solved - &right).norm() / right.norm();
+    let (alpha, beta) = (solved[0], solved[3]);
+    let cosine = 0.5 * alpha / (-beta).sqrt();
+    (left_over < 1e-3 && beta < 0.0 && cosine.abs() <= 1.0).then(|| Singularity {
+        radius: 1.0 / (-beta).sqrt(),
+        angle: cosine.acos(),
+    })
+}
+
+/// The limit of a sequence `limit (1 + b/k + c/k^2)` by least squares over a window.
+fn extrapolated(window: &[usize], of: &dyn Fn(usize) -> f64) -> Option<f64> {
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for &k in window {
+        let inverse = 1.0 / k as f64;
+        let row = Vector3::new(1.0, inverse, inverse * inverse);
+        normal += row * row.transpose();
+        right += row * of(k);
+    }
+    let fitted = normal.lu().solve(&right)?;
+    fitted[0].is_finite().then_some(fitted[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_singularities() {
+        // (1 - s/s0)^(1/2): c_k = c_(k-1) (k - 3/2)/(k s0).
+        for s0 in [2.0, -0.3] {
+            let mut series = vec![1.0];
+            for k in 1..=24 {
+                series.push(series[k - 1] * (k as f64 - 1.5) / (k as f64 * s0));
+            }
+            let found = nearest_singularity(&series).unwrap();
+            assert!((found.radius / f64::abs(s0) - 1.0).abs() < 1e-4, "{found:?}");
+        }
+        // 1/(1 - 2 s cos(phi)/R + (s/R)^2): c_k = sin((k+1) phi)/(R^k sin phi), a pair of poles at R e^(+-i phi).
+        let (radius, phi) = (1.5_f64, 1.0_f64);
+        let series: Vec<f64> = (0..=24)
+            .map(|k| (f64::from(k + 1) * phi).sin() / (radius.powi(k) * phi.sin()))
+            .collect();
+        let found = nearest_singularity(&series).unwrap();
+        assert!(
+            (found.radius - radius).abs() < 1e-6 && (found.angle - phi).abs() < 1e-6,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn the_lattice_of_toda_converges_up_to_2_398() {
+        let force: Vec<f64> = (0..=49)
+            .scan(1.0, |c, k| {
+                *c /= f64::from(k.max(1));
+                Some(if k == 0 { 0.0 } else { *c })
+            })
+            .collect();
+        let found = nearest_singularity(&amplitude_series(&force).unwrap()).unwrap();
+        assert!((found.radius - 2.398).abs() < 0.02, "{found:?}");
+    }
+
+    #[test]
+    fn no_pattern_gives_no_number() {
+        // exp(s) has no singularity; coefficients that end or jump about have no law.
+        let factorials: Vec<f64> = (0..=24)
+            .scan(1.0, |c, k| {
+                *c /= f64::from(k.max(1));
+                Some(*c)
+            })
+            .collect();
+        assert_eq!(nearest_singularity(&factorials), None);
+        let noise: Vec<f64> = (0..=24).map(|k| f64::from((k * k * 7919) % 31) - 15.5).collect();
+        assert_eq!(nearest_singularity(&noise), None);
+    }
+}

@@ -1,0 +1,326 @@
+//! How far a formula is good: the first amplitude at which the error of its frequency crosses the tolerance.
+//!
+//! The error is followed from rest outwards. Between two points it is taken to be as straight as its value in the middle says:
+//! where that leaves room for a crossing the stretch is halved. Where the force, or the formula, may turn fast (corners, narrow
+//! bumps, poles) there are points of their own, and the amplitude asked for is always among them.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use super::validity::{is_conservative, well_of};
+use super::well::Well;
+use super::{Physics, formula_frequency};
+use crate::conservative::features::Features;
+use crate::decimal::significant;
+use crate::expr::Expr;
+use crate::ode::root::find_root;
+use crate::oscillator::Oscillator;
+use crate::solution::{Method, Solution};
+use crate::symbol::Symbol;
+
+/// The true frequency as a function of the amplitude, each value computed once.
+pub(super) struct Truth<'a> {
+    solution: &'a Solution,
+    numbers: &'a BTreeMap<Symbol, f64>,
+    physics: Option<Physics>,
+    known: RefCell<BTreeMap<u64, Option<f64>>>,
+    well: Option<Well>,
+    /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
+    places: Vec<f64>,
+}
+
+/// How far beyond the amplitude asked for a motion without escape is looked at.
+const FARTHEST: f64 = 100.0;
+
+impl<'a> Truth<'a> {
+    pub(super) fn new(oscillator: &'a Oscillator, solution: &'a Solution, numbers: &'a BTreeMap<Symbol, f64>) -> Self {
+        let mut truth = Self {
+            solution,
+            numbers,
+            physics: Physics::new(oscillator, solution, numbers).ok(),
+            known: RefCell::default(),
+            well: well_of(oscillator, solution, numbers),
+            places: vec![],
+        };
+        truth.places = truth.reached_places().unwrap_or_default();
+        truth
+    }
+
+    /// The amplitude asked for, with its sign.
+    fn asked(&self) -> f64 {
+        let symbol = self.solution.amplitude.symbol();
+        self.numbers.get(&symbol).copied().unwrap_or(1.0)
+    }
+
+    /// The numbers with another size of the amplitude.
+    pub(super) fn numbers_at(&self, size: f64) -> BTreeMap<Symbol, f64> {
+        let mut numbers = self.numbers.clone();
+        numbers.insert(self.solution.amplitude.symbol(), size.copysign(self.asked()));
+        numbers
+    }
+
+    /// The size of the amplitude beyond which no motion released on the side asked for is periodic.
+    pub(super) fn largest_amplitude(&self) -> f64 {
+        let end = self.well.and_then(|well| well.on_side(self.asked()));
+        end.map_or(f64::INFINITY, |end| end.amplitude.abs())
+    }
+
+    /// The end of what is looked at.
+    fn farthest(&self) -> f64 {
+        f64::min(0.999 * self.largest_amplitude(), FARTHEST * self.asked().abs())
+            .max(self.asked().abs().min(self.largest_amplitude()))
+    }
+
+    /// The true frequency; `None` where the motion is not periodic.
+    pub(super) fn frequency(&self, size: f64) -> Option<f64> {
+        if let Some(known) = self.known.borrow().get(&size.to_bits()) {
+            return *known;
+        }
+        let found = self.physics.as_ref().and_then(|physics| {
+            let start = physics.start(self.solution, &self.numbers_at(size)).ok()?;
+            physics.period(start).ok().map(|period| std::f64::consts::TAU / period)
+        });
+        self.known.borrow_mut().insert(size.to_bits(), found);
+        found
+    }
+
+    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place.
+    fn reached_places(&self) -> Option<Vec<f64>> {
+        let physics = self.physics.as_ref()?;
+        let (side, farthest) = (self.asked().signum(), self.farthest());
+        let centre = physics.equilibrium;
+        let mut sizes: Vec<f64> = Vec::new();
+        let cuts = physics.features.cuts(centre - farthest, centre + farthest);
+        for place in cuts {
+            let distance = side * (place - centre);
+            if distance > 0.0 {
+                sizes.push(distance);
+                continue;
+            }
+            // The far turning point: by symmetry, or where the energies are equal.
+            sizes.push(-distance);
+            let turns = |size: f64| {
+                let start = centre + side * size;
+                let end = physics.with_force(|force| crate::period::turning_point(force, centre, start));
+                end.map_or(f64::NAN, |end| side * (place - end))
+            };
+            sizes.extend(find_root(turns, 1e-3 * farthest, 0.999 * farthest).ok());
+        }
+        Some(sizes)
+    }
+
+    /// Sizes of the amplitude from rest to the end of what is looked at, in order.
+    pub(super) fn amplitudes(&self) -> Vec<f64> {
+        const PER_DECADE: i32 = 4;
+        const LINEAR: usize = 8;
+        let (asked, farthest) = (self.asked().abs(), self.farthest());
+        let mut sizes: Vec<f64> = (-2 * PER_DECADE..=2 * PER_DECADE)
+            .map(|k| asked * 10.0_f64.powf(f64::from(k) / f64::from(PER_DECADE)))
+            .collect();
+        sizes.extend((1..=LINEAR).map(|k| farthest * k as f64 / LINEAR as f64));
+        sizes.extend((1..=LINEAR).map(|k| asked * k as f64 / LINEAR as f64));
+        sizes.extend(&self.places);
+        sizes.push(asked);
+        sizes.retain(|size| *size > 0.0 && *size <= farthest);
+        sizes.sort_by(f64::total_cmp);
+        sizes.dedup_by(|second, first| *second != asked && *first != asked && *second - *first < 1e-9 * *first);
+        sizes
+    }
+}
+
+/// Sizes of the amplitude at which a law may turn fast: the poles and narrow places of its closed form.
+pub(super) fn places_of_law(solution: &Solution, numbers: &BTreeMap<Symbol, f64>, to: f64) -> Vec<f64> {
+    let symbol = solution.amplitude.symbol();
+    let Some(form) = &solution.closed_form else {
+        return vec![];
+    };
+    let mut law: Expr = form.value.clone();
+    for definition in solution.definitions.iter().rev() {
+        law = law.substitute(definition.symbol, &definition.meaning).unwrap_or(law);
+    }
+    let features = Features::new(&law, symbol, numbers);
+    let mut cuts = features.cuts(0.0, to);
+    // On both sides of a pole, close by.
+    let poles: Vec<f64> = features
+        .between(0.0, to)
+        .iter()
+        .filter(|pole| pole.width == 0.0)
+        .map(|pole| pole.place)
+        .collect();
+    cuts.extend(poles.iter().flat_map(|pole| [pole * (1.0 - 1e-6), pole * (1.0 + 1e-6)]));
+    cuts.into_iter()
+        .map(|place| place * to.signum())
+        .filter(|size| *size > 0.0)
+        .collect()
+}
+
+/// How far a formula is good; amplitudes have their sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// At every amplitude looked at, up to this one.
+    Everywhere(f64),
+    /// Up to this amplitude.
+    UpTo(f64),
+    /// At no amplitude.
+    Nowhere,
+}
+
+impl Reach {
+    /// Whether it ends before an amplitude.
+    pub fn ends_before(self, amplitude: f64) -> bool {
+        match self {
+            Self::Everywhere(_) => false,
+            Self::UpTo(end) => amplitude.abs() > end.abs(),
+            Self::Nowhere => true,
+        }
+    }
+
+    /// The end of the range, where there is one.
+    pub fn end(self) -> Option<f64> {
+        match self {
+            Self::UpTo(end) => Some(end),
+            Self::Nowhere => Some(0.0),
+            Self::Everywhere(_) => None,
+        }
+    }
+
+    pub(super) fn in_words(self, tolerance: f64, amplitude: Symbol) -> String {
+        let percent = significant(100.0 * tolerance, 3);
+        match self {
+            Self::Everywhere(searched) => format!(
+                "within {percent} % at every amplitude looked at, up to {amplitude} = {}",
+                significant(searched, 4)
+            ),
+            Self::UpTo(end) => format!("within {percent} % up to {amplitude} = {}", significant(end, 4)),
+            Self::Nowhere => format!("within {percent} % at no amplitude"),
+        }
+    }
+}
+
+/// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be followed.
+pub(super) fn reach(oscillator: &Oscillator, solution: &Solution, truth: &Truth, tolerance: f64) -> Option<Reach> {
+    if !is_conservative(oscillator) {
+        return None;
+    }
+    let mut amplitudes = truth.amplitudes();
+    let asked = truth.asked();
+    let error = |size: f64| {
+        let true_frequency = truth.frequency(size)?;
+        let frequency = formula_frequency(oscillator, solution, &truth.numbers_at(size));
+        Some(frequency.map_or(f64::INFINITY, |frequency| frequency / true_frequency - 1.0))
+    };
+    if solution.method == Method::Exact {
+        // It is the truth wherever there is one.
+        let good = error(asked.abs())?.abs() <= tolerance;
+        let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
+        return last
+            .filter(|_| good)
+            .map(|last| Reach::Everywhere(last.copysign(asked)));
+    }
+    amplitudes.extend(places_of_law(
+        solution,
+        truth.numbers,
+        asked.signum() * truth.farthest(),
+    ));
+    amplitudes.retain(|size| *size <= truth.farthest());
+    amplitudes.sort_by(f64::total_cmp);
+    let mut points = Vec::new();
+    for size in amplitudes {
+        match error(size) {
+            Some(value) => points.push((size, value)),
+            None => break,
+        }
+        if points.last().is_some_and(|point| point.1.abs() > tolerance) {
+            break;
+        }
+    }
+    let last = points.last()?.0;
+    let follow = Follow {
+        error: &error,
+        tolerance,
+        evaluations: std::cell::Cell::new(0),
+    };
+    let signed = |size: f64| size.copysign(asked);
+    if points[0].1.abs() > tolerance {
+        // Even the smallest amplitude fails; smaller ones only if the error vanishes at rest.
+        let end = follow.crossing((0.0, 0.0), points[0]);
+        let tiny = 1e-3 * points[0].0;
+        return Some(match error(tiny) {
+            Some(value) if value.abs() <= tolerance => Reach::UpTo(signed(end)),
+            _ => Reach::Nowhere,
+        });
+    }
+    for pair in points.windows(2) {
+        if let Some(end) = follow.first_crossing(pair[0], pair[1]) {
+            return Some(Reach::UpTo(signed(end)));
+        }
+    }
+    Some(Reach::Everywhere(signed(last)))
+}
+
+/// A search for the first crossing of a tolerance.
+struct Follow<'a> {
+    error: &'a dyn Fn(f64) -> Option<f64>,
+    tolerance: f64,
+    evaluations: std::cell::Cell<usize>,
+}
+
+impl Follow<'_> {
+    /// The first crossing between two points, of which the first is good.
+    fn first_crossing(&self, from: (f64, f64), to: (f64, f64)) -> Option<f64> {
+        /// How many stretches may be halved in all, and how often one.
+        const MOST: usize = 160;
+        const DEEPEST: usize = 8;
+        let mut open = vec![(from, to, 0)];
+        while let Some((low, high, depth)) = open.pop() {
+            let middle = 0.5 * (low.0 + high.0);
+            if depth >= DEEPEST || self.evaluations.get() >= MOST {
+                if high.1.abs() > self.tolerance {
+                    return Some(self.crossing(low, high));
+                }
+                continue;
+            }
+            let Some(value) = (self.error)(middle) else {
+                continue;
+            };
+            self.evaluations.set(self.evaluations.get() + 1);
+            let middle = (middle, value);
+            let straight = 0.5 * (low.1 + high.1);
+            let bend = (value - straight).abs();
+            let largest = low.1.abs().max(high.1.abs()).max(value.abs());
+            if value.abs() <= self.tolerance
+                && high.1.abs() <= self.tolerance
+                && bend < 0.5 * (self.tolerance - largest)
+            {
+                continue;
+            }
+            if value.abs() > self.tolerance {
+                // What lies beyond the middle does not matter any more.
+                open.clear();
+                if bend.is_finite() && bend < 0.1 * self.tolerance {
+                    return Some(self.crossing(low, middle));
+                }
+            } else if high.1.abs() > self.tolerance && bend.is_finite() && bend < 0.1 * self.tolerance {
+                return Some(self.crossing(middle, high));
+            } else {
+                open.push((middle, high, depth + 1));
+            }
+            open.push((low, middle, depth + 1));
+        }
+        None
+    }
+
+    /// The crossing between a good point and a bad one, by bisection.
+    fn crossing(&self, good: (f64, f64), bad: (f64, f64)) -> f64 {
+        const HALVINGS: usize = 14;
+        let (mut low, mut high) = (good.0, bad.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match (self.error)(middle) {
+                Some(error) if error.abs() <= self.tolerance => low = middle,
+                _ => high = middle,
+            }
+        }
+        low
+    }
+}

@@ -1,0 +1,295 @@
+//! The well of a conservative motion: how far it may be released on either side and still come back.
+//!
+//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Released at rest from `x_e + A` the motion has
+//! the energy `V(x_e + A)` and stays between the walls of the well where that is below both of its rims:
+//!
+//! ```text
+//! V(x_e + A) < V(rim),   rim = the unstable equilibrium on either side, or where the force ends
+//! ```
+//!
+//! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
+
+use crate::conservative::features::Features;
+use crate::decimal::significant;
+use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::ode::root::find_root;
+
+/// Where a well ends on one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rim {
+    /// The unstable equilibrium, or the place where the force ends.
+    pub place: f64,
+    /// Whether it is an unstable equilibrium; otherwise the force has no value beyond it.
+    pub separatrix: bool,
+}
+
+/// The largest amplitude of a periodic motion on one side, with its sign, and the rim over which it would leave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// The amplitude, measured from the equilibrium.
+    pub amplitude: f64,
+    /// What lies beyond.
+    pub rim: Rim,
+}
+
+/// The well in which a conservative motion swings; an end is `None` where none was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Well {
+    /// On the negative side.
+    pub low: Option<End>,
+    /// On the positive side.
+    pub high: Option<End>,
+}
+
+/// How far the search for the rims of a well goes, in units of the amplitude.
+const FARTHEST: f64 = 1e10;
+
+/// Steps of the search over the first amplitude, and the growth of later ones.
+const STEPS: f64 = 64.0;
+const GROWTH: f64 = 1.02;
+
+impl Well {
+    /// The well of `x'' + force(x) = 0` about `equilibrium`, where it has an end; `amplitude` gives the scale of the search.
+    pub fn new(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, amplitude: f64) -> Option<Self> {
+        let unit = amplitude.abs();
+        let rim = |side: f64| rim(force, features, equilibrium, side, unit);
+        let (left, right) = (rim(-1.0), rim(1.0));
+        let rise = |to: f64| rise(force, features, equilibrium, to);
+        let end = |side: f64, own: Option<Rim>, other: Option<Rim>| {
+            let own_end = own.map(|rim| End {
+                amplitude: rim.place - equilibrium,
+                rim,
+            });
+            // Released on this side, the motion may also leave over the other rim.
+            let Some(height) = other.and_then(|rim| rise(rim.place)) else {
+                return own_end;
+            };
+            let excess = |size: f64| rise(equilibrium + side * size).map_or(f64::NAN, |energy| energy / height - 1.0);
+            let (mut low, mut high) = (0.0, own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)));
+            while own_end.is_none() && excess(high) <= 1e-9 && high < FARTHEST * unit {
+                // An amplitude whose energy is the height to the last digit brackets nothing.
+                if excess(high) < -1e-9 {
+                    low = high;
+                }
+                high *= 2.0;
+            }
+            if excess(high) > 1e-9
+                && let Some(rim) = other
+                && let Ok(size) = find_root(|size| if size == 0.0 { -1.0 } else { excess(size) }, low, high)
+            {
+                return Some(End {
+                    amplitude: side * size,
+                    rim,
+                });
+            }
+            own_end
+        };
+        let well = Self {
+            low: end(-1.0, left, right),
+            high: end(1.0, right, left),
+        };
+        (well.low.is_some() || well.high.is_some()).then_some(well)
+    }
+
+    /// The end on the side of an amplitude.
+    pub fn on_side(&self, amplitude: f64) -> Option<End> {
+        if amplitude < 0.0 { self.low } else { self.high }
+    }
+
+    /// Where the motion is periodic, in words; `name` is the letter of the amplitude.
+    pub fn in_words(&self, name: &str) -> String {
+        let because = |rim: Rim| {
+            let place = significant(rim.place, 6);
+            match rim.separatrix {
+                true => format!("the separatrix passes the unstable equilibrium x = {place}"),
+                false => format!("the force ends at x = {place}"),
+            }
+        };
+        let number = |end: End| significant(end.amplitude, 6);
+        match (self.low, self.high) {
+            (Some(low), Some(high)) => {
+                let even = (low.amplitude / high.amplitude + 1.0).abs() < 1e-9;
+                let range = match even {
+                    true => format!("|{name}| < {}", number(high)),
+                    false => format!("{} < {name} < {}", number(low), number(high)),
+                };
+                if even || low.rim == high.rim {
+                    return format!("periodic for {range}: {}", because(high.rim));
+                }
+                format!("periodic for {range}: {}, {}", because(low.rim), because(high.rim))
+            }
+            (Some(low), None) => format!("periodic for {name} > {}: {}", number(low), because(low.rim)),
+            (None, Some(high)) => format!("periodic for {name} < {}: {}", number(high), because(high.rim)),
+            (None, None) => String::new(),
+        }
+    }
+}
+
+/// The potential above the bottom of the well; `None` where it is infinite.
+fn rise(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, to: f64) -> Option<f64> {
+    let mut knots = vec![equilibrium.min(to)];
+    knots.extend(features.cuts(equilibrium, to));
+    knots.push(equilibrium.max(to));
+    let mut sum = 0.0;
+    for pair in knots.windows(2) {
+        sum += match integrate_smooth(force, pair[0], pair[1], 1e-10) {
+            Ok((value, _)) => value,
+            Err(QuadratureError::NotConverged {
+                value, error_estimate, ..
+            }) if error_estimate < 1e-6 * value.abs() => value,
+            Err(_) => return None,
+        };
+    }
+    Some(if to < equilibrium { -sum } else { sum })
+}
+
+/// The first place on one side where the force turns its sign or ends.
+fn rim(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, side: f64, unit: f64) -> Option<Rim> {
+    let pull = |distance: f64| side * force(equilibrium + side * distance);
+    let mut strongest = 0.0_f64;
+    let (mut distance, mut step) = (unit / STEPS, unit / STEPS);
+    let mut window = distance;
+    let mut places: Vec<f64> = Vec::new();
+    while distance < FARTHEST * unit {
+        if distance >= window {
+            // Corners and narrow places of the next stretch, nearest last.
+            let ahead = 4.0 * window.max(unit);
+            places = features
+                .cuts(equilibrium + side * window, equilibrium + side * ahead)
+                .into_iter()
+                .map(|place| side * (place - equilibrium))
+                .collect();
+            places.sort_by(|one, other| other.total_cmp(one));
+            window = ahead;
+        }
+        let mut next = (distance + step).min(window.max(distance + 1e-3 * step));
+        while places.last().is_some_and(|&place| place <= distance) {
+            places.pop();
+        }
+        let mut at_place = false;
+        if let Some(&place) = places.last().filter(|&&place| place <= next) {
+            (next, at_place) = (place, true);
+        }
+        let there = pull(next);
+        if !there.is_finite() && at_place {
+            // A corner at which the expression has no value, but the force goes on; a pole goes on as well, but is no corner.
+            let [just_before, just_behind] = [next * (1.0 - 1e-12), next * (1.0 + 1e-12)];
+            if pull(just_before) <= 1e3 * pull(distance) && pull(just_behind) > 0.0 {
+                distance = just_behind;
+                continue;
+            }
+        }
+        // A force that has grown beyond all numbers goes on, only not in numbers.
+        if !there.is_finite() && strongest > 1e250 {
+            return None;
+        }
+        if !there.is_finite() {
+            // Close in on where the force ends.
+            let (mut inside, mut outside) = (distance, next);
+            for _ in 0..60 {
+                let middle = 0.5 * (inside + outside);
+                if pull(middle).is_finite() {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            return Some(Rim {
+                place: equilibrium + side * outside,
+                separatrix: false,
+            });
+        }
+        if there <= 0.0 {
+            let before = pull(distance);
+            // A force that has died away to nothing has no zero there.
+            if there == 0.0 && before.abs() < 1e-100 * strongest {
+                return None;
+            }
+            let size = if there == 0.0 {
+                next
+            } else {
+                find_root(pull, distance, next).ok()?
+            };
+            // A change of sign by way of infinity is an end, not an equilibrium: next to it the force is far stronger than
+            // at the ends of the step.
+            let near = pull(size).abs().max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
+            return Some(Rim {
+                place: equilibrium + side * size,
+                separatrix: near <= 1e3 * before.abs().max(there.abs()).max(1e-300 * strongest),
+            });
+        }
+        strongest = strongest.max(there);
+        distance = next;
+        if distance > unit {
+            step = distance * (GROWTH - 1.0);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{CompiledFunction, parse_expression};
+    use std::collections::BTreeMap;
+
+    fn ends(text: &str, amplitude: f64) -> (Option<f64>, Option<f64>, String) {
+        let expression = parse_expression(text).unwrap();
+        let force = CompiledFunction::new(&expression, &["x".into()]).unwrap();
+        let features = Features::new(&expression, "x".into(), &BTreeMap::new());
+        let well = Well::new(&|x| force.call(&[x]), &features, 0.0, amplitude);
+        let Some(well) = well else {
+            return (None, None, String::new());
+        };
+        let amplitude = |end: Option<End>| end.map(|end| end.amplitude);
+        (amplitude(well.low), amplitude(well.high), well.in_words("A"))
+    }
+
+    #[test]
+    fn both_ends_have_their_sign() {
+        // V = x^2/2 + x^3/3 is 1/6 at x = -1 and again at x = 1/2.
+        for (text, low, high) in [("x + x^2", -1.0, 0.5), ("x - x^2", -0.5, 1.0)] {
+            for amplitude in [0.1, -0.3, 0.125, -0.25, 1e-6] {
+                let (found_low, found_high, words) = ends(text, amplitude);
+                assert!(
+                    (found_low.unwrap() - low).abs() < 1e-7 && (found_high.unwrap() - high).abs() < 1e-7,
+                    "{words}"
+                );
+                assert!(
+                    words.starts_with(&format!("periodic for {low} < A < {high}: the separatrix")),
+                    "{words}"
+                );
+            }
+        }
+        assert_eq!(
+            ends("x - x^3", 0.5).2,
+            "periodic for |A| < 1: the separatrix passes the unstable equilibrium x = 1"
+        );
+        let (low, high, words) = ends("x/(1 - x)^2", 0.1);
+        assert!(low.is_none() && (high.unwrap() - 1.0).abs() < 1e-9, "{words}");
+        assert!(words.contains("periodic for A < 1: the force ends at x = 1"), "{words}");
+        assert_eq!(ends("x + x^3", 1.0), (None, None, String::new()));
+        assert_eq!(ends("x*exp(-x^2)", 1.0).2, "");
+    }
+
+    #[test]
+    fn the_unit_of_force_and_of_length_does_not_matter() {
+        let pi = std::f64::consts::PI;
+        for strength in ["1e-20", "1e14", "1e16", "1e20"] {
+            let (low, high, words) = ends(&format!("{strength}*sin(x)"), 1.0);
+            assert!(
+                (low.unwrap() + pi).abs() < 1e-9 && (high.unwrap() - pi).abs() < 1e-9,
+                "{words}"
+            );
+            assert!(words.contains("separatrix"), "{strength}: {words}");
+        }
+        let (_, high, words) = ends("1e12*x - 1e26*x^3", 3e-8);
+        assert!(
+            (high.unwrap() / 1e-7 - 1.0).abs() < 1e-9 && words.contains("separatrix"),
+            "{words}"
+        );
+        // A barrier far narrower than the motion: V = x^2/2 + 5*exp(-1e4*(x + 1)^2).
+        let (low, ..) = ends("x - 1e5*(x + 1)*exp(-1e4*(x + 1)^2)", 0.5);
+        assert!((low.unwrap() + 1.0).abs() < 1e-2, "{low:?}");
+    }
+}

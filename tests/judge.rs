@@ -1,0 +1,310 @@
+//! The judge and its ranges on forces that break what looks at points alone, compared with independent truth.
+
+use std::collections::BTreeMap;
+
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::Method;
+use lindstedt::verify::comparison::{Comparison, compare};
+use lindstedt::verify::validity::Reach;
+use lindstedt::verify::{Values, Verification, judge};
+use lindstedt::{Oscillator, Symbol};
+
+fn values(at: &[(&str, &str)]) -> Values {
+    let mut values = Values::default();
+    for (name, value) in at {
+        values.insert(Symbol::new(name), value.parse().unwrap()).unwrap();
+    }
+    values
+}
+
+fn judged(equation: &str, method: Method, at: &[(&str, &str)]) -> Verification {
+    let oscillator = Oscillator::parse(equation).unwrap();
+    let options = Options {
+        method: Some(method),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).unwrap();
+    judge(&oscillator, &solution, &values(at), 0.01).unwrap()
+}
+
+fn compared(equation: &str, at: &[(&str, &str)]) -> Comparison {
+    compare(&Oscillator::parse(equation).unwrap(), &values(at), None, 0.01).unwrap()
+}
+
+fn texts(verification: &Verification) -> String {
+    let texts: Vec<&str> = verification.ranges.iter().map(|range| range.text.as_str()).collect();
+    texts.join("\n")
+}
+
+/// The true frequency by the velocity Verlet scheme in steps far shorter than the bump is wide, extrapolated to none
+/// (L. Verlet, Phys. Rev. 159 (1967) 98): nothing of this is shared with the judge.
+fn by_small_steps(force: impl Fn(f64) -> f64, start: f64, step: f64) -> f64 {
+    let half_period = |h: f64| {
+        let (mut t, mut x, mut v) = (0.0, start, 0.0);
+        let mut a = -force(x);
+        loop {
+            let next = x + h * v + 0.5 * h * h * a;
+            let next_a = -force(next);
+            let next_v = v + 0.5 * h * (a + next_a);
+            if t > 0.0 && next_v * start.signum() >= 0.0 {
+                return t + h * v / (v - next_v);
+            }
+            (t, x, v, a) = (t + h, next, next_v, next_a);
+        }
+    };
+    let (coarse, fine) = (half_period(step), half_period(0.5 * step));
+    std::f64::consts::PI / (fine + (fine - coarse) / 3.0)
+}
+
+#[test]
+fn narrow_places_of_the_force_are_seen() {
+    type Case = (&'static str, fn(f64) -> f64, &'static str, f64);
+    let cases: [Case; 5] = [
+        (
+            "x'' + x - 100000*(x + 1)*exp(-10000*(x + 1)^2) = 0",
+            |x| x - 1e5 * (x + 1.0) * (-1e4 * (x + 1.0).powi(2)).exp(),
+            "2",
+            2.0,
+        ),
+        (
+            "x'' + x + 200*exp(-10000*(x - 1)^2) = 0",
+            |x| x + 200.0 * (-1e4 * (x - 1.0_f64).powi(2)).exp(),
+            "3/2",
+            1.5,
+        ),
+        (
+            "x'' + x + 3/(1 + 1000000*(x - 1/2)^2) = 0",
+            |x| x + 3.0 / (1.0 + 1e6 * (x - 0.5_f64).powi(2)),
+            "1",
+            1.0,
+        ),
+        (
+            "x'' + x + tanh(2000*(x - 1/4)) + 1 = 0",
+            |x| x + (2000.0 * (x - 0.25)).tanh() + 1.0,
+            "-1",
+            -1.0,
+        ),
+        (
+            "x'' + x + 50*(x - 1/3)*H(x - 1/3) = 0",
+            |x| x + 50.0 * (x - 1.0 / 3.0_f64).max(0.0),
+            "-1",
+            -1.0,
+        ),
+    ];
+    for (equation, force, amplitude, start) in cases {
+        let found = judged(equation, Method::Exact, &[("A", amplitude)]);
+        let truth = by_small_steps(force, start, 1e-5);
+        assert!(
+            (found.true_frequency / truth - 1.0).abs() < 1e-6,
+            "{equation}: {} {truth}",
+            found.true_frequency
+        );
+    }
+}
+
+#[test]
+fn a_barrier_is_judged_by_quadrature_between_its_corners() {
+    // One half of the period on each side of x = 0.323: a pendulum, and a linear spring so stiff that gravity is a constant.
+    let linear = judged(
+        "x'' + sin(x) + 1e6*(x - 0.323)*H(x - 0.323) = 0",
+        Method::Exact,
+        &[("A", "-3/2")],
+    );
+    assert!(
+        (linear.true_frequency - 1.520_63).abs() < 1e-5,
+        "{}",
+        linear.true_frequency
+    );
+    assert!(
+        linear.frequency.is_some() && !texts(&linear).contains("no amplitude"),
+        "{}",
+        texts(&linear)
+    );
+    let hertz = compared(
+        "x'' + sin(x) + 30406700*(x - 0.323)^(3/2)*H(x - 0.323) = 0",
+        &[("A", "-3/2")],
+    );
+    assert!((hertz.true_frequency - 1.52).abs() < 2e-3, "{}", hertz.true_frequency);
+    for row in &hertz.rows {
+        let everywhere = matches!(row.reach, Some(Reach::Everywhere(_)));
+        assert!(row.frequency.is_some() || !everywhere, "{}", row.solution.title());
+    }
+}
+
+#[test]
+fn the_unit_of_time_and_length_does_not_matter() {
+    let reference = judged("x'' + sin(x) = 0", Method::LindstedtPoincare, &[("A", "3/2")]);
+    for (equation, amplitude, rate, length) in [
+        ("x'' + 1e14*sin(x) = 0", "3/2", 1e7, 1.0),
+        ("x'' + 1e16*sin(x) = 0", "3/2", 1e8, 1.0),
+        ("x'' + 1e-20*sin(x) = 0", "3/2", 1e-10, 1.0),
+        ("x'' + 1e-12*sin(1e12*x) = 0", "3/2000000000000", 1.0, 1e-12),
+        ("x'' + 1e18*sin(x/1000000) = 0", "1500000", 1e6, 1e6),
+    ] {
+        let found = judged(equation, Method::LindstedtPoincare, &[("A", amplitude)]);
+        assert!(
+            (found.true_frequency / rate / reference.true_frequency - 1.0).abs() < 1e-12,
+            "{equation}"
+        );
+        assert!(
+            (found.relative_error.unwrap() - reference.relative_error.unwrap()).abs() < 1e-12,
+            "{equation}"
+        );
+        let deviation = found.max_deviation.unwrap() / reference.max_deviation.unwrap();
+        assert!((deviation - 1.0).abs() < 1e-6, "{equation}: {deviation}");
+        let edge = lindstedt::decimal::significant(std::f64::consts::PI * length, 6);
+        assert!(
+            texts(&found).contains(&format!("periodic for |A| < {edge}: the separatrix")),
+            "{}",
+            texts(&found)
+        );
+        let radius = lindstedt::decimal::significant(std::f64::consts::PI * length, 3);
+        assert!(
+            texts(&found).contains(&format!("|A| < about {radius}")),
+            "{}",
+            texts(&found)
+        );
+        assert_eq!(found.ranges.len(), reference.ranges.len(), "{}", texts(&found));
+    }
+}
+
+#[test]
+fn the_radius_of_convergence_is_that_of_known_singularities() {
+    // The series of a cubic force ends where the exact modulus does, A^2 = -c1/c3; that of a sine at the separatrix.
+    for (equation, radius) in [
+        ("x'' + 2*x + x^3 = 0", 2.0_f64.sqrt()),
+        ("x'' + x + x^3 = 0", 1.0),
+        ("x'' + 3*sin(x) = 0", std::f64::consts::PI),
+        ("x'' + exp(x) - 1 = 0", 2.398),
+        ("x'' + 7*x + 1e-6*x^3 = 0", 7e6_f64.sqrt()),
+    ] {
+        let found = texts(&judged(equation, Method::LindstedtPoincare, &[("A", "1/2")]));
+        let (_, rest) = found.split_once("|A| < about ").unwrap();
+        let estimate: f64 = rest.split_once(':').unwrap().0.parse().unwrap();
+        assert!((estimate / radius - 1.0).abs() < 0.005, "{equation}: {found}");
+    }
+    let found = judged(
+        "x'' + 2*x + eps*x^3 = 0",
+        Method::LindstedtPoincare,
+        &[("A", "3"), ("eps", "1/10")],
+    );
+    assert!(texts(&found).contains("|eps| < about 0.222:"), "{}", texts(&found));
+}
+
+#[test]
+fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
+    for (equation, amplitude) in [
+        ("x'' + x - x^3/3600 + 2*x^3*exp(-x^2) = 0", "3/2"),
+        ("x'' + x + x^3 = 0", "1/10"),
+        ("x'' + sin(x) = 0", "1"),
+        ("x'' + x + x^2 = 0", "-1/10"),
+        ("x'' + x + 1/5*x^2 - x^3 = 0", "1/4"),
+    ] {
+        let table = compared(equation, &[("A", amplitude)]);
+        let asked = table.at.get("A".into()).unwrap();
+        let oscillator = Oscillator::parse(equation).unwrap();
+        for row in &table.rows {
+            let reach = row.reach.unwrap();
+            let good = row.relative_error.is_some_and(|error| error.abs() <= 0.01);
+            assert_eq!(
+                !reach.ends_before(asked),
+                good,
+                "{equation} {}: {reach:?}",
+                row.solution.title()
+            );
+            let end = reach.end().unwrap_or(asked);
+            // Every amplitude before the end is good, on a grid of its own.
+            for k in 1..=24 {
+                let size = 0.999 * end * f64::from(k) / 24.0;
+                if size == 0.0 {
+                    continue;
+                }
+                let mut at = Values::default();
+                at.insert(
+                    "A".into(),
+                    lindstedt::expr::Expr::number(lindstedt::exact::Rational::from_float(size).unwrap()),
+                )
+                .unwrap();
+                let Ok(motion) = exact_frequency(&oscillator, size) else {
+                    continue;
+                };
+                let law = lindstedt::method::numbers::frequency_squared_of(
+                    &oscillator,
+                    &row.solution,
+                    &BTreeMap::from([("A".into(), size)]),
+                );
+                let error = law.map_or(f64::INFINITY, |law| law.sqrt() / motion - 1.0);
+                assert!(
+                    error.abs() <= 0.0101,
+                    "{equation} {} at {size}: {error}",
+                    row.solution.title()
+                );
+            }
+        }
+    }
+}
+
+fn exact_frequency(oscillator: &Oscillator, amplitude: f64) -> Result<f64, lindstedt::period::PeriodError> {
+    let force = lindstedt::expr::CompiledFunction::new(&oscillator.force, &["x".into()]).unwrap();
+    let force = |x: f64| force.call(&[x]);
+    let force = lindstedt::period::Force::smooth(&force);
+    Ok(std::f64::consts::TAU / lindstedt::period::conservative_period(&force, 0.0, amplitude)?)
+}
+
+#[test]
+fn the_sides_of_a_well_are_told_apart() {
+    let text =
+        |equation: &str, amplitude: &str| texts(&judged(equation, Method::LindstedtPoincare, &[("A", amplitude)]));
+    let quadratic = text("x'' + x - x^2 = 0", "1/4");
+    assert!(
+        quadratic.contains("periodic for -0.5 < A < 1: the separatrix"),
+        "{quadratic}"
+    );
+    let other = text("x'' + x + x^2 = 0", "-1/4");
+    assert!(other.contains("periodic for -1 < A < 0.5"), "{other}");
+    assert!(other.contains("up to A = -0."), "{other}");
+    let zero = text("x'' + x + x^2 = 0", "-9/10");
+    assert!(!zero.contains("reaches zero at A = 0"), "{zero}");
+}
+
+#[test]
+fn the_law_that_is_judged_is_named_and_the_other_has_its_own_error() {
+    let oscillator = Oscillator::parse("x'' + x + eps*x^3 = 0").unwrap();
+    let options = Options {
+        order: Some(4),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).unwrap();
+    let found = judge(&oscillator, &solution, &values(&[("A", "2"), ("eps", "1")]), 0.01).unwrap();
+    // s = eps*A^2 = 4 in omega^2 = 1 + 3 s/4 - 3 s^2/128 + 9 s^3/512 - 1779 s^4/131072 and in its root, term by term.
+    let (squared, truth) = (
+        1.0 + 3.0 - 0.375 + 1.125 - 1779.0 * 256.0 / 131_072.0,
+        found.true_frequency,
+    );
+    let series = 1.0 + 1.5 - 21.0 / 16.0 + 81.0 * 64.0 / 2048.0 - 6549.0 * 256.0 / 262_144.0;
+    assert_eq!(found.judged_on, "omega^2");
+    assert!((found.relative_error.unwrap() - (f64::sqrt(squared) / truth - 1.0)).abs() < 1e-12);
+    assert!(
+        (found.error_of_omega.unwrap() - (series / truth - 1.0)).abs() < 1e-12,
+        "{:?}",
+        found.error_of_omega
+    );
+}
+
+#[test]
+fn coefficients_of_many_digits_cost_no_more_than_short_ones() {
+    // With exact fractions each of these took from ten seconds to minutes; the series behind the ranges runs in rounded numbers.
+    for (equation, radius) in [
+        (
+            "x'' + 0.731*x + 0.4173*x^2 + 0.9131*x^3 + 0.3137*x^4 + 0.1717*x^5 = 0",
+            Some("about 0.7"),
+        ),
+        ("x'' + asin(sin(x)) = 0", None),
+    ] {
+        let found = texts(&judged(equation, Method::LindstedtPoincare, &[("A", "3/10")]));
+        match radius {
+            Some(radius) => assert!(found.contains(radius), "{found}"),
+            None => assert!(!found.contains("converges"), "{found}"),
+        }
+    }
+}

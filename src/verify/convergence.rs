@@ -162,7 +162,7 @@ fn in_a_parameter(
     const HIGHEST_POWER: u32 = 9;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let numerical = with_numbers(oscillator, numbers, small)?;
-    let centred = crate::equilibrium::centred(&numerical, 1).ok()?;
+    let centred = crate::equilibrium::centred(&numerical, None).ok()?;
     let expanded = centred
         .oscillator
         .expand(SmallParameter::Parameter(small), SERIES_TERMS as u32);

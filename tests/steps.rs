@@ -563,6 +563,22 @@ fn max_min_names_where_letters_make_it_turn() {
     assert!((value - 4.25).abs() < 1e-14);
 }
 
+/// Parameters with the names that a derivation uses stay what they are.
+#[test]
+fn orders_and_corrections_have_names_of_their_own() {
+    let solution = solution(
+        "x'' + x + eps*(W1*x^3 + y2*x^5) = 0",
+        &Options {
+            small: Some("eps".to_owned()),
+            ..by(Method::LindstedtPoincare, 2)
+        },
+    );
+    let (text, latex) = (text::steps(&solution), latex::steps(&solution));
+    assert!(text.contains("W_1 = 3*eps*W1*A^2/4 + 5*eps*y2*A^4/8"), "{text}");
+    assert!(text.contains("y_0'' + y_0 = 0") && !text.contains("y0"), "{text}");
+    assert!(!latex.contains("y_{0}''") && latex.contains("W_{1} A^{2}"), "{latex}");
+}
+
 /// What prints as text prints as LaTeX: formulas, not comments.
 #[test]
 fn no_method_leaves_its_derivation_in_comments() {

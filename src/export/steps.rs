@@ -12,7 +12,7 @@ use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::series::terms;
 use crate::solution::{Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh_stem};
 
 /// Whether everything stands in units of omega, and `p` marks the orders.
 fn is_homotopy(solution: &Solution) -> bool {
@@ -28,6 +28,16 @@ fn unit(solution: &Solution) -> Symbol {
     leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)
 }
 
+/// The letters of the orders and of the corrections of the frequency, `y` and `W`, or what is free of the equation's names.
+fn letters(solution: &Solution) -> [String; 2] {
+    ["y", "W"].map(|letter| fresh_stem(letter, &solution.names()))
+}
+
+/// A letter with its order, as LaTeX.
+fn indexed(letter: &str, order: u32) -> String {
+    symbol(Symbol::new(&format!("{letter}{order}")))
+}
+
 /// The derivation as text: the orders of an expansion, or the lines of any other method; empty where there is nothing to show.
 pub fn text(solution: &Solution) -> String {
     if solution.steps.is_empty() && solution.derivation.is_empty() {
@@ -35,17 +45,19 @@ pub fn text(solution: &Solution) -> String {
     }
     let mut text = String::from("Derivation\n");
     if !solution.steps.is_empty() {
-        let (name, unit) = (solution.coordinate(), unit(solution));
+        let (name, unit, [y, w]) = (solution.coordinate(), unit(solution), letters(solution));
         let frame = match is_homotopy(solution) {
             true => [
-                format!("{name} = {unit}*(y0 + p*y1 + p^2*y2 + ...), theta = omega*t, derivatives in theta"),
-                "omega0^2 = omega^2*(1 - p*W1 - p^2*W2 - ...); the nonlinear terms stand at p, all in units of omega^2"
-                    .to_owned(),
+                format!("{name} = {unit}*({y}0 + p*{y}1 + p^2*{y}2 + ...), theta = omega*t, derivatives in theta"),
+                format!(
+                    "omega0^2 = omega^2*(1 - p*{w}1 - p^2*{w}2 - ...); the nonlinear terms stand at p, all in units of omega^2"
+                ),
             ],
             false => [
-                format!("{name} = {unit}*(y0 + y1 + y2 + ...), theta = omega*t, derivatives in theta"),
-                "omega^2 = omega0^2*(1 + W1 + W2 + ...); each order carries its power of the small parameter"
-                    .to_owned(),
+                format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), theta = omega*t, derivatives in theta"),
+                format!(
+                    "omega^2 = omega0^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
+                ),
             ],
         };
         for line in frame {
@@ -68,6 +80,7 @@ pub fn text(solution: &Solution) -> String {
 
 fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     let n = step.order;
+    let [y, w] = letters(solution);
     let waves = |series: &FourierSeries<Polynomial>| {
         terms::sum(terms::waves(
             series,
@@ -78,13 +91,13 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     let conditions: Vec<String> = step
         .conditions
         .iter()
-        .map(|condition| condition_as_text(*condition, n))
+        .map(|condition| condition_as_text(*condition, &format!("{y}{n}")))
         .collect();
     let mut lines = vec![format!("\n  order {n}")];
     if n == 0 {
-        lines.push("    y0'' + y0 = 0".to_owned());
+        lines.push(format!("    {y}0'' + {y}0 = 0"));
     } else {
-        let secular = secular_terms(step, |resonance| by_order(resonance, solution), format!("W{n}"));
+        let secular = secular_terms(step, |resonance| by_order(resonance, solution), format!("{w}{n}"));
         let driven = terms::waves(
             &step.right_side,
             |coefficient| by_order(coefficient, solution),
@@ -95,13 +108,13 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
             false => format!("({secular})*cos(theta)"),
         };
         lines.push(format!(
-            "    y{n}'' + y{n} = {}",
+            "    {y}{n}'' + {y}{n} = {}",
             terms::sum(driven.into_iter().chain([resonant]))
         ));
         lines.push(format!("    no secular cos(theta):  {secular} = 0"));
         if !step.resonance.is_zero() {
             lines.push(format!(
-                "    fixes               W{n} = {}",
+                "    fixes               {w}{n} = {}",
                 by_order(&step.correction, solution)
             ));
         }
@@ -115,11 +128,11 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
         ));
         let what = match n {
             0 => "the amplitude of the limit cycle".to_owned(),
-            _ => format!("the cos(theta) of y{n}"),
+            _ => format!("the cos(theta) of {y}{n}"),
         };
         lines.push(format!("    fixes               {unknown} = {value}, {what}"));
     }
-    lines.push(format!("    y{n} = {}", waves(&step.displacement)));
+    lines.push(format!("    {y}{n} = {}", waves(&step.displacement)));
     lines
 }
 
@@ -131,12 +144,12 @@ fn secular_terms(step: &Step, law: impl Fn(&Polynomial) -> String, correction: S
     }
 }
 
-fn condition_as_text(condition: Condition, n: u32) -> String {
+fn condition_as_text(condition: Condition, y: &str) -> String {
     match condition {
-        Condition::Position(value) => format!("y{n}(0) = {value}"),
-        Condition::AtRest => format!("y{n}'(0) = 0"),
-        Condition::NoCosine => format!("no cos(theta) in y{n}"),
-        Condition::NoSine => format!("no sin(theta) in y{n}"),
+        Condition::Position(value) => format!("{y}(0) = {value}"),
+        Condition::AtRest => format!("{y}'(0) = 0"),
+        Condition::NoCosine => format!("no cos(theta) in {y}"),
+        Condition::NoSine => format!("no sin(theta) in {y}"),
     }
 }
 
@@ -148,20 +161,22 @@ pub fn latex(solution: &Solution) -> String {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
         let (name, unit) = (symbol(solution.coordinate().into()), symbol(unit(solution)));
+        let [y, w] = letters(solution);
+        let ([y0, y1, y2], [w1, w2]) = ([0, 1, 2].map(|n| indexed(&y, n)), [1, 2].map(|n| indexed(&w, n)));
         let (motion, squared) = match is_homotopy(solution) {
             true => (
-                "y_{0} + p y_{1} + p^{2} y_{2} + \\dots",
-                "\\omega_{0}^{2} &= \\omega^{2} \\left(1 - p W_{1} - p^{2} W_{2} - \\dots\\right)",
+                format!("{y0} + p {y1} + p^{{2}} {y2} + \\dots"),
+                format!("\\omega_{{0}}^{{2}} &= \\omega^{{2}} \\left(1 - p {w1} - p^{{2}} {w2} - \\dots\\right)"),
             ),
             false => (
-                "y_{0} + y_{1} + y_{2} + \\dots",
-                "\\omega^{2} &= \\omega_{0}^{2} \\left(1 + W_{1} + W_{2} + \\dots\\right)",
+                format!("{y0} + {y1} + {y2} + \\dots"),
+                format!("\\omega^{{2}} &= \\omega_{{0}}^{{2}} \\left(1 + {w1} + {w2} + \\dots\\right)"),
             ),
         };
         lines.push(format!(
             "{name} &= {unit} \\left({motion}\\right), \\qquad \\theta = \\omega t"
         ));
-        lines.push(squared.to_owned());
+        lines.push(squared);
     }
     lines.extend(solution.derivation.iter().flat_map(line_as_latex));
     for step in &solution.steps {
@@ -172,28 +187,30 @@ pub fn latex(solution: &Solution) -> String {
 
 fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     let n = step.order;
+    let [y, w] = letters(solution);
+    let (y, w) = (indexed(&y, n), indexed(&w, n));
     let law = |polynomial: &Polynomial| latex::law(polynomial, solution);
     let conditions: Vec<String> = step
         .conditions
         .iter()
-        .map(|condition| condition_as_latex(*condition, n))
+        .map(|condition| condition_as_latex(*condition, &y))
         .collect();
     let conditions = conditions.join(", \\quad ");
     let mut lines = Vec::new();
     if n == 0 {
-        lines.push("y_{0}'' + y_{0} &= 0".to_owned());
+        lines.push(format!("{y}'' + {y} &= 0"));
     } else {
-        let secular = secular_terms(step, law, format!("W_{{{n}}}"));
+        let secular = secular_terms(step, law, format!("{w}"));
         let resonant = match step.resonance.is_zero() {
             true => format!("{secular} \\cos \\theta"),
             false => format!("\\left({secular}\\right) \\cos \\theta"),
         };
         let driven = latex::waves(&step.right_side, solution);
         let right_side = terms::sum(driven.into_iter().chain([resonant]));
-        lines.push(format!("y_{{{n}}}'' + y_{{{n}}} &= {right_side}"));
+        lines.push(format!("{y}'' + {y} &= {right_side}"));
         let fixes = match step.resonance.is_zero() {
             true => String::new(),
-            false => format!(" \\quad\\Rightarrow\\quad W_{{{n}}} = {}", law(&step.correction)),
+            false => format!(" \\quad\\Rightarrow\\quad {w} = {}", law(&step.correction)),
         };
         lines.push(format!("{secular} &= 0{fixes}"));
     }
@@ -207,16 +224,16 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
         ));
     }
     let displacement = terms::sum(latex::waves(&step.displacement, solution));
-    lines.push(format!("y_{{{n}}} &= {displacement}, \\qquad {conditions}"));
+    lines.push(format!("{y} &= {displacement}, \\qquad {conditions}"));
     lines
 }
 
-fn condition_as_latex(condition: Condition, n: u32) -> String {
+fn condition_as_latex(condition: Condition, y: &str) -> String {
     match condition {
-        Condition::Position(value) => format!("y_{{{n}}}(0) = {value}"),
-        Condition::AtRest => format!("y_{{{n}}}'(0) = 0"),
-        Condition::NoCosine => format!("\\text{{no $\\cos \\theta$ in $y_{{{n}}}$}}"),
-        Condition::NoSine => format!("\\text{{no $\\sin \\theta$ in $y_{{{n}}}$}}"),
+        Condition::Position(value) => format!("{y}(0) = {value}"),
+        Condition::AtRest => format!("{y}'(0) = 0"),
+        Condition::NoCosine => format!("\\text{{no $\\cos \\theta$ in ${y}$}}"),
+        Condition::NoSine => format!("\\text{{no $\\sin \\theta$ in ${y}$}}"),
     }
 }
 

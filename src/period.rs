@@ -696,13 +696,13 @@ mod tests {
     fn a_motion_in_another_well_is_told_from_one_over_all() {
         let wells = |x: f64| x - x.powi(3) + 0.2 * x.powi(5);
         assert!(matches!(
-            conservative_period(&wells, 0.0, 2.0),
+            conservative_period(&Force::smooth(&wells), 0.0, 2.0),
             Err(PeriodError::OtherWell { .. })
         ));
-        assert!((turning_point(&wells, 0.0, 2.5).unwrap() + 2.5).abs() < 1e-14);
+        assert!((turning_point(&Force::smooth(&wells), 0.0, 2.5).unwrap() + 2.5).abs() < 1e-14);
         let uneven = |x: f64| wells(x) + 0.01;
         assert!(matches!(
-            conservative_period(&uneven, -0.01, -2.0),
+            conservative_period(&Force::smooth(&uneven), -0.01, -2.0),
             Err(PeriodError::OtherWell { .. })
         ));
     }

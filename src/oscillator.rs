@@ -447,6 +447,16 @@ impl Oscillator {
                 1,
             ),
         };
+        // Where a singularity is removable the force at rest is known by its series alone.
+        if let (SmallParameter::Amplitude, Some(at_rest)) = (small, parts.first())
+            && !at_rest.is_zero()
+        {
+            let moves = at_rest.contains(position) || at_rest.contains(velocity);
+            return Err(match moves {
+                true => OscillatorError::NotPolynomial(at_rest.to_string()),
+                false => OscillatorError::NoEquilibrium(at_rest.to_string()),
+            });
+        }
         let mut names = Names::new(self);
         let mut linear = Polynomial::zero();
         let mut terms = Vec::new();

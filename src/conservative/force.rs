@@ -206,7 +206,9 @@ fn near(
             .evaluate_rounded(&there)
             .is_some_and(|(value, error)| error > HARMLESS * value.abs())
     });
-    if !cancels {
+    // At a removable singularity the force has no value of its own, and towards it no digits.
+    let at_rest = value_at(force, coordinate, place, numbers);
+    if !cancels && at_rest.is_some() {
         return None;
     }
     let moved = Expr::from(coordinate) + equilibrium.clone();
@@ -235,6 +237,13 @@ fn near(
         found
     });
     halvings.map(|_| Near { coefficients, radius })
+}
+
+/// The force at a place; `None` where it has no finite value there.
+fn value_at(force: &Expr, coordinate: Symbol, place: f64, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    let mut there = numbers.clone();
+    there.insert(coordinate, place);
+    force.evaluate(&there).ok()
 }
 
 #[cfg(test)]
@@ -271,6 +280,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// `(1 - cos y)/y = 2 sin^2(y/2)/y` and `(exp y - 1)/y - 1`, which the series alone give near rest.
+    #[test]
+    fn a_removable_singularity_is_filled_in() {
+        let cosine = |y: f64| 2.0 * (0.5 * y).sin().powi(2) / y;
+        for amplitude in [2.0, 0.5, 1e-3, 1e-9] {
+            let found = force("(1 - cos(x))/x", "0", amplitude);
+            assert_eq!(found.at(0.0), 0.0);
+            assert!((found.slope(0.0) - 0.5).abs() < 1e-15);
+            for y in [amplitude, -0.37 * amplitude, 1e-3 * amplitude, 1e-7 * amplitude] {
+                let error = (found.at(y) - cosine(y)).abs() / cosine(amplitude);
+                assert!(error < 1e-13, "{y}: {error:e}");
+            }
+            let other = force("(exp(x) - 1)/x - 1", "0", amplitude);
+            assert_eq!(other.at(0.0), 0.0);
+            assert!((other.slope(1e-12 * amplitude) - 0.5).abs() < 1e-11);
+        }
+        // A pole is not filled in.
+        assert!(!force("x - 1/x^3", "0", 0.5).at(0.0).is_finite());
     }
 
     #[test]

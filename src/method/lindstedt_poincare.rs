@@ -370,6 +370,26 @@ fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
 mod tests {
     use super::*;
 
+    /// A quotient whose singularity is removable is its power series.
+    #[test]
+    fn removable_singularities_are_their_series() {
+        for (quotient, series) in [
+            ("(1 - cos(x))/x", "x/2 - x^3/24 + x^5/720"),
+            ("(exp(x) - 1)/x - 1", "x/2 + x^2/6 + x^3/24 + x^4/120 + x^5/720"),
+            ("x^2/tan(x)", "x - x^3/3 - x^5/45"),
+        ] {
+            let laws = [quotient, series].map(|force| {
+                let oscillator = Oscillator::parse(&format!("x'' + {force} = 0")).unwrap();
+                let solution = crate::method::solve(&oscillator, &Options::default()).unwrap();
+                (solution.frequency_squared, solution.displacement)
+            });
+            assert_eq!(laws[0], laws[1], "{quotient}");
+        }
+        let mixed = Oscillator::parse("x'' + x + x'^2/x = 0").unwrap();
+        let refusal = crate::method::solve(&mixed, &Options::default()).unwrap_err();
+        assert!(refusal.to_string().contains("`x'^2/x`"), "{refusal}");
+    }
+
     #[test]
     fn what_is_odd_in_the_velocity_damps_with_or_without_a_series() {
         for (equation, term) in [

@@ -11,8 +11,13 @@
 //! w = F(u)       w' = F'(u) u'      for log, asin, acos, atan, whose derivative is algebraic
 //! ```
 //!
+//! Powers of what vanishes at the point are Laurent series, `u^-n = s^(-m n) (u_m + u_(m+1) s + ...)^-n`, and so are sums and
+//! products of them: `(1 - cos(x))/x`, whose singularity is removable, has the series of the function with its limit put in.
+//!
 //! Each function costs `O(degree^2)` products of coefficients. Coefficients are expressions, so `sin(1/2)`, `sqrt(k)` or
 //! `exp(eps)` stay what they are.
+
+use std::cell::Cell;
 
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
@@ -62,17 +67,66 @@ pub fn taylor(expression: &Expr, point: &[(Symbol, Rational)], degree: u32) -> R
     if degree > HIGHEST_DEGREE {
         return Err(TaylorError::Degree(degree));
     }
-    let expansion = Expansion {
-        point,
-        length: degree as usize + 1,
-    };
-    let mut parts = expansion.of(expression)?;
+    let mut parts = known_to(expression, point, degree as usize + 1)?;
     if let [(variable, _)] = point {
         for (power, part) in (0_i64..).zip(&mut parts) {
             *part = &*part * &Expr::integer_power(&Expr::from(*variable), power)?;
         }
     }
     Ok(parts)
+}
+
+/// The first coefficients, so many of them. Dividing by what vanishes loses the last ones, which more at the start make up for.
+fn known_to(expression: &Expr, point: &[(Symbol, Rational)], count: usize) -> Result<Series, TaylorError> {
+    /// More than the poles of a force have; quotients within quotients lose some at each level.
+    const ATTEMPTS: usize = 6;
+    let mut length = count.max(2);
+    for _ in 0..ATTEMPTS {
+        let expansion = Expansion {
+            point,
+            length,
+            too_short: Cell::new(false),
+        };
+        match expansion.of(expression) {
+            Ok(found) if found.pole > 0 && found.known > 0 => {
+                return Err(expansion.not_analytic(&pole_of(expression, point)));
+            }
+            Ok(mut found) if found.pole == 0 && found.known >= count => {
+                found.coefficients.truncate(count);
+                return Ok(found.coefficients);
+            }
+            Ok(found) => length += (count + found.pole).saturating_sub(found.known).max(1),
+            Err(error) if !expansion.too_short.get() => return Err(error),
+            Err(_) => length += 4,
+        }
+    }
+    let expansion = Expansion {
+        point,
+        length,
+        too_short: Cell::new(false),
+    };
+    Err(expansion.not_analytic(expression))
+}
+
+/// The first factor `u^-n` of an expression that is not finite at the point.
+fn pole_of(expression: &Expr, point: &[(Symbol, Rational)]) -> Expr {
+    let mut first = None;
+    let visited = expression.fold(|expr, _: &[()]| {
+        if first.is_none()
+            && matches!(expr.node(), Node::Power(..))
+            && let Ok(found) = (Expansion {
+                point,
+                length: 8,
+                too_short: Cell::new(false),
+            })
+            .of(expr)
+            && found.pole > 0
+        {
+            first = Some(expr.clone());
+        }
+        Ok::<(), std::convert::Infallible>(())
+    });
+    visited.ok().and(first).unwrap_or_else(|| expression.clone())
 }
 
 /// The Maclaurin coefficient of `u^k` (NIST Digital Library of Mathematical Functions 10.2.2, 10.25.2 and 19.5.1).
@@ -103,43 +157,121 @@ fn special_coefficient(function: Function, k: usize) -> Expr {
 /// A truncated power series in `s`; as many entries as the expansion is long.
 type Series = Vec<Expr>;
 
+/// `s^-pole (c_0 + c_1 s + ...)`; where there is a pole, `c_0` is not zero.
+#[derive(Clone)]
+struct Laurent {
+    pole: usize,
+    /// How many of the coefficients are right: those behind them are zeros in place of what is not known.
+    known: usize,
+    coefficients: Series,
+}
+
 struct Expansion<'a> {
     point: &'a [(Symbol, Rational)],
     length: usize,
+    /// Whether a quotient was refused because nothing of its denominator is seen at this length.
+    too_short: Cell<bool>,
 }
 
 impl Expansion<'_> {
-    fn of(&self, expression: &Expr) -> Result<Series, TaylorError> {
-        expression.fold(|node, children: &[Series]| self.node(node, children))
+    fn of(&self, expression: &Expr) -> Result<Laurent, TaylorError> {
+        expression.fold(|node, children: &[Laurent]| self.node(node, children))
     }
 
     /// The series of one node from the series of its children.
-    fn node(&self, expression: &Expr, children: &[Series]) -> Result<Series, TaylorError> {
-        if children.iter().all(|child| child[1..].iter().all(Expr::is_zero)) && expression.as_symbol().is_none() {
-            let constants: Vec<Expr> = children.iter().map(|child| child[0].clone()).collect();
+    fn node(&self, expression: &Expr, children: &[Laurent]) -> Result<Laurent, TaylorError> {
+        let known = children.iter().map(|child| child.known).min().unwrap_or(self.length);
+        let is_constant = |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
+        let is_power = |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
+        // What vanishes so far may be no constant at a greater length.
+        let may_vanish = is_power(expression) && children.first().is_some_and(|base| base.coefficients[0].is_zero());
+        if known == self.length && !may_vanish && children.iter().all(is_constant) && expression.as_symbol().is_none() {
+            let constants: Vec<Expr> = children.iter().map(|child| child.coefficients[0].clone()).collect();
             // sgn(0) has a value, but no series goes through it.
             if !self.depends_on_variables(expression) || !matches!(expression.node(), Node::Function(..)) {
-                return Ok(self.constant(expression.with_children(&constants)?));
+                return Ok(self.regular(self.constant(expression.with_children(&constants)?), known));
             }
         }
         match (expression.node(), children) {
-            (Node::Symbol(symbol), _) => Ok(self.variable(*symbol, expression)),
-            (Node::Sum(_), terms) => {
-                let column = |k: usize| Expr::sum(terms.iter().map(|term| term[k].clone()));
-                Ok((0..self.length).map(column).collect())
-            }
+            (Node::Sum(_), terms) => return Ok(self.sum(terms)),
             (Node::Product(coefficient, _), factors) => {
-                let start = self.constant(Expr::number(coefficient.clone()));
-                factors
+                let start = self.regular(self.constant(Expr::number(coefficient.clone())), self.length);
+                return factors
                     .iter()
-                    .try_fold(start, |product, factor| self.product(&product, factor))
+                    .try_fold(start, |product, factor| self.laurent_product(&product, factor));
             }
-            (Node::Power(_, exponent), [base, exponents]) => match exponent.as_number() {
-                Some(exponent) => self.power(base, exponent, expression),
-                None => self.exponential(&self.product(exponents, &self.logarithm(base, expression)?)?),
-            },
-            (Node::Function(function, _), arguments) => self.function(*function, arguments, expression),
-            (Node::Number(_) | Node::Pi | Node::Power(..), _) => Ok(self.constant(expression.clone())),
+            (Node::Power(_, exponent), [base, _]) => {
+                if let Some(exponent) = exponent.as_number() {
+                    return self.power(base, exponent, expression);
+                }
+            }
+            _ => {}
+        }
+        if let Some((term, _)) = expression.children().zip(children).find(|(_, child)| child.pole > 0) {
+            return Err(self.not_analytic(term));
+        }
+        let series = |child: &Laurent| child.coefficients.clone();
+        let children: Vec<Series> = children.iter().map(series).collect();
+        let coefficients = match (expression.node(), children.as_slice()) {
+            (Node::Symbol(symbol), _) => self.variable(*symbol, expression),
+            (Node::Power(..), [base, exponents]) => {
+                self.exponential(&self.product(exponents, &self.logarithm(base, expression)?)?)?
+            }
+            (Node::Function(function, _), arguments) => self.function(*function, arguments, expression)?,
+            _ => self.constant(expression.clone()),
+        };
+        Ok(self.regular(coefficients, known))
+    }
+
+    fn regular(&self, coefficients: Series, known: usize) -> Laurent {
+        Laurent {
+            pole: 0,
+            known,
+            coefficients,
+        }
+    }
+
+    fn sum(&self, terms: &[Laurent]) -> Laurent {
+        let pole = terms.iter().map(|term| term.pole).max().unwrap_or(0);
+        let behind = |term: &Laurent| pole - term.pole;
+        let column = |k: usize| {
+            let entries = terms.iter().filter(|term| k >= behind(term));
+            Expr::sum(entries.map(|term| term.coefficients[k - behind(term)].clone()))
+        };
+        let known = terms.iter().map(|term| term.known + behind(term)).min();
+        self.reduced(Laurent {
+            pole,
+            known: known.unwrap_or(self.length).min(self.length),
+            coefficients: (0..self.length).map(column).collect(),
+        })
+    }
+
+    fn laurent_product(&self, left: &Laurent, right: &Laurent) -> Result<Laurent, TaylorError> {
+        Ok(self.reduced(Laurent {
+            pole: left.pole + right.pole,
+            known: left.known.min(right.known),
+            coefficients: self.product(&left.coefficients, &right.coefficients)?,
+        }))
+    }
+
+    /// A pole that is none taken off: leading zeros.
+    fn reduced(&self, mut series: Laurent) -> Laurent {
+        let known = &series.coefficients[..series.known];
+        let zeros = known.iter().take_while(|coefficient| coefficient.is_zero()).count();
+        let removable = zeros.min(series.pole);
+        series.coefficients.drain(..removable);
+        series.coefficients.resize(self.length, Expr::zero());
+        series.pole -= removable;
+        series.known -= removable;
+        series
+    }
+
+    /// As [`Expansion::power`], of a series without a pole that does not vanish.
+    fn regular_power(&self, base: &Series, exponent: &Rational, term: &Expr) -> Result<Series, TaylorError> {
+        let found = self.power(&self.regular(base.clone(), self.length), exponent, term)?;
+        match found.pole {
+            0 => Ok(found.coefficients),
+            _ => Err(self.not_analytic(term)),
         }
     }
 
@@ -193,33 +325,35 @@ impl Expansion<'_> {
         Ok(series)
     }
 
-    fn power(&self, base: &Series, exponent: &Rational, term: &Expr) -> Result<Series, TaylorError> {
-        let Some(lowest) = base.iter().position(|coefficient| !coefficient.is_zero()) else {
-            // Zero to all orders kept: a positive power of it is zero as well, anything else does not exist.
-            return if exponent.is_positive() && exponent.is_integer() {
-                Ok(self.constant(Expr::zero()))
+    fn power(&self, base: &Laurent, exponent: &Rational, term: &Expr) -> Result<Laurent, TaylorError> {
+        let known = &base.coefficients[..base.known];
+        let Some(lowest) = known.iter().position(|coefficient| !coefficient.is_zero()) else {
+            // Zero to all orders kept: a positive power of it is zero as well, anything else needs more of them.
+            return if base.pole == 0 && exponent.is_positive() && exponent.is_integer() {
+                Ok(self.regular(self.constant(Expr::zero()), base.known))
             } else {
+                self.too_short.set(true);
                 Err(self.not_analytic(term))
             };
         };
-        let shift = Rational::from_integer(lowest.into()) * exponent;
+        let shift = (integer(lowest) - integer(base.pole)) * exponent;
         // (s^m)^(p/q) with q even is |s|^(m p/q): analytic only where m p/q is an even whole number.
         let even_root = !exponent.denom().bit(0);
-        let whole = shift.is_integer() && !shift.is_negative();
-        if lowest > 0 && (!whole || (even_root && shift.numer().bit(0))) {
+        if !shift.is_integer() || (even_root && shift.numer().bit(0)) {
             return Err(self.not_analytic(term));
         }
-        if even_root && sign_of(&base[lowest]) == Some(std::cmp::Ordering::Less) {
+        if even_root && sign_of(&base.coefficients[lowest]) == Some(std::cmp::Ordering::Less) {
             return Err(self.not_analytic(term));
         }
-        let shift = shift.to_usize().unwrap_or(usize::MAX);
-        let mut result = vec![Expr::zero(); self.length.min(shift)];
-        if shift >= self.length {
-            return Ok(result);
+        let size = shift.abs().to_usize().unwrap_or(usize::MAX);
+        let (zeros, pole) = if shift.is_negative() { (0, size) } else { (size, 0) };
+        let mut result = vec![Expr::zero(); self.length.min(zeros)];
+        if zeros >= self.length {
+            return Ok(self.regular(result, self.length));
         }
-        let reduced = &base[lowest..];
+        let reduced = &known[lowest..];
         let mut powers = vec![Expr::power(&reduced[0], &Expr::number(exponent.clone()))?];
-        for k in 1..self.length - shift {
+        for k in 1..reduced.len().min(self.length - zeros) {
             let weight = |j: usize| (exponent + Rational::one()) * integer(j) - integer(k);
             let terms: Result<Vec<Expr>, TaylorError> = (1..=k)
                 .filter(|&j| reduced.get(j).is_some_and(|u| !u.is_zero()) && !powers[k - j].is_zero())
@@ -229,7 +363,13 @@ impl Expansion<'_> {
             powers.push(Expr::divide(&sum, &(&number(k) * &reduced[0]))?.expand()?);
         }
         result.extend(powers);
-        Ok(result)
+        let known = result.len();
+        result.resize(self.length, Expr::zero());
+        Ok(Laurent {
+            pole,
+            known,
+            coefficients: result,
+        })
     }
 
     fn exponential(&self, of: &Series) -> Result<Series, TaylorError> {
@@ -246,7 +386,7 @@ impl Expansion<'_> {
             return Err(self.not_analytic(term));
         }
         let start = Expr::function(Function::Log, vec![of[0].clone()])?;
-        let reciprocal = self.power(of, &-Rational::one(), term)?;
+        let reciprocal = self.regular_power(of, &-Rational::one(), term)?;
         self.integral(start, &reciprocal, of)
     }
 
@@ -282,7 +422,7 @@ impl Expansion<'_> {
             Function::Cosh => Ok(self.sine_and_cosine(of, true)?.1),
             Function::Tan | Function::Tanh => {
                 let (sine, cosine) = self.sine_and_cosine(of, function == Function::Tanh)?;
-                self.product(&sine, &self.power(&cosine, &-Rational::one(), term)?)
+                self.product(&sine, &self.regular_power(&cosine, &-Rational::one(), term)?)
             }
             Function::Exp => self.exponential(of),
             Function::Log => self.logarithm(of, term),
@@ -297,7 +437,7 @@ impl Expansion<'_> {
                 } else {
                     crate::exact::rational::ratio(-1, 2)
                 };
-                let mut derivative = self.power(&radicand, &exponent, term)?;
+                let mut derivative = self.regular_power(&radicand, &exponent, term)?;
                 if function == Function::Acos {
                     derivative = self.times(&derivative, &Expr::from(-1))?;
                 }
@@ -402,4 +542,66 @@ fn integer_sign(sign: i64) -> Rational {
 
 fn number(value: usize) -> Expr {
     Expr::number(integer(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::parse_expression;
+
+    /// The coefficients up to x^degree as text.
+    fn coefficients(text: &str, degree: u32) -> Result<Vec<String>, TaylorError> {
+        let parts = taylor(&parse_expression(text).unwrap(), &[("x".into(), Zero::zero())], degree)?;
+        assert_eq!(parts.len(), degree as usize + 1);
+        let one = |part: &Expr| part.substitute("x".into(), &Expr::one()).unwrap().to_string();
+        Ok(parts.iter().map(one).collect())
+    }
+
+    #[test]
+    fn removable_singularities() {
+        for (text, expected) in [
+            ("(1 - cos(x))/x", ["0", "1/2", "0", "-1/24", "0"]),
+            ("1/x - cos(x)/x", ["0", "1/2", "0", "-1/24", "0"]),
+            ("sin(x)/x*x^2", ["0", "0", "1", "0", "-1/6"]),
+            ("(exp(x) - 1)/x - 1", ["0", "1/2", "1/6", "1/24", "1/120"]),
+            ("x/sin(x)", ["1", "0", "1/6", "0", "7/360"]),
+            ("1/sin(x) - 1/x", ["0", "1/6", "0", "7/360", "0"]),
+            ("(x - sin(x))/x^2", ["0", "1/6", "0", "-1/120", "0"]),
+            ("x^3/(1 - cos(x))", ["0", "2", "0", "1/6", "0"]),
+            ("sin(x)/x", ["1", "0", "-1/6", "0", "1/120"]),
+            ("log(sin(x)/x + x)", ["0", "1", "-2/3", "1/2", "-19/45"]),
+            ("1/(1/x + 1)", ["0", "1", "-1", "1", "-1"]),
+            ("x*sqrt((1 - cos(x))/x^2*2)", ["0", "1", "0", "-1/24", "0"]),
+            ("tanh(k*x)/x - k + x", ["0", "1", "-k^3/3", "0", "2*k^5/15"]),
+            // The square root needs more of its radicand than it gives.
+            ("sqrt(x^4 + x^5)", ["0", "0", "1", "1/2", "-1/8"]),
+        ] {
+            for degree in 0..5 {
+                let found = coefficients(text, degree).unwrap_or_else(|error| panic!("{text}: {error}"));
+                assert_eq!(found, expected[..=degree as usize], "{text} to {degree}");
+            }
+        }
+    }
+
+    #[test]
+    fn poles_are_none() {
+        for (text, term) in [
+            ("1/x", "1/x"),
+            ("x - 1/x^3", "1/x^3"),
+            ("cos(x)/x", "1/x"),
+            ("(1 - cos(x))/x^3", "1/x^3"),
+            ("exp(1/x)", "1/x"),
+            ("x + (1 + x)/sin(x)", "1/sin(x)"),
+            ("sqrt(x^2)/x", "sqrt(x^2)"),
+            ("x^(-1/3)", "1/x^(1/3)"),
+        ] {
+            let expected = TaylorError::NotAnalytic {
+                term: term.into(),
+                point: "x = 0".into(),
+            };
+            for degree in [0, 1, 4] {
+                assert_eq!(coefficients(text, degree), Err(expected.clone()), "{text}");
+            }
+        }
+    }
 }

@@ -479,6 +479,12 @@ fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Res
         centred.numerical = true;
         return Ok(centred);
     }
+    if number == Some(0.0) {
+        let at_rest =
+            value_at(&oscillator.force, coordinate, &Expr::zero())?.substitute(oscillator.velocity(), &Expr::zero())?;
+        centred.oscillator.force = &oscillator.force - &at_rest;
+        return Ok(centred);
+    }
     // What stands for the equilibrium is positive wherever that is known, as edges of barriers are taken to be.
     let negative = number.is_some_and(|number| number < 0.0);
     let symbol = fresh_name(oscillator);

@@ -157,8 +157,9 @@ fn negative_constants_are_no_stiffness() {
         "x'' + (sin(1)^2 + cos(1)^2 - 1)*x + eps*x^3 = 0",
     ] {
         let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
+        let refused = ["linear restoring force", "unstable"];
         assert!(
-            refusal.to_string().contains("linear restoring force"),
+            refused.iter().any(|words| refusal.to_string().contains(words)),
             "{equation}: {refusal}"
         );
     }

@@ -35,10 +35,24 @@ const MOST: usize = 24;
 pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     let mut found = Vec::new();
     let nearest = 10_f64.powi(-DECADES);
-    let (left, right) = (value(-nearest), value(nearest));
-    if [left, value(0.0), right].iter().all(|force| *force != 0.0)
+    // A force at rest that is smaller than the rounding beside it leaves the zero at zero: the first force that is felt on
+    // either side tells its sign.
+    let at_zero = value(0.0) == 0.0;
+    let felt = |side: f64| {
+        let mut forces = places(side, &[]).into_iter().map(value).take_while(|force| force.is_finite());
+        forces.find(|force| *force != 0.0).unwrap_or(0.0)
+    };
+    let (left, right) = match at_zero {
+        true => (felt(-1.0), felt(1.0)),
+        false => (value(-nearest), value(nearest)),
+    };
+    let position = match at_zero {
+        true => Some(0.0),
+        false => crossing(value, -nearest, nearest),
+    };
+    if [left, right].iter().all(|force| *force != 0.0)
         && left.signum() != right.signum()
-        && let Some(position) = crossing(value, -nearest, nearest)
+        && let Some(position) = position
     {
         found.push(Zero {
             position,

@@ -90,9 +90,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
     solution.validity.push(match order {
-        1 => format!("order 1: w0 alone, the terms without {embedding}"),
+        1 => format!("order 1: the first frequency alone, the terms without {embedding}"),
         _ => format!(
-            "order {order}: w0 and {}, truncated after {embedding}^{}",
+            "order {order}: the first frequency and {}, truncated after {embedding}^{}",
             corrections(order - 1),
             order - 1
         ),

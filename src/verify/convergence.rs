@@ -137,11 +137,10 @@ fn in_the_amplitude(
         return None;
     }
     coefficients.iter_mut().for_each(|c| *c /= linear);
-    // About an equilibrium that is rounded, what should be zero is not quite.
-    for k in 0..coefficients.len() {
-        if coefficients[k].abs() < 1e-14 {
-            coefficients[k] = 0.0;
-        }
+    // About an equilibrium that is rounded, an odd force is not quite odd.
+    let even = || (2..highest + 1).step_by(2);
+    if even().all(|k| coefficients[k].abs() < 1e-14) {
+        even().for_each(|k| coefficients[k] = 0.0);
     }
     (coefficients[1], coefficients[0]) = (1.0, 0.0);
     Some(Series {

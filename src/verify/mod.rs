@@ -722,7 +722,12 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
     // that is measured to less than a per cent.
     let parts = oscillator.parts().ok()?;
     let conservative = parts.inertia.is_zero() && parts.damping.is_zero();
-    let pieces = !Features::new(&oscillator.force, oscillator.coordinate, numbers).is_empty();
+    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+    let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
+    let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
+    let pieces = !features
+        .cuts(equilibrium - amplitude, equilibrium + amplitude)
+        .is_empty();
     let floor = match (conservative, pieces) {
         (true, false) => 2e-13,
         (true, true) => 1e-10,

@@ -39,7 +39,10 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     // either side tells its sign.
     let at_zero = value(0.0) == 0.0;
     let felt = |side: f64| {
-        let mut forces = places(side, &[]).into_iter().map(value).take_while(|force| force.is_finite());
+        let mut forces = places(side, &[])
+            .into_iter()
+            .map(value)
+            .take_while(|force| force.is_finite());
         forces.find(|force| *force != 0.0).unwrap_or(0.0)
     };
     let (left, right) = match at_zero {

@@ -30,7 +30,7 @@ use super::expansion::expand_exactly;
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
-use super::{Options, Refusal, first_term};
+use super::{Options, Refusal, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::{Polynomial, Ring};
 use crate::expr::Expr;
@@ -60,7 +60,16 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         small_with,
         order,
         bookkeeping,
-    } = perturbation(oscillator, &parts, options)?;
+    } = match perturbation(oscillator, &parts, options) {
+        Err(Refusal::Oscillator(refusal @ OscillatorError::NotPolynomial(_))) => {
+            return match in_a_parameter(oscillator, options) {
+                Some((small, order)) => first_order::solve(oscillator, &parts, options, small, order)?,
+                None => None,
+            }
+            .ok_or(refusal.into());
+        }
+        other => other?,
+    };
     let mut taken = oscillator.names();
     let (linear_frequency, definition) = force.linear_frequency(&taken);
     // Constants of the linear force alone are written out in its definition.
@@ -246,6 +255,15 @@ struct Perturbation {
     order: u32,
     /// The value of a small parameter that the equation does not have.
     bookkeeping: Option<Definition>,
+}
+
+/// The parameter in which to expand and the order, where it is not the amplitude.
+fn in_a_parameter(oscillator: &Oscillator, options: &Options) -> Option<(Symbol, u32)> {
+    match oscillator.small_parameter(options.small.as_deref()) {
+        // A force that is no polynomial has no higher order to default to.
+        Ok(SmallParameter::Parameter(small)) => Some((small, options.order.unwrap_or(1))),
+        _ => None,
+    }
 }
 
 /// The force in powers of the small parameter; of a self-excited equation that has none, in powers of one that marks all

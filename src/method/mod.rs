@@ -8,6 +8,7 @@ pub mod balance;
 pub mod energy_balance;
 pub mod exact;
 pub mod expansion;
+pub mod first_order;
 pub mod frequency_formula;
 pub mod hamiltonian;
 pub mod harmonic_balance;
@@ -217,6 +218,9 @@ impl Refusal {
             Self::HighestOrder { highest, .. } => Some(format!("try --order {highest}")),
             Self::PolynomialOnly { method, .. } if *method == Method::IterationPerturbation.title() => {
                 Some("try --order 1, which takes any force, or --method homotopy-perturbation".to_owned())
+            }
+            Self::PolynomialOnly { method, .. } if *method == Method::LindstedtPoincare.title() => {
+                Some("try --order 1, which takes this force as it is".to_owned())
             }
             Self::PolynomialOnly { .. } => {
                 Some("try --order 1, which takes any force, or --taylor DEGREE".to_owned())

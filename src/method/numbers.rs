@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use num_traits::One;
 
-use super::{balance, energy_balance, harmonic_balance, homotopy_analysis, inertia, one_term};
+use super::{balance, energy_balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::features::Features;
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
@@ -159,6 +159,13 @@ fn by_size(solution: &Solution) -> bool {
             solution.method,
             Method::Pade | Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::LindstedtPoincare
         )
+        || is_first_order(solution)
+}
+
+/// Whether an expansion stopped at the projection of a force that is no polynomial.
+fn is_first_order(solution: &Solution) -> bool {
+    // The series itself always has omega beside omega^2.
+    solution.method == Method::LindstedtPoincare && solution.frequency.is_none()
 }
 
 /// Whether the law is that of a motion `A cos(theta)`.
@@ -255,7 +262,12 @@ fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMa
     if solution.method == Method::Exact {
         return exact_motion(oscillator, solution, numbers).map(|found| found.0);
     }
-    let force = force_of(oscillator, solution, numbers)?;
+    let force = if is_first_order(solution) {
+        let force = first_order::truncated(oscillator, solution.small_parameter)?;
+        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
+    } else {
+        force_of(oscillator, solution, numbers)?
+    };
     let law = match solution.method {
         Method::EnergyBalance => energy_balance::by_quadrature(&force, size)?,
         Method::AmplitudeFrequency => {
@@ -268,6 +280,7 @@ fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMa
         | Method::VariationalIteration
         | Method::IterationPerturbation
         | Method::ParameterExpansion
+        | Method::LindstedtPoincare
         | Method::HarmonicBalance => one_term::coefficient(&force, size, 1).0 / size,
         _ => return None,
     };

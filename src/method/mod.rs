@@ -282,6 +282,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             .push(format!("for {assumption}: no barrier acts at rest"));
     }
     if centred.position.is_zero() {
+        // The question is the equation as it was typed, whatever a method made of its force.
+        solution.equation = oscillator.equation();
         return Ok(solution);
     }
     if let (Some(degree), true) = (degree, centred.numerical && !polynomial && by_taylor_polynomial(method)) {

@@ -63,11 +63,18 @@ pub(super) fn of_equation(
 ) -> Option<Range> {
     let well = well_of(oscillator, solution, numbers)?;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-    Some(Range {
-        text: well.in_words(solution.amplitude.symbol().name()),
-        outside: well
-            .on_side(amplitude)
-            .is_some_and(|end| amplitude.abs() >= end.amplitude.abs()),
+    let beyond = well
+        .on_side(amplitude)
+        .is_some_and(|end| amplitude.abs() >= end.amplitude.abs());
+    let text = well.in_words(solution.amplitude.symbol().name());
+    // Past the edge of one well the motion may still be periodic, over several.
+    let over_all = beyond && super::true_frequency(oscillator, solution, numbers).is_ok();
+    Some(match over_all {
+        true => Range {
+            text: format!("{text}; beyond it the motion runs over several wells, and does so here"),
+            outside: false,
+        },
+        false => Range { text, outside: beyond },
     })
 }
 

@@ -9,10 +9,15 @@ use serde_json::{Value, json};
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate");
 
 fn run(arguments: &[&str]) -> Output {
+    run_for("60", arguments)
+}
+
+/// With this time limit, in seconds.
+fn run_for(seconds: &str, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .arg("simulate")
         .args(arguments)
-        .args(["--timeout", "60"])
+        .args(["--timeout", seconds])
         .output()
         .expect("the program starts")
 }
@@ -223,7 +228,7 @@ fn steps_and_seconds_are_limits_that_are_said() {
     );
 
     std::fs::write(&path, "[run]\nduration = 1e9\nstep_limit = 10000000\n").expect("a file");
-    let output = run(&[file, "--format", "json", "--timeout", "0.2"]);
+    let output = run_for("0.2", &[file, "--format", "json"]);
     assert_eq!(output.status.code(), Some(4));
     let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(document["complete"], false);

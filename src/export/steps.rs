@@ -200,7 +200,7 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     if n == 0 {
         lines.push(format!("{y}'' + {y} &= 0"));
     } else {
-        let secular = secular_terms(step, law, format!("{w}"));
+        let secular = secular_terms(step, law, w.to_string());
         let resonant = match step.resonance.is_zero() {
             true => format!("{secular} \\cos \\theta"),
             false => format!("\\left({secular}\\right) \\cos \\theta"),

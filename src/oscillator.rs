@@ -288,7 +288,7 @@ impl Oscillator {
     }
 
     /// The names that mean something in the equation: parameters, coordinate and time. What a method introduces is named by
-    /// [`fresh`](crate::symbol::fresh) beside them.
+    /// [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
         let own = [self.coordinate, Symbol::new("t")];
         self.parameters.iter().copied().chain(own).collect()

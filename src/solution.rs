@@ -374,7 +374,7 @@ impl Solution {
     }
 
     /// The names that mean something in this answer already: parameters, coordinate, definitions, `t`. What a report introduces is
-    /// named by [`fresh`](crate::symbol::fresh) beside them.
+    /// named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
         let own = ["t", self.coordinate()].map(Symbol::new);
         let defined = self.definitions.iter().map(|definition| definition.symbol);

@@ -271,7 +271,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let centred = centred(oscillator, degree)?;
     let options = &about_a_load(&centred, options);
     let mut solution = by_method(method, &centred.oscillator, options)?;
-    if expands(method) && has_corners(&oscillator.force) {
+    // The first order of a force that is no polynomial projects the force as it is, corners and all.
+    let projected = method == Method::LindstedtPoincare && solution.frequency.is_none();
+    if expands(method) && !projected && has_corners(&oscillator.force) {
         solution
             .validity
             .push("the force has corners: the expansion holds for motions that stay before the nearest".to_owned());

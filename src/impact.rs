@@ -251,17 +251,48 @@ impl Impact {
 
     /// The verdict on a column: every quantity within the tolerance.
     pub fn verdict(&self, column: Column, tolerance: f64) -> Verdict {
-        let error = |quantity: &Quantity| match column {
-            Column::Paper => quantity.paper_error(),
-            Column::Energy => quantity.energy_error(),
-        };
-        match self
-            .quantities()
-            .iter()
-            .all(|quantity| error(quantity).abs() <= tolerance)
-        {
+        match self.shortcomings(column, tolerance).is_empty() {
             true => Verdict::Pass,
             false => Verdict::Fail,
         }
+    }
+
+    /// What lies beyond the tolerance in a column: the quantities with their errors, and what of the closed form they come
+    /// from.
+    pub fn shortcomings(&self, column: Column, tolerance: f64) -> Vec<(Vec<(&'static str, f64)>, String)> {
+        let order = self.law.order;
+        let (speed, met) = match column {
+            Column::Paper => (
+                "the contact begins with the speed of that cosine",
+                ", met with that speed",
+            ),
+            Column::Energy => ("the contact begins with the speed from the energy", ""),
+        };
+        let causes = [
+            (
+                vec!["time to contact", "period"],
+                format!("the swing is one cosine, by the law of order {order}"),
+            ),
+            (vec!["speed"], speed.to_owned()),
+            (
+                vec!["penetration", "duration"],
+                format!("a line stands for the force of the barrier{met}"),
+            ),
+        ];
+        let beyond = |name: &&str| {
+            let quantity = self.quantities().into_iter().find(|quantity| quantity.name == *name)?;
+            let error = match column {
+                Column::Paper => quantity.paper_error(),
+                Column::Energy => quantity.energy_error(),
+            };
+            // An error that is no number lies beyond every tolerance.
+            let within = error.abs() <= tolerance;
+            (!within).then_some((quantity.name, error))
+        };
+        causes
+            .into_iter()
+            .map(|(names, cause)| (names.iter().filter_map(beyond).collect::<Vec<_>>(), cause))
+            .filter(|(errors, _)| !errors.is_empty())
+            .collect()
     }
 }

@@ -4,6 +4,7 @@
 //! 1/omega, omega^2 = g/L.
 
 mod damper;
+mod mistakes;
 
 use std::str::FromStr;
 
@@ -12,7 +13,6 @@ use serde::Deserialize;
 use crate::contact::hertz::{Design, NotPositive};
 use crate::contact::linearisation::{Rule, UnknownRule};
 use crate::expr::{ParseError, parse_expression};
-use crate::spelling::nearest;
 use crate::symbol::Symbol;
 use crate::verify::{ValueError, Values};
 
@@ -203,8 +203,8 @@ pub enum ProblemError {
         help: Option<String>,
     },
     /// Too long.
-    #[error("the file has {0} bytes; the limit is {LARGEST_FILE}")]
-    TooLarge(usize),
+    #[error("the text is longer than the {LARGEST_FILE} bytes that a problem may have")]
+    TooLarge,
     /// A value of `[values]` is neither a number nor an expression.
     #[error("the value of `{0}` in [values] should be a number, or text such as \"pi/3\"")]
     Value(String),
@@ -242,29 +242,11 @@ impl FromStr for Problem {
 
     fn from_str(text: &str) -> Result<Self, ProblemError> {
         if text.len() > LARGEST_FILE {
-            return Err(ProblemError::TooLarge(text.len()));
+            return Err(ProblemError::TooLarge);
         }
         let text = text.trim_start_matches('\u{feff}');
-        toml::from_str(text).map_err(|error: toml::de::Error| {
-            let message = error.to_string().trim_end().to_owned();
-            ProblemError::Toml {
-                help: did_you_mean(error.message()),
-                message,
-            }
-        })
+        toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))
     }
-}
-
-/// The nearest of the keys that "unknown field `a`, expected one of `b`, `c`" lists.
-fn did_you_mean(message: &str) -> Option<String> {
-    let names: Vec<&str> = message
-        .strip_prefix("unknown field ")?
-        .split('`')
-        .skip(1)
-        .step_by(2)
-        .collect();
-    let (typed, known) = names.split_first()?;
-    nearest(typed, known.iter().copied()).map(|name| format!("did you mean `{name}`?"))
 }
 
 impl Problem {

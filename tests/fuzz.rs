@@ -101,7 +101,7 @@ fn compared(equation: &str, amplitude: &str) {
         eprintln!("{amplitude} {equation}");
     }
     if let Ok(table) = compare(&oscillator, &values, None, 0.01) {
-        assert!(!text::comparison(&table).is_empty() && !latex::comparison(&table).is_empty());
+        assert!(!text::comparison(&table, 80).is_empty() && !latex::comparison(&table).is_empty());
         assert!(json::comparison(&table).is_object());
     }
 }

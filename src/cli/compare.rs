@@ -8,7 +8,7 @@ use lindstedt::{Oscillator, verify};
 
 use super::derive::{exact_values, oscillator, with_known_equilibrium};
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, files, json_text, tolerance, whole};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         comparison::ComparisonError::Verification(_) => Failure::refused(&error, None),
     })?;
     let text = match arguments.common.format {
-        Format::Text => text::comparison(&comparison),
+        Format::Text => text::comparison(&comparison, files::width(arguments.common.output.as_deref())),
         Format::Latex => latex::comparison(&comparison),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::comparison(&comparison)),

@@ -24,7 +24,7 @@ pub struct Arguments {
     #[arg(long)]
     method: Option<String>,
     /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     order: Option<Order>,
     /// What the amplitude measures
     #[arg(long, value_enum)]
@@ -36,13 +36,13 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME=VALUE")]
     about: Option<String>,
     /// Degree of the Taylor polynomial that homotopy perturbation puts for the force
-    #[arg(long, value_name = "DEGREE")]
+    #[arg(long, value_name = "DEGREE", value_parser = super::count, allow_hyphen_values = true)]
     taylor: Option<u32>,
     /// The convergence-control parameter of homotopy-analysis, exact; without it the best one is chosen at the values
     #[arg(long, allow_hyphen_values = true, value_name = "VALUE")]
     hbar: Option<String>,
     /// Which limit cycle of a self-excited equation, counted from 1 by amplitude; without it the smallest that attracts
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     cycle: Option<u32>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
@@ -81,7 +81,13 @@ impl std::str::FromStr for Order {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse().map_err(|_| format!("`{text}` is no whole number"));
+        let number = |text: &str| {
+            let text = text.trim();
+            text.parse().map_err(|_| match text.starts_with('-') {
+                true => format!("`{text}` is negative; an order is a whole number such as 2"),
+                false => format!("`{text}` is no whole number"),
+            })
+        };
         match text.split_once(',') {
             None => number(text).map(Self::Power),
             Some((numerator, denominator)) => Ok(Self::Degrees(number(numerator)?, number(denominator)?)),
@@ -224,11 +230,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
         Some(name) => match Method::from_name(name) {
             Some(method) => Some(method),
             None => {
-                let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
-                return usage(format!(
-                    "unknown method `{name}`\n  help: choose one of {}",
-                    names.join(", ")
-                ));
+                return usage(format!("unknown method `{name}`\n  help: {}", methods_like(name)));
             }
         },
     };
@@ -280,6 +282,28 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
     })
 }
 
+/// The methods that a misspelt or shortened name may mean, or all.
+fn methods_like(typed: &str) -> String {
+    let typed = typed.to_lowercase().replace(['_', ' '], "-");
+    let names = || Method::ALL.iter().map(|method| method.name());
+    let close: Vec<&str> = names().filter(|name| name.contains(&typed)).collect();
+    let close = match close.is_empty() {
+        true => nearest(&typed, names()).into_iter().collect(),
+        false => close,
+    };
+    match close.is_empty() {
+        true => format!("choose one of {}", names().collect::<Vec<_>>().join(", ")),
+        false => format!(
+            "did you mean {}?",
+            close
+                .iter()
+                .map(|name| format!("`{name}`"))
+                .collect::<Vec<_>>()
+                .join(" or ")
+        ),
+    }
+}
+
 /// The values of the command line, which win over those of the file; `None` where there are none at all.
 pub(super) fn exact_values(at: &[String], problem: &Problem) -> Result<Option<Values>, Failure> {
     let mut values = Values::default();
@@ -289,6 +313,18 @@ pub(super) fn exact_values(at: &[String], problem: &Problem) -> Result<Option<Va
                 "--at {text}: expected NAME=VALUE, such as A=1.5"
             )));
         };
+        // `A=1,eps=1` and `A=1 eps=1`: the equals sign of the second value stands in the text of the first.
+        if value.contains('=') {
+            let parts = text
+                .split([',', ' ', ';'])
+                .map(str::trim)
+                .filter(|part| !part.is_empty());
+            let separate: Vec<String> = parts.map(|part| format!("--at {part}")).collect();
+            return Err(Failure::Usage(format!(
+                "--at {text}: one value at a time\n  help: {}",
+                separate.join(" ")
+            )));
+        }
         let value = parse_expression(value).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
         let name = Symbol::new(name.trim());
         values

@@ -16,6 +16,19 @@ pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// How many characters a line of the result should have at most: the width of the terminal that shows it, or what `COLUMNS`
+/// says; 120 in a file or a pipe.
+pub(super) fn width(output: Option<&Path>) -> usize {
+    const OF_FILES: usize = 120;
+    const NARROWEST: usize = 40;
+    let asked = std::env::var("COLUMNS").ok().and_then(|text| text.trim().parse().ok());
+    let terminal = || {
+        let (terminal_size::Width(columns), _) = terminal_size::terminal_size_of(std::io::stdout())?;
+        output.is_none_or(is_standard).then_some(columns.into())
+    };
+    asked.or_else(terminal).unwrap_or(OF_FILES).max(NARROWEST)
+}
+
 /// Refuses destinations that cannot be written, before any work is done for them.
 ///
 /// # Errors

@@ -64,13 +64,13 @@ struct Common {
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
-    #[arg(long, value_name = "R", value_parser = positive)]
+    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Print results only, no notes
     #[arg(long)]
     quiet: bool,
     /// Give up after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     timeout: Option<f64>,
 }
 
@@ -86,6 +86,14 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number".to_owned()),
+    }
+}
+
+/// A whole number that counts something from one.
+fn count(text: &str) -> Result<u32, String> {
+    match text.trim().parse() {
+        Ok(count) if count > 0 => Ok(count),
+        _ => Err("expected a whole number, 1 or more".to_owned()),
     }
 }
 

@@ -3,9 +3,13 @@
 //! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek letters and the named
 //! functions.
 
+mod expression;
+
 use std::fmt::Write as _;
 
-use num_traits::{One, Signed};
+use num_traits::One;
+
+pub use expression::{expression, symbol};
 
 pub use super::steps::latex as steps;
 use crate::contact::phases::{Column, Form, Phase};
@@ -13,166 +17,13 @@ use crate::decimal::{decimal, significant};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
-use crate::expr::{Expr, Function, Node, parse_expression};
+use crate::expr::{Expr, parse_expression};
 use crate::impact::Impact;
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{LimitCycle, Solution};
-use crate::symbol::Symbol;
 use crate::verify::comparison::Comparison;
 use crate::verify::{Verdict, Verification};
-
-/// An expression.
-pub fn expression(expression: &Expr) -> String {
-    match expression.node() {
-        Node::Sum(terms) => terms::sum(terms.iter().map(single_term)),
-        _ => single_term(expression),
-    }
-}
-
-/// Sign, numerator and denominator of one term, as a fraction where there is a denominator.
-fn single_term(term: &Expr) -> String {
-    let (coefficient, factors) = term.factors();
-    let sign = if coefficient.is_negative() { "-" } else { "" };
-    let (mut above, mut below) = (vec![], vec![]);
-    for factor in factors {
-        let (base, exponent) = factor.base_and_exponent();
-        match exponent.as_number() {
-            Some(number) if number.is_negative() => below.push(power(&base, &Expr::number(-number))),
-            _ => above.push(power(&base, &exponent)),
-        }
-    }
-    let (numerator, denominator) = (coefficient.numer().abs(), coefficient.denom().clone());
-    if !numerator.is_one() || above.is_empty() {
-        above.insert(0, numerator.to_string());
-    }
-    if !denominator.is_one() {
-        below.insert(0, denominator.to_string());
-    }
-    let above = above.join(" ");
-    if let [lone] = below.as_mut_slice()
-        && let Some(inside) = lone
-            .strip_prefix("\\left(")
-            .and_then(|rest| rest.strip_suffix("\\right)"))
-        && !inside.contains("\\right)")
-    {
-        *lone = inside.to_owned();
-    }
-    match below.is_empty() {
-        true => format!("{sign}{above}"),
-        false => format!("{sign}\\frac{{{above}}}{{{}}}", below.join(" ")),
-    }
-}
-
-fn power(base: &Expr, exponent: &Expr) -> String {
-    let half = Rational::new(1.into(), 2.into());
-    match exponent.as_number() {
-        Some(number) if number.is_one() => atom(base),
-        Some(number) if *number == half => format!("\\sqrt{{{}}}", expression(base)),
-        _ => {
-            // A function carries its exponent, `\sin^{2} x`, and a derivative needs braces around its primes.
-            let inside = match base.node() {
-                Node::Symbol(symbol) if symbol.primes() > 0 => format!("{{{}}}", self::symbol(*symbol)),
-                Node::Function(..) => format!("\\left({}\\right)", expression(base)),
-                _ => atom(base),
-            };
-            format!("{inside}^{{{}}}", exponent_text(exponent))
-        }
-    }
-}
-
-fn exponent_text(exponent: &Expr) -> String {
-    match exponent.as_number() {
-        Some(number) if !number.is_integer() => format!("{}/{}", number.numer(), number.denom()),
-        _ => expression(exponent),
-    }
-}
-
-/// A factor that needs no sign between itself and its neighbours.
-fn atom(factor: &Expr) -> String {
-    match factor.node() {
-        Node::Number(number) if number.is_integer() && !number.is_negative() => number.to_string(),
-        Node::Pi => "\\pi".to_owned(),
-        Node::Symbol(symbol) => self::symbol(*symbol),
-        Node::Function(function, arguments) => call(*function, arguments),
-        Node::Power(base, exponent) => power(base, exponent),
-        Node::Number(_) | Node::Sum(_) | Node::Product(..) => format!("\\left({}\\right)", expression(factor)),
-    }
-}
-
-fn call(function: Function, arguments: &[Expr]) -> String {
-    let list: Vec<String> = arguments.iter().map(expression).collect();
-    let list = list.join(", ");
-    let name = match function {
-        Function::Absolute => return format!("\\left|{list}\\right|"),
-        Function::Asin => "\\arcsin",
-        Function::Acos => "\\arccos",
-        Function::Atan => "\\arctan",
-        Function::Log => "\\ln",
-        Function::Sign => "\\operatorname{sgn}",
-        Function::Step => "H",
-        Function::Sin => "\\sin",
-        Function::Cos => "\\cos",
-        Function::Tan => "\\tan",
-        Function::Sinh => "\\sinh",
-        Function::Cosh => "\\cosh",
-        Function::Tanh => "\\tanh",
-        Function::Exp => "\\exp",
-        Function::Maximum => "\\max",
-        Function::Minimum => "\\min",
-        Function::BesselJ0 => "J_{0}",
-        Function::BesselJ1 => "J_{1}",
-        Function::BesselI0 => "I_{0}",
-        Function::BesselI1 => "I_{1}",
-        Function::Gamma => "\\Gamma",
-        Function::EllipticK => "K",
-    };
-    format!("{name}\\left({list}\\right)")
-}
-
-const GREEK: [&str; 22] = [
-    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
-    "tau", "phi", "chi", "psi", "omega", "Omega", "Gamma", "Lambda",
-];
-
-/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter,
-/// underscores at the end as tildes. No two names look alike: where two spellings would meet, the index of the one with an
-/// underscore takes another shape, `k1` being `k_{1}` and `k_1` being `k_{\mathit{1}}`.
-pub fn symbol(symbol: Symbol) -> String {
-    let bare = symbol.coordinate().name();
-    let name = bare.trim_end_matches('_');
-    let (stem, index) = match name.split_once('_') {
-        Some((stem, index)) if index.bytes().all(|letter| letter.is_ascii_digit()) => {
-            (stem, format!("\\mathit{{{index}}}"))
-        }
-        // The barrier's position `xc` is written like this already.
-        Some(("x", "c")) => ("x", "\\mathrm{c}".to_owned()),
-        Some((stem, index)) => (stem, index.replace('_', "\\_")),
-        None if name == "xc" => ("x", "c".to_owned()),
-        None => {
-            let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
-            (stem, name[stem.len()..].to_owned())
-        }
-    };
-    let letter = match stem {
-        "eps" => "\\varepsilon".to_owned(),
-        "epsilon" => "\\epsilon".to_owned(),
-        "hbar" => "\\hbar".to_owned(),
-        _ if GREEK.contains(&stem) => format!("\\{stem}"),
-        _ if stem.chars().count() == 1 => stem.to_owned(),
-        _ => format!("\\mathrm{{{stem}}}"),
-    };
-    let letter = (name.len()..bare.len()).fold(letter, |letter, _| format!("\\tilde{{{letter}}}"));
-    let letter = match symbol.primes() {
-        0 => letter,
-        1 => format!("\\dot{{{letter}}}"),
-        _ => format!("\\ddot{{{letter}}}"),
-    };
-    match index.is_empty() {
-        true => letter,
-        false => format!("{letter}_{{{index}}}"),
-    }
-}
 
 /// A polynomial with the lowest power of the small parameter first.
 pub(super) fn law(polynomial: &Polynomial, solution: &Solution) -> String {
@@ -184,7 +35,7 @@ pub(super) fn law(polynomial: &Polynomial, solution: &Solution) -> String {
 }
 
 fn coefficient_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> String {
-    let term = |number: Rational| single_term(&Expr::from(&Polynomial::term(monomial.clone(), number)));
+    let term = |number: Rational| expression(&Expr::from(&Polynomial::term(monomial.clone(), number)));
     match numerical && !coefficient.is_integer() {
         false => term(coefficient.clone()),
         true if monomial.factors().is_empty() => scientific(to_f64(coefficient)),
@@ -501,81 +352,4 @@ pub(super) fn words(text: &str) -> String {
         }
     }
     escaped
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn expressions_as_in_an_article() {
-        for (text, expected) in [
-            ("1 - A^2/8 + 7*A^4/1536", r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}"),
-            (
-                "x'' + 2*zeta*x' + sin(x)",
-                r"\ddot{x} + 2 \zeta \dot{x} + \sin\left(x\right)",
-            ),
-            (
-                "omega0 + 3*eps*A^2/(8*omega0)",
-                r"\omega_{0} + \frac{3 \varepsilon A^{2}}{8 \omega_{0}}",
-            ),
-            (
-                "gamma*(x - xc)^(3/2)*H(x - xc)",
-                r"\gamma \left(x - x_{c}\right)^{3/2} H\left(x - x_{c}\right)",
-            ),
-            ("sqrt(k + 1)", r"\sqrt{1 + k}"),
-            ("-x/2", r"-\frac{x}{2}"),
-            ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
-            ("mass1*x", r"\mathrm{mass}_{1} x"),
-            ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
-        ] {
-            let parsed = parse_expression(text).expect(text);
-            assert_eq!(expression(&parsed), expected, "{text}");
-        }
-    }
-
-    /// Every name of up to four signs over an alphabet of letters, digits and underscores, and those with a meaning of
-    /// their own: as many spellings as names.
-    #[test]
-    fn no_two_names_are_spelt_alike() {
-        let stems = [
-            "k",
-            "x",
-            "xc",
-            "eps",
-            "epsilon",
-            "varepsilon",
-            "mu",
-            "omega",
-            "Omega",
-            "hbar",
-            "c",
-            "W",
-            "nu",
-            "v",
-            "A",
-            "K",
-        ];
-        let mut ends = vec![String::new()];
-        for length in 0..4 {
-            let longer = ends.iter().filter(|end| end.len() == length);
-            let longer: Vec<String> = longer
-                .flat_map(|end| ["0", "1", "_", "c", "k"].map(|sign| format!("{end}{sign}")))
-                .collect();
-            ends.extend(longer);
-        }
-        let mut seen = std::collections::BTreeMap::new();
-        for name in stems
-            .iter()
-            .flat_map(|stem| ends.iter().map(move |end| format!("{stem}{end}")))
-        {
-            if let Some(other) = seen.insert(symbol(Symbol::new(&name)), name.clone()) {
-                assert_eq!(other, name);
-            }
-        }
-        assert!(seen.len() > 10_000);
-        assert_eq!(symbol("k1".into()), "k_{1}");
-        assert_eq!(symbol("k_1".into()), r"k_{\mathit{1}}");
-        assert_eq!(symbol("omega0_".into()), r"\tilde{\omega}_{0}");
-    }
 }

@@ -1,8 +1,12 @@
 //! Results as text that reads like a textbook. Formulas print so that they can be typed back in.
 
+mod comparison;
+
 use std::fmt::Write as _;
 
 use num_traits::One;
+
+pub use comparison::comparison;
 
 pub use super::steps::text as steps;
 use crate::contact::phases::Column;
@@ -17,8 +21,6 @@ use crate::series::FourierSeries;
 use crate::series::terms;
 use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
 use crate::symbol::Symbol;
-use crate::verify::comparison::{Comparison, Row};
-use crate::verify::validity::Reach;
 use crate::verify::{Verdict, Verification};
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
@@ -255,105 +257,6 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     text
 }
 
-/// What stands in the place of a frequency.
-fn without_number(row: &Row) -> &'static str {
-    match &row.reason {
-        Some(reason) if reason.starts_with("not real") => "not real",
-        _ => "none",
-    }
-}
-
-/// The formula of a row, and the hbar with which it was evaluated.
-fn with_hbar(row: &Row) -> String {
-    let hbar = row.chosen.iter().find(|entry| entry.0.name() == HBAR);
-    let value = hbar.map(|(name, value)| format!(", {name} = {}", significant(*value, 6)));
-    row.solution.formula() + &value.unwrap_or_default()
-}
-
-/// Every method in one table, and below it those that do not apply.
-pub fn comparison(comparison: &Comparison) -> String {
-    let at: Vec<String> = comparison
-        .at
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    let mut text = format!("{}\n\n", comparison.equation);
-    let place = if at.is_empty() {
-        String::new()
-    } else {
-        format!(" at {}", at.join(", "))
-    };
-    let _ = writeln!(text, "True omega{place}: {}\n", decimal(comparison.true_frequency));
-    let within = format!("{} % up to", significant(100.0 * comparison.tolerance, 3));
-    let header = ["method", "omega", "error", "deviation", "verdict", &within, "formula"].map(str::to_owned);
-    let row = |row: &Row| {
-        let percent_of = |value: Option<f64>| value.map_or("-".to_owned(), size_in_percent);
-        [
-            row.solution.title(),
-            row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
-            row.relative_error.map_or("-".to_owned(), percent),
-            percent_of(row.max_deviation),
-            if row.verdict == Verdict::Pass { "pass" } else { "fail" }.to_owned(),
-            reach(row.reach, row.solution.amplitude.symbol()),
-            with_hbar(row),
-        ]
-    };
-    let rows: Vec<[String; 7]> = std::iter::once(header).chain(comparison.rows.iter().map(row)).collect();
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..6).map(width).collect();
-    for row in &rows {
-        let mut line = format!("  {:<width$}", row[0], width = widths[0]);
-        for column in 1..6 {
-            let _ = write!(line, "  {:>width$}", row[column], width = widths[column]);
-        }
-        let _ = writeln!(text, "{line}  {}", row[6]);
-    }
-    let mut without: Vec<&Row> = comparison.rows.iter().filter(|row| row.frequency.is_none()).collect();
-    without
-        .dedup_by(|second, first| second.solution.title() == first.solution.title() && second.reason == first.reason);
-    if !without.is_empty() {
-        text.push_str("\nNo frequency\n");
-        for row in without {
-            let reason = row.reason.as_deref().unwrap_or_default();
-            let _ = writeln!(text, "  {:<width$}  {reason}", row.solution.title(), width = widths[0]);
-        }
-    }
-    if !comparison.refused.is_empty() {
-        text.push_str("\nNot applicable\n");
-        for refused in &comparison.refused {
-            let _ = writeln!(
-                text,
-                "  {:<width$}  {}",
-                refused.method.title(),
-                refused.reason.reason(refused.method),
-                width = widths[0]
-            );
-        }
-    }
-    if !comparison.validity.is_empty() {
-        text.push_str("\nTrue motion\n");
-        for line in &comparison.validity {
-            let _ = writeln!(text, "  {line}");
-        }
-    }
-    let convention = comparison.rows.first().map(|row| row.solution.amplitude.to_string());
-    let _ = writeln!(
-        text,
-        "\n{}; deviation: largest over one period, of the amplitude",
-        convention.unwrap_or_default()
-    );
-    text
-}
-
-fn reach(reach: Option<Reach>, amplitude: Symbol) -> String {
-    match reach {
-        None => "-".to_owned(),
-        Some(Reach::Nowhere) => "nowhere".to_owned(),
-        Some(Reach::UpTo(end)) => format!("{amplitude} = {}", significant(end, 3)),
-        Some(Reach::Everywhere(searched)) => format!("past {amplitude} = {}", significant(searched, 3)),
-    }
-}
-
 /// The whole story of an impact.
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     let setup = &impact.setup;
@@ -471,5 +374,14 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         name(impact.verdict(Column::Paper, tolerance)),
         name(impact.verdict(Column::Energy, tolerance))
     );
+    for (column, title) in [(Column::Paper, "paper"), (Column::Energy, "energy")] {
+        for (errors, cause) in impact.shortcomings(column, tolerance) {
+            let errors: Vec<String> = errors
+                .iter()
+                .map(|(name, error)| format!("{name} {}", percent(*error)))
+                .collect();
+            let _ = writeln!(text, "    {title:<8}{}: {cause}", errors.join(", "));
+        }
+    }
     text
 }

@@ -51,6 +51,7 @@ use crate::symbol::Symbol;
 
 pub use evaluate::{CompiledFunction, EvaluationError};
 pub use function::Function;
+pub(crate) use parse::excerpt;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;
 pub use rounding::Rounded;

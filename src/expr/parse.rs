@@ -30,6 +30,7 @@ use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
 
 pub use error::ParseError;
+pub(crate) use error::excerpt;
 use error::shortened;
 use lexer::{Kind, Token};
 

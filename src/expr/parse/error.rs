@@ -55,7 +55,7 @@ impl ParseError {
 }
 
 /// The line around the place, at most about a hundred characters of it, and the carets below.
-fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
+pub(crate) fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
     const WIDTH: usize = 100;
     let start = text[..span.start].rfind(['\n', '\r', '\u{feff}']);
     let start = start.map_or(0, |place| {

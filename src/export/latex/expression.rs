@@ -1,0 +1,317 @@
+//! Expressions as LaTeX: fractions with a line, roots under a sign, names with their indices.
+
+use num_traits::{One, Signed};
+
+use crate::exact::Rational;
+use crate::expr::{Expr, Function, Node};
+use crate::symbol::Symbol;
+
+/// An expression. Without recursion: `open` holds what is still to be written, the next piece last.
+pub fn expression(expression: &Expr) -> String {
+    let mut text = String::new();
+    let mut open = vec![Piece::Expr(expression.clone(), Place::Free)];
+    while let Some(piece) = open.pop() {
+        match piece {
+            Piece::Text(piece) => text.push_str(&piece),
+            Piece::Expr(expr, place) => open.extend(pieces(&expr, place).into_iter().rev()),
+        }
+    }
+    text
+}
+
+enum Piece {
+    Text(String),
+    Expr(Expr, Place),
+}
+
+/// What surrounds an expression, and with it what needs parentheses.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    /// Alone, an argument, or between braces or parentheses already.
+    Free,
+    /// A term after its sign has been written: the sign is left out.
+    Unsigned,
+    /// A factor that needs no sign between itself and its neighbours.
+    Factor,
+}
+
+fn text(text: impl Into<String>) -> Piece {
+    Piece::Text(text.into())
+}
+
+/// One level of an expression, in reading order.
+fn pieces(expr: &Expr, place: Place) -> Vec<Piece> {
+    let is_negative = |term: &Expr| term.factors().0.is_negative();
+    match place {
+        Place::Factor => factor(expr),
+        Place::Unsigned => term(expr),
+        Place::Free => {
+            let terms = expr.terms().iter().enumerate();
+            let signed = terms.flat_map(|(index, term)| {
+                let sign = match (index, is_negative(term)) {
+                    (0, false) => "",
+                    (0, true) => "-",
+                    (_, false) => " + ",
+                    (_, true) => " - ",
+                };
+                [text(sign), Piece::Expr(term.clone(), Place::Unsigned)]
+            });
+            signed.collect()
+        }
+    }
+}
+
+/// One term without its sign, as a fraction where there is a denominator.
+fn term(term: &Expr) -> Vec<Piece> {
+    let (coefficient, factors) = term.factors();
+    let (mut above, mut below) = (vec![], vec![]);
+    for factor in factors {
+        let (base, exponent) = factor.base_and_exponent();
+        match exponent.as_number() {
+            Some(number) if number.is_negative() => below.push((base, Expr::number(-number))),
+            _ => above.push((base, exponent)),
+        }
+    }
+    let (numerator, denominator) = (coefficient.numer().abs(), coefficient.denom());
+    let above = row(
+        (!numerator.is_one() || above.is_empty()).then(|| numerator.to_string()),
+        &above,
+    );
+    let below = match below.as_slice() {
+        [] if denominator.is_one() => return above,
+        // What is alone under the line stands between braces already.
+        [(base, exponent)] if denominator.is_one() && exponent.is_one() => vec![Piece::Expr(base.clone(), Place::Free)],
+        _ => row((!denominator.is_one()).then(|| denominator.to_string()), &below),
+    };
+    let line = [vec![text("\\frac{")], above, vec![text("}{")], below, vec![text("}")]];
+    line.into_iter().flatten().collect()
+}
+
+/// A number and powers, side by side.
+fn row(number: Option<String>, factors: &[(Expr, Expr)]) -> Vec<Piece> {
+    let number = number.map(|number| vec![text(number)]);
+    let powers = factors.iter().map(|(base, exponent)| power(base, exponent));
+    let mut row = Vec::new();
+    for factor in number.into_iter().chain(powers) {
+        if !row.is_empty() {
+            row.push(text(" "));
+        }
+        row.extend(factor);
+    }
+    row
+}
+
+fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
+    let half = Rational::new(1.into(), 2.into());
+    let exponent = match exponent.as_number() {
+        Some(number) if number.is_one() => return vec![Piece::Expr(base.clone(), Place::Factor)],
+        Some(number) if *number == half => {
+            return vec![text("\\sqrt{"), Piece::Expr(base.clone(), Place::Free), text("}")];
+        }
+        Some(number) if !number.is_integer() => text(format!("{}/{}", number.numer(), number.denom())),
+        _ => Piece::Expr(exponent.clone(), Place::Free),
+    };
+    // A function would carry its exponent, `\sin^{2} x`, a power has one already, and a derivative needs braces around its
+    // primes.
+    let mut power = match base.node() {
+        Node::Symbol(symbol) if symbol.primes() > 0 => vec![text(format!("{{{}}}", self::symbol(*symbol)))],
+        Node::Function(..) | Node::Power(..) => in_parentheses(base),
+        _ => vec![Piece::Expr(base.clone(), Place::Factor)],
+    };
+    power.extend([text("^{"), exponent, text("}")]);
+    power
+}
+
+fn in_parentheses(expr: &Expr) -> Vec<Piece> {
+    vec![
+        text("\\left("),
+        Piece::Expr(expr.clone(), Place::Free),
+        text("\\right)"),
+    ]
+}
+
+/// A factor that needs no sign between itself and its neighbours.
+fn factor(factor: &Expr) -> Vec<Piece> {
+    match factor.node() {
+        Node::Number(number) if number.is_integer() && !number.is_negative() => vec![text(number.to_string())],
+        Node::Pi => vec![text("\\pi")],
+        Node::Symbol(symbol) => vec![text(self::symbol(*symbol))],
+        Node::Function(function, arguments) => call(*function, arguments),
+        Node::Power(base, exponent) => power(base, exponent),
+        Node::Number(_) | Node::Sum(_) | Node::Product(..) => in_parentheses(factor),
+    }
+}
+
+fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
+    let name = match function {
+        Function::Absolute => "",
+        Function::Asin => "\\arcsin",
+        Function::Acos => "\\arccos",
+        Function::Atan => "\\arctan",
+        Function::Log => "\\ln",
+        Function::Sign => "\\operatorname{sgn}",
+        Function::Step => "H",
+        Function::Sin => "\\sin",
+        Function::Cos => "\\cos",
+        Function::Tan => "\\tan",
+        Function::Sinh => "\\sinh",
+        Function::Cosh => "\\cosh",
+        Function::Tanh => "\\tanh",
+        Function::Exp => "\\exp",
+        Function::Maximum => "\\max",
+        Function::Minimum => "\\min",
+        Function::BesselJ0 => "J_{0}",
+        Function::BesselJ1 => "J_{1}",
+        Function::BesselI0 => "I_{0}",
+        Function::BesselI1 => "I_{1}",
+        Function::Gamma => "\\Gamma",
+        Function::EllipticK => "K",
+    };
+    let [open, close] = match function {
+        Function::Absolute => ["\\left|", "\\right|"],
+        _ => ["\\left(", "\\right)"],
+    };
+    let mut call = vec![text(name), text(open)];
+    for (index, argument) in arguments.iter().enumerate() {
+        if index > 0 {
+            call.push(text(", "));
+        }
+        call.push(Piece::Expr(argument.clone(), Place::Free));
+    }
+    call.push(text(close));
+    call
+}
+
+const GREEK: [&str; 22] = [
+    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
+    "tau", "phi", "chi", "psi", "omega", "Omega", "Gamma", "Lambda",
+];
+
+/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter,
+/// underscores at the end as tildes. No two names look alike: where two spellings would meet, the index of the one with an
+/// underscore takes another shape, `k1` being `k_{1}` and `k_1` being `k_{\mathit{1}}`.
+pub fn symbol(symbol: Symbol) -> String {
+    let bare = symbol.coordinate().name();
+    let name = bare.trim_end_matches('_');
+    let (stem, index) = match name.split_once('_') {
+        Some((stem, index)) if index.bytes().all(|letter| letter.is_ascii_digit()) => {
+            (stem, format!("\\mathit{{{index}}}"))
+        }
+        // The barrier's position `xc` is written like this already.
+        Some(("x", "c")) => ("x", "\\mathrm{c}".to_owned()),
+        Some((stem, index)) => (stem, index.replace('_', "\\_")),
+        None if name == "xc" => ("x", "c".to_owned()),
+        None => {
+            let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+            (stem, name[stem.len()..].to_owned())
+        }
+    };
+    let letter = match stem {
+        "eps" => "\\varepsilon".to_owned(),
+        "epsilon" => "\\epsilon".to_owned(),
+        "hbar" => "\\hbar".to_owned(),
+        _ if GREEK.contains(&stem) => format!("\\{stem}"),
+        _ if stem.chars().count() == 1 => stem.to_owned(),
+        _ => format!("\\mathrm{{{stem}}}"),
+    };
+    let letter = (name.len()..bare.len()).fold(letter, |letter, _| format!("\\tilde{{{letter}}}"));
+    let letter = match symbol.primes() {
+        0 => letter,
+        1 => format!("\\dot{{{letter}}}"),
+        _ => format!("\\ddot{{{letter}}}"),
+    };
+    match index.is_empty() {
+        true => letter,
+        false => format!("{letter}_{{{index}}}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::parse_expression;
+
+    #[test]
+    fn expressions_as_in_an_article() {
+        for (text, expected) in [
+            ("1 - A^2/8 + 7*A^4/1536", r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}"),
+            (
+                "x'' + 2*zeta*x' + sin(x)",
+                r"\ddot{x} + 2 \zeta \dot{x} + \sin\left(x\right)",
+            ),
+            (
+                "omega0 + 3*eps*A^2/(8*omega0)",
+                r"\omega_{0} + \frac{3 \varepsilon A^{2}}{8 \omega_{0}}",
+            ),
+            (
+                "gamma*(x - xc)^(3/2)*H(x - xc)",
+                r"\gamma \left(x - x_{c}\right)^{3/2} H\left(x - x_{c}\right)",
+            ),
+            ("sqrt(k + 1)", r"\sqrt{1 + k}"),
+            ("-x/2", r"-\frac{x}{2}"),
+            ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
+            ("mass1*x", r"\mathrm{mass}_{1} x"),
+            ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
+            ("-2*(1 + x)/3", r"-\frac{2 \left(1 + x\right)}{3}"),
+            ("(x^2)^(3/2)", r"\left(x^{2}\right)^{3/2}"),
+            ("1/(1 + sin(x))", r"\frac{1}{1 + \sin\left(x\right)}"),
+        ] {
+            let parsed = parse_expression(text).expect(text);
+            assert_eq!(expression(&parsed), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_depth_of_a_tree_meets_no_stack() {
+        let (x, one) = (Expr::symbol("x"), Expr::one());
+        let sines = (0..100_000).fold(x.clone(), |inner, _| inner.sin().expect("a sine"));
+        assert_eq!(expression(&sines).matches("\\sin").count(), 100_000);
+        let nested = (0..100_000).fold(x.clone(), |inner, _| &x * (&one + &x * inner));
+        assert_eq!(expression(&nested).matches("1 + ").count(), 100_000);
+    }
+
+    /// Every name of up to four signs over an alphabet of letters, digits and underscores, and those with a meaning of
+    /// their own: as many spellings as names.
+    #[test]
+    fn no_two_names_are_spelt_alike() {
+        let stems = [
+            "k",
+            "x",
+            "xc",
+            "eps",
+            "epsilon",
+            "varepsilon",
+            "mu",
+            "omega",
+            "Omega",
+            "hbar",
+            "c",
+            "W",
+            "nu",
+            "v",
+            "A",
+            "K",
+        ];
+        let mut ends = vec![String::new()];
+        for length in 0..4 {
+            let longer = ends.iter().filter(|end| end.len() == length);
+            let longer: Vec<String> = longer
+                .flat_map(|end| ["0", "1", "_", "c", "k"].map(|sign| format!("{end}{sign}")))
+                .collect();
+            ends.extend(longer);
+        }
+        let mut seen = std::collections::BTreeMap::new();
+        for name in stems
+            .iter()
+            .flat_map(|stem| ends.iter().map(move |end| format!("{stem}{end}")))
+        {
+            if let Some(other) = seen.insert(symbol(Symbol::new(&name)), name.clone()) {
+                assert_eq!(other, name);
+            }
+        }
+        assert!(seen.len() > 10_000);
+        assert_eq!(symbol("k1".into()), "k_{1}");
+        assert_eq!(symbol("k_1".into()), r"k_{\mathit{1}}");
+        assert_eq!(symbol("omega0_".into()), r"\tilde{\omega}_{0}");
+    }
+}

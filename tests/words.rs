@@ -1,0 +1,134 @@
+//! What a person reads: lines that fit the terminal, and messages that help on with what was typed.
+
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str], columns: Option<usize>) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
+    command.args(arguments).args(["--timeout", "60"]).env_remove("COLUMNS");
+    if let Some(columns) = columns {
+        command.env("COLUMNS", columns.to_string());
+    }
+    command.output().expect("the program runs")
+}
+
+fn printed(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+/// The numbers of a method do not depend on the width that they are shown in.
+#[test]
+fn a_comparison_fits_its_terminal() {
+    let arguments = ["compare", "x'' + x + 3/10*x^2 + x^3 = 0", "--at", "A=1.5"];
+    let (wide, file, narrow) = (
+        printed(&run(&arguments, Some(400))),
+        printed(&run(&arguments, None)),
+        printed(&run(&arguments, Some(80))),
+    );
+    let longest = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+    assert!(longest(&wide) > 120 && !wide.contains("Formulas"));
+    assert!(longest(&file) <= 120, "{file}");
+    assert!(longest(&narrow) <= 80, "{narrow}");
+    assert!(file.contains("\nFormulas\n") && narrow.contains("\nFormulas\n"));
+    // The same words in the same order, but for the place of the formulas and the breaks of lines.
+    let words = |text: &str| {
+        let mut words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+        words.sort();
+        words
+    };
+    assert_eq!(words(&file), words(&narrow));
+    for row in wide.lines().filter(|line| line.contains("omega^2 = ")) {
+        let formula = &row[row.find("omega^2 = ").expect("a formula")..];
+        assert!(file.contains(formula), "{formula}");
+    }
+}
+
+#[test]
+fn mistakes_on_the_command_line_are_helped() {
+    for (arguments, code, expected) in [
+        (
+            &["derive", "duffing", "--order", "-1"][..],
+            2,
+            "`-1` is negative; an order is a whole number such as 2",
+        ),
+        (
+            &["derive", "duffing", "--method", "Lindstedt"],
+            2,
+            "did you mean `lindstedt-poincare`?",
+        ),
+        (
+            &["derive", "duffing", "--method", "homotopy"],
+            2,
+            "did you mean `homotopy-perturbation` or `homotopy-analysis`?",
+        ),
+        (
+            &["derive", "duffing", "--method", "max_min"],
+            2,
+            "did you mean `max-min`?",
+        ),
+        (
+            &["derive", "duffing", "--at", "A=1,eps=1"],
+            2,
+            "help: --at A=1 --at eps=1",
+        ),
+        (
+            &["derive", "duffing", "--taylor", "-3"],
+            2,
+            "expected a whole number, 1 or more",
+        ),
+        (
+            &["compare", "duffing", "--tolerance", "-1"],
+            2,
+            "expected a positive number",
+        ),
+        (&["derive", "dufing"], 1, "did you mean `duffing`?"),
+    ] {
+        let output = run(arguments, None);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+    }
+}
+
+/// Only as much of a file is read as a problem may have, and nobody is told a wrong length.
+#[test]
+fn a_large_file_is_refused_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("large.toml");
+    let file = std::fs::File::create(&path).expect("a file");
+    file.set_len(100_000_000).expect("room");
+    let output = run(&["derive", path.to_str().expect("text")], None);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        message.contains("the text is longer than the 1048576 bytes that a problem may have"),
+        "{message}"
+    );
+}
+
+/// The first screen says what of the closed form its verdict comes from.
+#[test]
+fn a_failed_impact_says_why() {
+    let text = printed(&run(&["impact"], None));
+    let why: Vec<&str> = text
+        .lines()
+        .skip_while(|line| !line.contains("verdict"))
+        .skip(1)
+        .collect();
+    assert!(text.contains("paper fail, energy fail"));
+    assert!(
+        why.iter()
+            .any(|line| line.contains("paper") && line.contains("speed -6.26 %")),
+        "{text}"
+    );
+    assert!(
+        why.iter()
+            .any(|line| line.contains("energy") && line.contains("duration +1.64 %")),
+        "{text}"
+    );
+    assert!(
+        !why.iter()
+            .any(|line| line.contains("energy") && line.contains(" speed ")),
+        "{text}"
+    );
+}

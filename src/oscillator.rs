@@ -14,7 +14,7 @@ use num_traits::Zero;
 
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational, Ring};
-use crate::expr::{Equation, Expr, ExprError, ParseError, parse_equation};
+use crate::expr::{Equation, Expr, ExprError, ParseError, Typed, parse_equation};
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::Definition;
 use crate::symbol::{Symbol, fresh, fresh_stem};
@@ -32,6 +32,8 @@ pub struct Oscillator {
     pub parameters: Vec<Symbol>,
     /// The equilibrium about which the motion swings; the stable one nearest to zero where none is asked for.
     pub about: Option<Expr>,
+    /// The terms of the equation as they were typed, for messages.
+    pub typed: Typed,
 }
 
 /// The force taken apart by what its terms do.
@@ -230,7 +232,16 @@ impl Oscillator {
             return Err(OscillatorError::NoAcceleration(coordinate));
         }
         if mass.contains(acceleration) {
-            return Err(OscillatorError::NonlinearAcceleration(residual.to_string()));
+            let values = equation.typed.values().enumerate();
+            let fast = values.filter(|(_, value)| {
+                let slope = value.differentiate(acceleration);
+                slope.is_ok_and(|slope| slope.contains(acceleration))
+            });
+            let numbers: Vec<usize> = fast.map(|(number, _)| number).collect();
+            return Err(OscillatorError::NonlinearAcceleration(match numbers.is_empty() {
+                true => residual.to_string(),
+                false => equation.typed.quote(&numbers),
+            }));
         }
         let rest = residual.substitute(acceleration, &Expr::zero())?;
         let mass_at_rest = at_rest(&mass, coordinate);
@@ -256,6 +267,7 @@ impl Oscillator {
             force,
             parameters: names.into_iter().collect(),
             about: None,
+            typed: equation.typed.clone(),
         })
     }
 
@@ -274,6 +286,7 @@ impl Oscillator {
         let mut oscillator = self.clone();
         oscillator.force = self.force.substitute_all(values)?;
         oscillator.residual = self.residual.substitute_all(values)?;
+        oscillator.typed = self.typed.with_values(values)?;
         oscillator.about = match &self.about {
             Some(place) => Some(place.substitute_all(values)?),
             None => None,

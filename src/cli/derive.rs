@@ -161,7 +161,6 @@ fn solve_at(
     values: Option<Values>,
     options: &Options,
 ) -> Result<(Oscillator, Option<Values>, Solution), Failure> {
-    let refused = |refusal: Refusal| Failure::refused(&refusal, refusal.help());
     match (method::solve(&oscillator, options), values) {
         (Ok(solution), values) => Ok((oscillator, values, solution)),
         (Err(Refusal::LimitCycle { equation, .. }), Some(values)) => {
@@ -171,11 +170,18 @@ fn solve_at(
             let oscillator = oscillator
                 .with_values(&known)
                 .map_err(|error| Failure::refused(&error, error.help()))?;
-            let solution = method::solve(&oscillator, options).map_err(refused)?;
+            let solution = method::solve(&oscillator, options).map_err(|refusal| refused(&oscillator, &refusal))?;
             Ok((oscillator, Some(rest), solution))
         }
-        (Err(refusal), None) | (Err(refusal), Some(_)) => Err(refused(refusal)),
+        (Err(refusal), None) | (Err(refusal), Some(_)) => Err(refused(&oscillator, &refusal)),
     }
+}
+
+/// A refusal, with the term that it names shown in the equation.
+fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
+    let place = refusal.term().and_then(|term| oscillator.typed.place(term));
+    let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
+    Failure::refused(&format!("{refusal}{shown}"), refusal.help())
 }
 
 /// The oscillator of a problem that has an equation, about the equilibrium asked for.

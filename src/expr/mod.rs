@@ -37,6 +37,7 @@ mod parse;
 mod polynomial;
 mod print;
 mod rounding;
+mod typed;
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -55,6 +56,7 @@ pub(crate) use parse::excerpt;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;
 pub use rounding::Rounded;
+pub use typed::Typed;
 
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but a number.
 pub const LARGEST_EXPONENT: u32 = 10_000;

@@ -25,6 +25,7 @@ use std::ops::Range;
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
+use super::typed::{Typed, TypedTerm};
 use super::{Expr, ExprError, Function, LARGEST_EXPONENT, normal, number};
 use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
@@ -59,6 +60,8 @@ pub struct Equation {
     pub right: Expr,
     /// The dependent variable: the letter that carries primes, `x` if none does.
     pub coordinate: Symbol,
+    /// The terms as they were typed.
+    pub typed: Typed,
 }
 
 impl fmt::Display for Equation {
@@ -93,7 +96,7 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
     let mut parser = Parser::new(text, false)?;
     let coordinate = parser.coordinate()?;
-    let left = parser.sum()?;
+    let (left, mut terms) = parser.side(false)?;
     let mut right = Expr::zero();
     if parser.peek() == Kind::Equals {
         let first = parser.advance();
@@ -101,13 +104,16 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
             let span = first.start..parser.token().end;
             return Err(parser.error(span, "`==`: an equation has a single sign", "try `=`"));
         }
-        right = parser.sum()?;
+        let (sum, typed) = parser.side(true)?;
+        right = sum;
+        terms.extend(typed);
     }
     match parser.peek() {
         Kind::End => Ok(Equation {
             left,
             right,
             coordinate,
+            typed: Typed::new(text, terms),
         }),
         Kind::Equals => Err(parser.error(parser.token().span(), "a second `=`", "an equation has one")),
         _ => Err(parser.unexpected()),
@@ -144,17 +150,49 @@ impl<'a> Parser<'a> {
     }
 
     fn sum(&mut self) -> Result<Expr, ParseError> {
+        self.sum_of(&mut |_, _| ())
+    }
+
+    /// A sum, each term of which is shown with the numbers of its first token, signs included, and of the one after its last.
+    fn sum_of(&mut self, show: &mut dyn FnMut(&Expr, Range<usize>)) -> Result<Expr, ParseError> {
         let start = self.token().start;
-        let mut terms = vec![self.product()?];
-        while let sign @ (Kind::Plus | Kind::Minus) = self.peek() {
-            self.advance();
+        let mut terms = Vec::new();
+        loop {
+            let first = self.next;
+            // The sign before the first term belongs to its first factor.
+            let minus = !terms.is_empty() && self.advance().kind == Kind::Minus;
             let term = self.product()?;
-            terms.push(if sign == Kind::Minus { -term } else { term });
+            let term = if minus { -term } else { term };
+            show(&term, first..self.next);
+            terms.push(term);
+            if !matches!(self.peek(), Kind::Plus | Kind::Minus) {
+                break;
+            }
         }
         if terms.len() > 1 {
             self.charge(&terms, start)?;
         }
         Ok(Expr::sum(terms))
+    }
+
+    /// One side of an equation, with its terms as they stand there.
+    fn side(&mut self, right: bool) -> Result<(Expr, Vec<TypedTerm>), ParseError> {
+        let mut shown: Vec<(Expr, Range<usize>)> = Vec::new();
+        let sum = self.sum_of(&mut |term, tokens| shown.push((term.clone(), tokens)))?;
+        let typed = shown.into_iter().map(|(value, tokens)| {
+            let tokens = &self.tokens[tokens];
+            let is_sign = |token: &&Token| matches!(token.kind, Kind::Plus | Kind::Minus);
+            let signs = tokens.iter().take_while(is_sign);
+            let minuses = signs.clone().filter(|sign| sign.kind == Kind::Minus).count();
+            let rest = &tokens[signs.count()..];
+            TypedTerm {
+                value,
+                span: rest.first().map_or(0, |token| token.start)..rest.last().map_or(0, |token| token.end),
+                negative: minuses % 2 == 1,
+                right,
+            }
+        });
+        Ok((sum, typed.collect()))
     }
 
     fn product(&mut self) -> Result<Expr, ParseError> {

@@ -24,6 +24,7 @@ pub mod numbers;
 pub mod one_term;
 pub mod pade;
 pub mod parameter_expansion;
+mod quotation;
 pub mod secular;
 pub mod variational_iteration;
 
@@ -37,6 +38,7 @@ use crate::exact::{Integer, Polynomial};
 use crate::expr::{Expr, ExprError, parse_expression};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
+use crate::series::taylor::TaylorError;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
 
@@ -139,6 +141,16 @@ pub enum Refusal {
         /// The even term.
         term: String,
     },
+    /// As [`Refusal::NotOdd`], about an equilibrium that is not zero.
+    #[error("{method} is for forces that are odd about the equilibrium, but `{term}` is not odd about {position}")]
+    NotOddAbout {
+        /// The method's name in running text.
+        method: &'static str,
+        /// The term.
+        term: String,
+        /// The equilibrium, `x = 1`.
+        position: String,
+    },
     /// An order beyond what a method has.
     #[error("{method} has no order above {highest}")]
     HighestOrder {
@@ -202,6 +214,25 @@ impl Refusal {
             .map_or(text.clone(), |rest| rest.trim_start().to_owned())
     }
 
+    /// The term that it names, where it names one of the equation.
+    pub fn term(&self) -> Option<&str> {
+        match self {
+            Self::Damping { term, .. }
+            | Self::Forcing { term, .. }
+            | Self::Velocity { term, .. }
+            | Self::AmplitudeNotFree { term }
+            | Self::NotOdd { term, .. }
+            | Self::NotOddAbout { term, .. }
+            | Self::Oscillator(
+                OscillatorError::NotSmall { term, .. }
+                | OscillatorError::NotPolynomial(term)
+                | OscillatorError::NonlinearAcceleration(term)
+                | OscillatorError::Taylor(TaylorError::NotAnalytic { term, .. }),
+            ) => Some(term),
+            _ => None,
+        }
+    }
+
     /// A way forward, where one is known.
     pub fn help(&self) -> Option<String> {
         match self {
@@ -214,7 +245,7 @@ impl Refusal {
                 Some("leave the term out to get the frequency of the free vibration (the backbone curve)".to_owned())
             }
             Self::Velocity { .. } => Some("try --method lindstedt-poincare".to_owned()),
-            Self::NotOdd { .. } => Some("try --method harmonic-balance, which balances the drift as well".to_owned()),
+            Self::NotOdd { .. } | Self::NotOddAbout { .. } => Some("try --method harmonic-balance, which balances the drift as well".to_owned()),
             Self::HighestOrder { highest, .. } => Some(format!("try --order {highest}")),
             Self::PolynomialOnly { method, .. } if *method == Method::IterationPerturbation.title() => {
                 Some("try --order 1, which takes any force, or --method homotopy-perturbation".to_owned())
@@ -270,7 +301,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let degree = rounded_degree(method, options, polynomial);
     let centred = centred(oscillator, degree)?;
     let options = &about_a_load(&centred, options);
-    let mut solution = by_method(method, &centred.oscillator, options)?;
+    let mut solution = by_method(method, &centred.oscillator, options)
+        .map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
     // The first order of a force that is no polynomial projects the force as it is, corners and all.
     let projected = method == Method::LindstedtPoincare && solution.frequency.is_none();
     if expands(method) && !projected && has_corners(&oscillator.force) {

@@ -1,0 +1,107 @@
+//! The terms of an equation as they were typed: for messages, which speak of what the reader wrote and not of a normal form.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::parse::excerpt;
+use super::{Expr, ExprError};
+use crate::symbol::Symbol;
+
+/// The text of an equation and the terms of its two sides.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Typed {
+    text: String,
+    terms: Vec<TypedTerm>,
+}
+
+/// One term of either side.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct TypedTerm {
+    /// What it adds to its own side.
+    pub value: Expr,
+    /// Where it stands, its sign apart.
+    pub span: Range<usize>,
+    /// Whether a minus stands before it.
+    pub negative: bool,
+    /// Whether it stands right of the equals sign.
+    pub right: bool,
+}
+
+impl Typed {
+    pub(super) fn new(text: &str, terms: Vec<TypedTerm>) -> Self {
+        Self {
+            text: text.to_owned(),
+            terms,
+        }
+    }
+
+    /// What each term adds to the left side, in the order in which they were typed.
+    pub fn values(&self) -> impl Iterator<Item = Expr> {
+        self.terms.iter().map(|term| match term.right {
+            true => -&term.value,
+            false => term.value.clone(),
+        })
+    }
+
+    /// The same text with numbers for some of its parameters.
+    ///
+    /// # Errors
+    /// A value at which a term has none.
+    pub fn with_values(&self, values: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
+        let mut typed = self.clone();
+        for term in &mut typed.terms {
+            term.value = term.value.substitute_all(values)?;
+        }
+        Ok(typed)
+    }
+
+    /// The terms of these numbers, counted from zero, as one text: `0.5*(x')^3`. A single term has the sign that it was typed
+    /// with; of several, those of the right side are brought to the left.
+    pub fn quote(&self, numbers: &[usize]) -> String {
+        /// The longest text that a message quotes in full.
+        const LONGEST: usize = 120;
+        let mut quote = String::new();
+        for term in numbers.iter().filter_map(|&number| self.terms.get(number)) {
+            let minus = term.negative ^ (term.right && numbers.len() > 1);
+            quote.push_str(match (quote.is_empty(), minus) {
+                (true, false) => "",
+                (true, true) => "-",
+                (false, false) => " + ",
+                (false, true) => " - ",
+            });
+            let words: Vec<&str> = self.text[term.span.clone()].split_whitespace().collect();
+            quote.push_str(&words.join(" "));
+        }
+        match quote.char_indices().nth(LONGEST) {
+            Some((cut, _)) => format!("{}...", &quote[..cut]),
+            None => quote,
+        }
+    }
+
+    /// The line in which a quotation stands, and a line with carets under it; `None` where it stands nowhere as it is.
+    pub fn place(&self, quotation: &str) -> Option<[String; 2]> {
+        let number = (0..self.terms.len()).find(|&number| self.quote(&[number]) == quotation);
+        let span = match number.and_then(|number| self.terms.get(number)) {
+            Some(term) => term.span.clone(),
+            None => self.span_of(quotation)?,
+        };
+        Some(excerpt(&self.text, &span))
+    }
+
+    /// Where a text stands that does not go on as a longer name on either side.
+    fn span_of(&self, quotation: &str) -> Option<Range<usize>> {
+        let in_name = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '\'';
+        let spans = self.text.match_indices(quotation);
+        let mut spans = spans.map(|(start, found)| start..start + found.len());
+        spans.find(|span| {
+            let before = self.text[..span.start].chars().next_back();
+            let after = self.text[span.end..].chars().next();
+            !quotation.is_empty() && !before.is_some_and(in_name) && !after.is_some_and(in_name)
+        })
+    }
+
+    /// Whether a text stands in the equation as it is.
+    pub fn contains(&self, quotation: &str) -> bool {
+        self.span_of(quotation).is_some()
+    }
+}

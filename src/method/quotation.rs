@@ -1,0 +1,127 @@
+//! Refusals in the words of the reader: the term of the normal form that is in the way, `x'^3/2` say, gives way to the term
+//! that was typed, `0.5*(x')^3`.
+//!
+//! A typed term is what a term of the force comes from if that term, its number apart, is one of the expansion of the typed
+//! one: divided by the coefficient of the acceleration and seen from the equilibrium, as the force is.
+
+use std::convert::Infallible;
+
+use super::Refusal;
+use crate::equilibrium::Centred;
+use crate::expr::{Expr, ExprError, parse_expression};
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::series::taylor::TaylorError;
+
+/// A refusal whose term is quoted as it was typed, where it can be told which that was.
+pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &Centred) -> Refusal {
+    let moved = !centred.position.is_zero();
+    let position = format!("{} = {}", oscillator.coordinate, centred.position);
+    match &mut refusal {
+        Refusal::NotOdd { method, term } => {
+            let found = typed(term, oscillator, centred);
+            if let (Some(term), true) = (&found, moved) {
+                return Refusal::NotOddAbout {
+                    method,
+                    term: term.clone(),
+                    position,
+                };
+            }
+            replace(term, found);
+        }
+        Refusal::Oscillator(OscillatorError::Taylor(TaylorError::NotAnalytic { term, point })) => {
+            // A part of a term is quoted as it is where it stands so in the text.
+            if !moved && oscillator.typed.contains(term) {
+                return refusal;
+            }
+            if let Some(found) = typed_around(term, oscillator, centred) {
+                *term = found;
+                if moved {
+                    *point = point.replacen(&format!("{} = 0", oscillator.coordinate), &position, 1);
+                }
+            }
+        }
+        Refusal::Damping { term, .. }
+        | Refusal::Forcing { term, .. }
+        | Refusal::Velocity { term, .. }
+        | Refusal::AmplitudeNotFree { term }
+        | Refusal::PolynomialOnly { force: term, .. }
+        | Refusal::Oscillator(OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term)) => {
+            let found = typed(term, oscillator, centred);
+            replace(term, found);
+        }
+        _ => {}
+    }
+    refusal
+}
+
+fn replace(term: &mut String, found: Option<String>) {
+    if let Some(found) = found {
+        *term = found;
+    }
+}
+
+/// The typed terms from which the terms of a sum come.
+fn typed(sum: &str, oscillator: &Oscillator, centred: &Centred) -> Option<String> {
+    let sum = parse_expression(sum).ok()?.expand().ok()?;
+    let of = |term: &Expr| term.factors().1.to_vec();
+    let wanted: Vec<Vec<Expr>> = sum.terms().iter().map(of).collect();
+    let parts = parts(oscillator, centred);
+    let among = |part: &Expr| part.terms().iter().any(|term| wanted.contains(&of(term)));
+    let mirrored = |part: &Expr| {
+        let turned = -Expr::from(oscillator.coordinate);
+        part.substitute(oscillator.coordinate, &turned)
+            .and_then(|part| part.expand())
+    };
+    let comes_from = |part: &Expr| {
+        // The even part of a force may hold the mirror image of what was typed.
+        part.expand().is_ok_and(|part| among(&part)) || mirrored(part).is_ok_and(|part| among(&part))
+    };
+    let mut numbers = numbers_where(&parts, comes_from);
+    if numbers.is_empty() {
+        // Of a series the term that has all its symbols, where there is but one.
+        let symbols = sum.symbols();
+        numbers = numbers_where(&parts, |part| symbols.is_subset(&part.symbols()));
+        numbers = if numbers.len() == 1 { numbers } else { vec![] };
+    }
+    (!numbers.is_empty()).then(|| oscillator.typed.quote(&numbers))
+}
+
+/// The first typed term in which an expression occurs.
+fn typed_around(inner: &str, oscillator: &Oscillator, centred: &Centred) -> Option<String> {
+    let inner = parse_expression(inner).ok()?;
+    let parts = parts(oscillator, centred);
+    let occurs = |part: &Expr| {
+        let found = part
+            .fold(|expr, below: &[bool]| Ok::<bool, Infallible>(*expr == inner || below.iter().any(|&found| found)));
+        found.unwrap_or(false)
+    };
+    let number = numbers_where(&parts, occurs).into_iter().next()?;
+    Some(oscillator.typed.quote(&[number]))
+}
+
+fn numbers_where(parts: &[Option<Expr>], holds: impl Fn(&Expr) -> bool) -> Vec<usize> {
+    let numbers = parts.iter().enumerate();
+    let numbers = numbers.filter(|(_, part)| part.as_ref().is_some_and(&holds));
+    numbers.map(|(number, _)| number).collect()
+}
+
+/// What each typed term adds to the force about the equilibrium; nothing for those with the acceleration in them.
+fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
+    let (coordinate, acceleration) = (oscillator.coordinate, oscillator.velocity().derivative());
+    let Ok(mass) = oscillator.residual.differentiate(acceleration) else {
+        return vec![];
+    };
+    let part = |value: Expr| -> Result<Expr, ExprError> {
+        let part = Expr::divide(&value, &mass.expand()?)?;
+        match centred.written.is_zero() {
+            true => Ok(part),
+            false => part.substitute(coordinate, &(Expr::from(coordinate) + &centred.written)),
+        }
+    };
+    let values = oscillator.typed.values();
+    let parts = values.map(|value| match value.contains(acceleration) {
+        true => None,
+        false => part(value).ok(),
+    });
+    parts.collect()
+}

@@ -315,14 +315,31 @@ impl Solution {
     /// # Errors
     /// The first symbol without a value.
     pub fn evaluate(&self, polynomial: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
-        let used = polynomial.symbols();
+        let values = match polynomial.symbols().iter().any(|symbol| self.defines(*symbol)) {
+            true => self.defined_values(value_of)?,
+            false => vec![],
+        };
+        let pi = Symbol::new("pi");
+        polynomial.evaluate(|symbol| {
+            let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
+            defined
+                .or_else(|| value_of(symbol))
+                .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
+        })
+    }
+
+    /// The values of all definitions; one that `value_of` knows already is not computed again.
+    ///
+    /// # Errors
+    /// The first symbol without a value.
+    pub fn defined_values(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<Vec<(Symbol, f64)>, Symbol> {
         let mut values: Vec<(Symbol, f64)> = Vec::new();
         // A definition may use those before it.
-        for definition in self
-            .definitions
-            .iter()
-            .filter(|_| used.iter().any(|symbol| self.defines(*symbol)))
-        {
+        for definition in &self.definitions {
+            if let Some(value) = value_of(definition.symbol) {
+                values.push((definition.symbol, value));
+                continue;
+            }
             let known: Result<_, Symbol> = definition
                 .meaning
                 .symbols()
@@ -336,13 +353,7 @@ impl Solution {
             let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
             values.push((definition.symbol, value));
         }
-        let pi = Symbol::new("pi");
-        polynomial.evaluate(|symbol| {
-            let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
-            defined
-                .or_else(|| value_of(symbol))
-                .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
-        })
+        Ok(values)
     }
 
     /// The law that only numbers solve, in one line.
@@ -584,9 +595,24 @@ impl Solution {
         let harmonics = self.displacement.harmonics();
         let length = harmonics.last().map_or(0, |last| last.0 + 1);
         let (mut cosine, mut sine) = (vec![0.0; length], vec![0.0; length]);
+        let uses_definitions = |part: &Polynomial| part.symbols().iter().any(|symbol| self.defines(*symbol));
+        let defined = match harmonics
+            .iter()
+            .any(|entry| uses_definitions(&entry.1) || uses_definitions(&entry.2))
+        {
+            true => self.defined_values(value_of)?,
+            false => vec![],
+        };
+        let value_of = |symbol| {
+            let found = defined
+                .iter()
+                .find(|(name, _)| *name == symbol)
+                .map(|(_, value)| *value);
+            found.or_else(|| value_of(symbol))
+        };
         for (k, cosines, sines) in harmonics {
-            cosine[k] = self.evaluate(&cosines, value_of)?;
-            sine[k] = self.evaluate(&sines, value_of)?;
+            cosine[k] = self.evaluate(&cosines, &value_of)?;
+            sine[k] = self.evaluate(&sines, &value_of)?;
         }
         Ok(FourierSeries::from_parts(cosine, sine, 1.into()))
     }

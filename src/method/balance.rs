@@ -16,7 +16,9 @@
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
 
+use std::cell::OnceCell;
 use std::f64::consts::PI;
+use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
 use num_traits::One;
@@ -119,6 +121,8 @@ struct Problem<'a> {
     /// Where the force turns fast, up to this distance.
     cuts: Vec<f64>,
     reach: f64,
+    /// The points of equal steps, once they were asked for.
+    equal_steps: OnceCell<Rc<Nodes>>,
 }
 
 /// Where a sum takes the force, and what stands before its value and before its slope.
@@ -147,6 +151,7 @@ impl<'a> Problem<'a> {
             first: harmonics.iter().position(|&k| k == 1)?,
             points: degree.map_or(8 * highest + 32, |degree| (degree as usize + 1) * highest / 2 + 2),
             polynomial: degree.is_some(),
+            equal_steps: OnceCell::new(),
             amplitude: (amplitude.is_finite() && amplitude != 0.0).then_some(amplitude)?,
         })
     }
@@ -177,7 +182,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The points for sums along this motion, `finer` times as many as usual.
-    fn nodes(&self, state: &State, finer: usize) -> Nodes {
+    fn nodes(&self, state: &State, finer: usize) -> Rc<Nodes> {
         let cuts = if self.polynomial {
             vec![]
         } else {
@@ -189,18 +194,26 @@ impl<'a> Problem<'a> {
                 self.force.cuts(-1.25 * reach, 1.25 * reach)
             }
         };
-        let (angles, weights, jumps) = if cuts.is_empty() {
+        if cuts.is_empty() {
             let points = self.points * finer;
-            let angles: Vec<f64> = (0..points).map(|i| PI * (i as f64 + 0.5) / points as f64).collect();
-            (angles, vec![PI / points as f64; points], vec![None; points])
-        } else {
-            self.between_crossings(state, &cuts, finer)
-        };
-        let cosines = DMatrix::from_fn(angles.len(), self.count, |i, j| {
-            (self.harmonics[j] as f64 * angles[i]).cos()
-        });
+            let equal_steps = || {
+                let angles: Vec<f64> = (0..points).map(|i| PI * (i as f64 + 0.5) / points as f64).collect();
+                Rc::new(self.with_cosines(&angles, vec![PI / points as f64; points], vec![None; points]))
+            };
+            return match finer {
+                1 => self.equal_steps.get_or_init(equal_steps).clone(),
+                _ => equal_steps(),
+            };
+        }
+        let (angles, weights, jumps) = self.between_crossings(state, &cuts, finer);
+        Rc::new(self.with_cosines(&angles, weights, jumps))
+    }
+
+    fn with_cosines(&self, angles: &[f64], weights: Vec<f64>, jumps: Vec<Option<f64>>) -> Nodes {
         Nodes {
-            cosines,
+            cosines: DMatrix::from_fn(angles.len(), self.count, |i, j| {
+                (self.harmonics[j] as f64 * angles[i]).cos()
+            }),
             weights,
             jumps,
         }

@@ -109,9 +109,14 @@ pub fn frequency_squared_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, NoNumbers> {
-    match (solution.method, &solution.by_quadrature) {
-        (Method::Exact, None) => frequency_squared(oscillator, solution, numbers),
-        _ => evaluate(oscillator, solution, numbers).map(|found| found.frequency_squared),
+    let mut numbers = numbers.clone();
+    if let Some(hbar) = open_hbar(solution, &numbers) {
+        let value = best_hbar(oscillator, solution, &numbers, hbar).ok_or(NoNumbers::NoValue)?;
+        numbers.insert(hbar, value);
+    }
+    match solution.system.is_some() || solution.by_quadrature.is_some() {
+        true => solve(oscillator, solution, &numbers).map(|found| found.0),
+        false => frequency_squared(oscillator, solution, &numbers),
     }
 }
 
@@ -440,6 +445,21 @@ fn best_hbar(
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
     let force = one_term::compiled(oscillator, &oscillator.force, numbers)?;
+    // What does not depend on hbar is computed once.
+    let mut numbers = numbers.clone();
+    let fixed = solution
+        .definitions
+        .iter()
+        .take_while(|definition| !definition.meaning.contains(hbar));
+    for definition in fixed {
+        if let Ok(value) = definition.meaning.evaluate(&numbers) {
+            numbers.insert(definition.symbol, value);
+        }
+    }
+    let circle: [(f64, f64); SAMPLES] = std::array::from_fn(|k| {
+        let theta = std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64;
+        (theta.cos(), theta.sin())
+    });
     let squared_residual = |value: f64| {
         let mut numbers = numbers.clone();
         numbers.insert(hbar, value);
@@ -448,11 +468,10 @@ fn best_hbar(
             return f64::INFINITY;
         };
         let acceleration = motion.derivative().derivative();
-        let defect = |k: usize| {
-            let theta = std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64;
-            squared * acceleration.evaluate(theta) + force(motion.evaluate(theta))
+        let defect = |(cosine, sine): &(f64, f64)| {
+            squared * acceleration.evaluate_at(*cosine, *sine) + force(motion.evaluate_at(*cosine, *sine))
         };
-        let sum: f64 = (0..SAMPLES).map(|k| defect(k).powi(2)).sum();
+        let sum: f64 = circle.iter().map(|point| defect(point).powi(2)).sum();
         if sum.is_finite() { sum } else { f64::INFINITY }
     };
     let place = |k: usize| -2.0 * k as f64 / TRIALS as f64;

@@ -227,20 +227,24 @@ pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
 pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f64, k: usize) -> (f64, f64) {
     const FEWEST: usize = 64;
     const MOST: usize = 1 << 14;
+    // The sum, and the size of what is added up: rounding leaves an error of that size times epsilon.
     let with_points = |points: usize| {
         let value = |i: usize| {
             let theta = PI * (i as f64 + 0.5) / points as f64;
             force(amplitude * theta.cos()) * (k as f64 * theta).cos()
         };
-        2.0 / points as f64 * (0..points).map(value).sum::<f64>()
+        let sums = (0..points)
+            .map(value)
+            .fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
+        (2.0 / points as f64 * sums.0, 2.0 / points as f64 * sums.1)
     };
-    let (mut value, mut points) = (with_points(FEWEST), 2 * FEWEST);
+    let (mut value, mut points) = (with_points(FEWEST).0, 2 * FEWEST);
     loop {
-        let finer = with_points(points);
+        let (finer, size) = with_points(points);
         let change = (finer - value).abs();
         value = finer;
         points *= 2;
-        if change <= 1e-15 * value.abs() || points > MOST {
+        if change <= 1e-15 * size || points > MOST {
             return (value, change);
         }
     }

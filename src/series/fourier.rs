@@ -421,13 +421,19 @@ impl FourierSeries<f64> {
 
     /// The value at `theta`.
     pub fn evaluate(&self, theta: f64) -> f64 {
-        let cosines = self
-            .cosine
-            .iter()
-            .enumerate()
-            .map(|(k, c)| c * (k as f64 * theta).cos());
-        let sines = self.sine.iter().enumerate().map(|(k, s)| s * (k as f64 * theta).sin());
-        cosines.chain(sines).sum()
+        let (sine, cosine) = theta.sin_cos();
+        self.evaluate_at(cosine, sine)
+    }
+
+    /// The value where `cos(theta)` and `sin(theta)` are these, without further sines: harmonic by harmonic the point turns on.
+    pub fn evaluate_at(&self, cosine: f64, sine: f64) -> f64 {
+        let (mut c, mut s, mut sum) = (1.0, 0.0, 0.0);
+        for k in 0..self.cosine.len().max(self.sine.len()) {
+            sum += self.cosine.get(k).map_or(0.0, |coefficient| coefficient * c);
+            sum += self.sine.get(k).map_or(0.0, |coefficient| coefficient * s);
+            (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
+        }
+        sum
     }
 }
 

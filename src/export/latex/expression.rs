@@ -252,7 +252,7 @@ mod tests {
             ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
             ("mass1*x", r"\mathrm{mass}_{1} x"),
             ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
-            ("-2*(1 + x)/3", r"-\frac{2 \left(1 + x\right)}{3}"),
+            ("-2*y*(1 + x)/3", r"-\frac{2 y \left(1 + x\right)}{3}"),
             ("(x^2)^(3/2)", r"\left(x^{2}\right)^{3/2}"),
             ("1/(1 + sin(x))", r"\frac{1}{1 + \sin\left(x\right)}"),
         ] {

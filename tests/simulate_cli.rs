@@ -321,6 +321,112 @@ fn the_table_of_the_trajectory() {
 }
 
 #[test]
+fn a_row_of_the_trajectory_is_a_state_and_its_energy() {
+    for name in ["damper", "everything"] {
+        let file = example(name);
+        let barriers = json(&[&file, "--sample", "0"])["parameters"].clone();
+        let side = |key: &str| barriers["barrier"][key].as_f64();
+        let gamma = barriers["gamma"].as_f64().expect("a number");
+        let table = output(&[&file, "--format", "csv"]);
+        let rows: Vec<Vec<f64>> = table
+            .lines()
+            .skip(1)
+            .map(|line| {
+                let fields = line.split(',').enumerate().filter(|(column, _)| *column != 3);
+                fields.map(|(_, field)| field.parse().expect("a number")).collect()
+            })
+            .collect();
+        for pair in rows.windows(2) {
+            let ([t, x, v, _], [next_t, next_x, next_v, _]) = (&pair[0][..], &pair[1][..]) else {
+                panic!("{pair:?}");
+            };
+            // The velocity is the slope of the displacement, to the third power of the step.
+            let step = next_t - t;
+            let missed = next_x - x - 0.5 * step * (v + next_v);
+            assert!(
+                missed.abs() < step * (0.5 * (next_v - v).abs() + 0.3 * step * step),
+                "{pair:?}"
+            );
+        }
+        for row in &rows {
+            let [_, x, v, energy] = row[..] else {
+                panic!("{row:?}");
+            };
+            let right = side("right").map_or(0.0, |barrier| (x - barrier).max(0.0));
+            let left = side("left").map_or(0.0, |barrier| (barrier - x).max(0.0));
+            let elastic = 0.4 * gamma * (right.powf(2.5) + left.powf(2.5));
+            let expected = 0.5 * v * v + 1.0 - x.cos() + elastic;
+            assert!(
+                (energy - expected).abs() < 1e-9 * (1.0 + expected),
+                "{row:?}: {expected}"
+            );
+        }
+    }
+}
+
+/// What a sweep says of a motion is what its own document says, in every format.
+#[test]
+fn a_row_of_a_sweep_sums_up_its_motion() {
+    let path = std::env::temp_dir().join(format!("lindstedt-sweep-row-{}.toml", std::process::id()));
+    let file = path.to_str().expect("a path in text");
+    let with = |barrier: f64| {
+        format!(
+            "[pendulum]\nbarrier = {barrier}\n[contact]\ngamma = 1e5\nmu = 1e4\n[damping]\nzeta = 0.02\n\
+             [run]\nduration = 150.0\n"
+        )
+    };
+    std::fs::write(&path, with(0.3)).expect("a file");
+    let sweep = ["--sweep", "barrier=0.3:0.5:2"];
+    let document = json(&[&[file], &sweep[..]].concat());
+    let table = output(&[&[file, "--format", "csv"], &sweep[..]].concat());
+    let text = output(&[&[file], &sweep[..]].concat());
+    let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
+    for (row, barrier) in [0.3, 0.5].into_iter().enumerate() {
+        std::fs::write(&path, with(barrier)).expect("a file");
+        let single = json(&[file]);
+        let impacts = single["impacts"].as_array().expect("a list");
+        let float = |value: &Value| value.as_f64().expect("a number");
+        let largest = |key: &str| impacts.iter().map(|impact| float(&impact[key])).fold(0.0, f64::max);
+        let lost: f64 = impacts.iter().map(|impact| float(&impact["energy_lost"])).sum();
+        assert!(impacts.len() > 3 && lost > 0.1, "{} {lost}", impacts.len());
+        let expected = [
+            ("barrier", barrier),
+            ("impacts", impacts.len() as f64),
+            ("rest_time", float(&single["rest_time"])),
+            ("penetration", largest("penetration")),
+            ("speed_in", largest("speed_in")),
+            ("energy_lost", lost),
+            ("t", float(&single["final_state"]["t"])),
+            ("x", float(&single["final_state"]["x"])),
+            ("velocity", float(&single["final_state"]["velocity"])),
+        ];
+        let entry = &document["rows"][row];
+        let fields: Vec<&str> = table.lines().nth(row + 1).expect("a row").split(',').collect();
+        let words: Vec<&str> = text.lines().nth(row + 1).expect("a line").split_whitespace().collect();
+        for (column, (key, value)) in expected.into_iter().enumerate() {
+            let found = match key {
+                "barrier" => &entry["values"][0],
+                "t" | "x" | "velocity" => &entry["final_state"][key],
+                _ => &entry[key],
+            };
+            // The books are kept without the path in a sweep, in another order of summation.
+            let same = |found: f64, digits: f64| (found - value).abs() <= digits * value.abs().max(1e-3);
+            assert!(same(float(found), 1e-9), "{key}: {found} {value}");
+            let place = header.iter().position(|name| *name == key).expect(key);
+            assert!(
+                same(fields[place].parse().expect("a number"), 1e-9),
+                "{key}: {}",
+                fields[place]
+            );
+            if let Some(word) = words.get(column).filter(|_| column < 6) {
+                assert!(same(word.parse().expect("a number"), 1e-5), "{key}: {word} {value}");
+            }
+        }
+    }
+    std::fs::remove_file(path).expect("the file goes");
+}
+
+#[test]
 fn samples_and_final_state_agree_whatever_the_format() {
     let file = example("everything");
     let document = json(&[&file, "--sample", "40", "--sample", "0"]);

@@ -1,0 +1,276 @@
+//! Every option of the command line does what its help says: with it the answer is another one, and the right one.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--format", "json"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {message}");
+    serde_json::from_slice(&output.stdout).expect("the output is JSON")
+}
+
+/// The law for omega^2 as it is printed.
+fn law(arguments: &[&str]) -> String {
+    let output = run(&[&["derive"], arguments].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {message}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let line = text.lines().find(|line| line.trim().starts_with("omega^2 = "));
+    line.unwrap_or_else(|| panic!("no law in {text}")).trim().to_owned()
+}
+
+/// A folder of its own for each test.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("lindstedt-options-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path in text")
+}
+
+#[test]
+fn the_result_goes_to_the_file_of_output_alone() {
+    let folder = folder("output");
+    let path = folder.join("result");
+    for command in [
+        vec!["derive", "duffing"],
+        vec!["compare", "pendulum", "--at", "A=1"],
+        vec!["impact"],
+        vec!["simulate", "--sample", "1", "--format", "json"],
+        vec!["catalog", "--format", "json"],
+    ] {
+        let printed = run(&command);
+        let to_file = run(&[command.as_slice(), &["--output", text(&path)]].concat());
+        assert!(printed.status.success() && to_file.status.success(), "{command:?}");
+        assert!(to_file.stdout.is_empty() && !printed.stdout.is_empty(), "{command:?}");
+        assert_eq!(std::fs::read(&path).expect("the file"), printed.stdout, "{command:?}");
+        // A second result takes the place of the first, and nothing lies about.
+        assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1);
+    }
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_replaced_file_keeps_its_permissions_and_its_links() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    let folder = folder("links");
+    let (file, link) = (folder.join("file"), folder.join("link"));
+    std::fs::write(&file, "old").expect("a file");
+    std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o640)).expect("permissions");
+    symlink(&file, &link).expect("a link");
+    assert!(run(&["derive", "duffing", "--output", text(&link)]).status.success());
+    assert!(link.symlink_metadata().expect("a link").file_type().is_symlink());
+    assert_eq!(
+        std::fs::read(&file).expect("the file"),
+        run(&["derive", "duffing"]).stdout
+    );
+    assert_eq!(file.metadata().expect("the file").permissions().mode() & 0o777, 0o640);
+    // The problem under another name is still the problem.
+    let problem = folder.join("problem.toml");
+    std::fs::write(&problem, "equation = \"x'' + sin(x) = 0\"\n").expect("a file");
+    let alias = folder.join("alias");
+    symlink(&problem, &alias).expect("a link");
+    let refused = run(&["derive", text(&problem), "--output", text(&alias)]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("is the file that is read"));
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn a_time_limit_ends_what_takes_longer() {
+    let long = ["derive", "pendulum", "--method", "homotopy-analysis", "--order", "20"];
+    let start = std::time::Instant::now();
+    let output = run(&[&long[..], &["--timeout", "0.05"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(output.stdout.is_empty());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("stopped after 0.05 s without a result"), "{message}");
+    assert!(start.elapsed().as_secs_f64() < 20.0);
+    assert!(run(&["derive", "duffing", "--timeout", "60"]).status.success());
+}
+
+#[test]
+fn the_command_line_wins_over_the_file() {
+    let folder = folder("file");
+    let path = folder.join("problem.toml");
+    std::fs::write(
+        &path,
+        "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\norder = 1\nsmall = \"eps\"\namplitude = \"first-harmonic\"\n\
+         [values]\na = 2\neps = \"1/10\"\n",
+    )
+    .expect("a file");
+    let file = text(&path);
+    let of_file = json(&["derive", file]);
+    assert_eq!(
+        (&of_file["order"], &of_file["small_parameter"]),
+        (&1.into(), &"eps".into())
+    );
+    for (option, key, value) in [
+        (["--order", "2"], "order", Value::from(2)),
+        (["--small", "A"], "small_parameter", "a".into()),
+    ] {
+        let found = json(&[&["derive", file], &option[..]].concat());
+        assert_eq!(found[key], value, "{option:?}");
+        assert_ne!(found["frequency_squared"], of_file["frequency_squared"], "{option:?}");
+    }
+    // A value of the command line takes the place of the file's, the others stay.
+    let judged = json(&["derive", file, "--at", "a=1"]);
+    assert_eq!(judged["verification"]["at"]["a"]["exact"], "1");
+    assert_eq!(judged["verification"]["at"]["eps"]["exact"], "1/10");
+    std::fs::write(
+        &path,
+        "equation = \"x'' + x + x^3 = 0\"\namplitude = \"first-harmonic\"\n",
+    )
+    .expect("a file");
+    assert_eq!(json(&["derive", file])["amplitude"], "first-harmonic");
+    assert_eq!(
+        json(&["derive", file, "--amplitude", "initial"])["amplitude"],
+        "initial"
+    );
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn options_of_a_derivation_change_it() {
+    let equation = "x'' + x + eps*delta*x^3 = 0";
+    let with_small = |name: &str| law(&[equation, "--small", name, "--order", "1"]);
+    assert_eq!(with_small("eps"), "omega^2 = 1 + 3*delta*eps*A^2/4");
+    let expansion = |name: &str| json(&["derive", equation, "--small", name])["small_parameter"].clone();
+    assert_eq!(
+        ["eps", "delta", "A"].map(expansion),
+        ["eps", "delta", "A"].map(Value::from)
+    );
+
+    // J_1 of a sine, cut after the degree asked for: 2 J_1(A)/A = 1 - A^2/8 + A^4/192 - ...
+    let taylor = |degree: &str| {
+        law(&[
+            "pendulum",
+            "--method",
+            "homotopy-perturbation",
+            "--order",
+            "1",
+            "--taylor",
+            degree,
+        ])
+    };
+    assert_eq!(taylor("3"), "omega^2 = 1 - A^2/8");
+    assert_eq!(taylor("5"), "omega^2 = 1 - A^2/8 + A^4/192");
+    assert_eq!(taylor("7"), "omega^2 = 1 - A^2/8 + A^4/192 - A^6/9216");
+
+    // The averaged equation 1 - r/4 + r^2/160 = 0 in r = a^2 has two roots.
+    let cycles = "x'' + x - eps*(1 - x^2 + x^4/20)*x' = 0";
+    for (number, sign) in [("1", -1.0), ("2", 1.0)] {
+        let root = (20.0 + sign * 240.0_f64.sqrt()).sqrt();
+        let output = run(&["derive", cycles, "--cycle", number]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let line = text.lines().find(|line| line.trim().starts_with('*'));
+        let line = line.unwrap_or_else(|| panic!("no cycle in {text}"));
+        let value = line.split(" = ").nth(2).and_then(|rest| rest.split(',').next());
+        let value: f64 = value.and_then(|value| value.parse().ok()).expect("a number");
+        assert!((value - root).abs() < 1e-5, "{line}");
+    }
+
+    let wells = "x'' + x*(x^2 - 1)*(x^2 - 4) = 0";
+    let leading = |about: &[&str]| {
+        let found = json(&[&["derive", wells, "--at", "A=1/10000"], about].concat());
+        found["verification"]["frequency"].as_f64().expect("a number")
+    };
+    // f' = 5 x^4 - 15 x^2 + 4: 4 at rest, 24 at x = 2.
+    for (about, squared) in [
+        (&[][..], 4.0_f64),
+        (&["--about", "x=0"], 4.0),
+        (&["--about", "x=-2"], 24.0),
+    ] {
+        assert!((leading(about) / squared.sqrt() - 1.0).abs() < 1e-6, "{about:?}");
+    }
+    let refused = run(&["derive", wells, "--about", "x=1"]);
+    assert_eq!(refused.status.code(), Some(1));
+
+    let hbar = |value: &str| {
+        let arguments = [
+            "--method",
+            "homotopy-analysis",
+            "--hbar",
+            value,
+            "--at",
+            "A=1",
+            "--at",
+            "eps=1",
+        ];
+        json(&[&["derive", "duffing"], &arguments[..]].concat())["verification"]["frequency"].clone()
+    };
+    assert_ne!(hbar("-1"), hbar("-1/2"));
+}
+
+/// The error of a verdict lies between the tolerances at which it changes.
+#[test]
+fn a_verdict_changes_at_the_tolerance_itself() {
+    for arguments in [
+        vec!["derive", "pendulum", "--at", "A=1"],
+        vec!["derive", "duffing", "--at", "A=1", "--at", "eps=1"],
+        vec![
+            "derive",
+            "duffing",
+            "--at",
+            "A=1",
+            "--at",
+            "eps=1",
+            "--method",
+            "energy-balance",
+        ],
+        vec!["compare", "pendulum", "--at", "A=1"],
+        vec!["impact"],
+    ] {
+        let document = json(&arguments);
+        let size = |value: &Value| value.as_f64().expect("a number").abs();
+        let error = match arguments[0] {
+            "derive" => size(&document["verification"]["relative_error"]),
+            "compare" => {
+                let rows = document["methods"].as_array().expect("methods").iter();
+                let judged = rows.filter(|row| row["applies"] == true);
+                judged.map(|row| size(&row["relative_error"])).fold(0.0, f64::max)
+            }
+            _ => {
+                let contact = &document["contact"];
+                let speed = [&contact["speed"], &contact["penetration"], &contact["duration"]];
+                let quantities = speed
+                    .into_iter()
+                    .chain([&document["time_to_contact"], &document["period"]]);
+                quantities
+                    .map(|quantity| size(&quantity["paper_error"]))
+                    .fold(0.0, f64::max)
+            }
+        };
+        for (factor, code) in [(1.001, 0), (0.999, 3)] {
+            let tolerance = (factor * error).to_string();
+            let output = run(&[arguments.as_slice(), &["--tolerance", &tolerance]].concat());
+            assert_eq!(output.status.code(), Some(code), "{arguments:?} at {tolerance}");
+        }
+    }
+}
+
+#[test]
+fn quiet_leaves_notes_out_and_results_in() {
+    let folder = folder("quiet");
+    let path = folder.join("fast.toml");
+    std::fs::write(&path, "[pendulum]\nstart = 0\nspeed = 1e300\n").expect("a file");
+    let loud = run(&["simulate", text(&path)]);
+    let quiet = run(&["simulate", text(&path), "--quiet"]);
+    assert!(!loud.stderr.is_empty() && quiet.stderr.is_empty());
+    assert_eq!(loud.stdout, quiet.stdout);
+    assert_eq!(quiet.status.code(), Some(4));
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}

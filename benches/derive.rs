@@ -96,6 +96,7 @@ fn contact(criterion: &mut Criterion) {
                 order: 2,
                 rule: Rule::default(),
                 integrator_tolerance: 1e-10,
+                step_limit: 250_000,
             })
             .expect("an impact")
         });

@@ -12,7 +12,7 @@
 
 use crate::contact::linearisation::Rule;
 use crate::contact::phases::{Column, Form, PhasesError, Swing, ThreePhases, three_phases};
-use crate::contact::true_motion::{Deviation, TrueMotion, TrueMotionError, deviation, true_motion};
+use crate::contact::true_motion::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::{self, Refusal};
 use crate::ode::Options;
@@ -42,8 +42,10 @@ pub struct Setup {
     pub order: u32,
     /// How the line is fitted.
     pub rule: Rule,
-    /// Error per step of Runge-Kutta, relative; the absolute one lies well below the depth of the contact.
+    /// Error per step of Runge-Kutta, relative.
     pub integrator_tolerance: f64,
+    /// Steps after which Runge-Kutta gives up.
+    pub step_limit: u32,
 }
 
 /// The three phases in closed form beside the true motion.
@@ -142,8 +144,11 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         )
     };
     let (paper, energy) = (phases(Column::Paper)?, phases(Column::Energy)?);
-    let options = Options::with_tolerance(setup.integrator_tolerance);
-    let truth = true_motion(
+    let options = Options {
+        maximum_steps: setup.step_limit as usize,
+        ..Options::with_tolerance(setup.integrator_tolerance)
+    };
+    let truth = assured_motion(
         setup.amplitude,
         setup.barrier,
         setup.stiffness,
@@ -219,9 +224,7 @@ impl Impact {
             })
         };
         let truth = &self.truth;
-        let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| {
-            truth.trajectory.at(t).unwrap_or((f64::NAN, f64::NAN))
-        });
+        let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| truth.at(t));
         [true_path, closed_form(&self.paper), closed_form(&self.energy)]
     }
 

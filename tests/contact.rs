@@ -1,10 +1,13 @@
 //! One impact of the pendulum, from equation (8) to the verdict: the closed forms against the true motion and against
 //! numbers found independently.
 
+use std::f64::consts::PI;
+
 use lindstedt::contact::hertz::{self, Design, elastic_force};
 use lindstedt::contact::linearisation::Rule;
 use lindstedt::contact::phases::{Column, Form, Swing, ThreePhases, three_phases};
 use lindstedt::contact::true_motion::{TrueMotion, deviation, true_motion};
+use lindstedt::impact::{self, Setup};
 use lindstedt::ode::Options;
 use proptest::prelude::*;
 
@@ -152,6 +155,64 @@ fn small_swings_are_described_well() {
     };
     let slope = (relative(0.4) / relative(0.2)).log2();
     assert!((slope - 2.0).abs() < 0.1, "exponent {slope}");
+}
+
+/// K of the complementary modulus k', by the arithmetic-geometric mean: as exact near k = 1 as anywhere.
+fn complete_integral(complement: f64) -> f64 {
+    let (mut one, mut other) = (1.0, complement);
+    for _ in 0..60 {
+        (one, other) = (0.5 * (one + other), (one * other).sqrt());
+    }
+    0.5 * PI / one
+}
+
+#[test]
+fn tiny_and_nearly_upright_swings_are_judged_as_closely_as_any_other() {
+    for (amplitude, barrier, stiffness) in [
+        (1e-9, 0.0, 3.0407e7),
+        (1e-9, 0.3e-9, 1e6),
+        (1e-40, 0.0, 1e3),
+        (1.5, 0.323, 1e6),
+        (PI - 9.3e-5, 0.323, 3.0407e7),
+        (PI - 2.65e-6, 0.323, 3.0407e7),
+        (PI - 3.6e-9, -0.9, 1e5),
+        (1.5, 0.323, 1e28),
+    ] {
+        let found = impact::solve(Setup {
+            amplitude,
+            barrier,
+            stiffness,
+            stiffness_source: String::new(),
+            order: 4,
+            rule: Rule::default(),
+            integrator_tolerance: 1e-10,
+            step_limit: 250_000,
+        })
+        .unwrap_or_else(|error| panic!("A = {amplitude}: {error}"));
+        let near = |value: f64, expected: f64, what: &str| {
+            assert!(
+                (value / expected - 1.0).abs() < 1e-6,
+                "{what} at A = {amplitude}: {value} against {expected}"
+            );
+        };
+        let modulus = (0.5 * amplitude).sin();
+        let angle = ((0.5 * barrier).sin() / modulus).asin();
+        let touch = complete_integral((0.5 * amplitude).cos()) + ellip::ellipf(angle, modulus * modulus).unwrap();
+        let speed = 2.0 * ((0.5 * (amplitude + barrier)).sin() * (0.5 * (amplitude - barrier)).sin()).sqrt();
+        let truth = &found.truth;
+        near(truth.touch.t, touch, "time to contact");
+        near(truth.touch.v, speed, "speed");
+        near(truth.period, 2.0 * touch + truth.duration, "period");
+        assert!(truth.energy_drift < 1e-8, "A = {amplitude}: {}", truth.energy_drift);
+        if stiffness > 1e20 {
+            near(truth.duration, hertz::duration(stiffness, speed).unwrap(), "duration");
+            near(
+                truth.penetration,
+                hertz::penetration(stiffness, speed).unwrap(),
+                "depth",
+            );
+        }
+    }
 }
 
 proptest! {

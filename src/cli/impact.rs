@@ -121,6 +121,7 @@ fn setup(problem: &Problem) -> Result<Setup, Failure> {
         order,
         rule: problem.linearisation().map_err(refused)?,
         integrator_tolerance: problem.run.integrator_tolerance,
+        step_limit: problem.run.step_limit,
     })
 }
 

@@ -13,7 +13,7 @@
 
 use super::model::{Model, Side, Start};
 use super::path::{Path, State};
-use super::{Impact, Integrator, Options, Simulation, SimulationError, Stop, Turn};
+use super::{Impact, Integrator, Options, Simulation, SimulationError, Stop, Turn, enter};
 use crate::ode::{self, Event, Occurrence, Phase, StopReason, Trajectory, integrate_phases};
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
@@ -105,7 +105,39 @@ fn from_rest(model: &Model, region: State, t: f64, value: f64) -> usize {
     let force = force_at_rest(model, region, t, value);
     let direction = force.signum();
     let held = force.abs() <= model.alpha * (1.0 + 4.0 * f64::EPSILON);
-    index(Place { region, direction }, held)
+    if held {
+        return index(Place { region, direction }, true);
+    }
+    let region = pushed_into(model, region, value, direction).unwrap_or(region);
+    index(Place { region, direction }, false)
+}
+
+/// The contact that begins at rest on a barrier, where the motion sets off in this direction.
+fn pushed_into(model: &Model, region: State, x: f64, direction: f64) -> Option<State> {
+    let on = |side: &Side| region == State::Free && model.barrier(*side) == Some(x) && direction == side.sign();
+    [Side::Left, Side::Right].into_iter().find(on).map(State::Contact)
+}
+
+/// The region in which a motion begins, and how fast it moves there in the coordinate of that region.
+fn beginning(model: &Model, start: Start) -> State {
+    if let Some((side, _)) = model.depth(start.x) {
+        return match model.would_pull(side.sign() * start.velocity) {
+            true => State::Detached(side),
+            false => State::Contact(side),
+        };
+    }
+    // At rest the force decides, and where there is none yet, the one that comes.
+    let rates = [
+        start.velocity,
+        model.field(0.0, start.x),
+        model.field_rate(0.0, start.x),
+    ];
+    let held = model.sticks() && start.velocity == 0.0;
+    rates
+        .into_iter()
+        .find(|rate| *rate != 0.0 && !held)
+        .and_then(|rate| pushed_into(model, State::Free, start.x, rate.signum()))
+        .unwrap_or(State::Free)
 }
 
 fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, Vec<Meaning>) {
@@ -120,7 +152,23 @@ fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, 
             let direction = force_at_rest(model, region, state.t, state.x).signum();
             // The acceleration is still zero: without a sign of its own the velocity would be anybody's.
             let v = NUDGE * direction * sign;
-            (index(Place { region, direction }, false), ode::State { v, ..state })
+            match pushed_into(model, region, state.x, direction) {
+                Some(contact) => (
+                    index(
+                        Place {
+                            region: contact,
+                            direction,
+                        },
+                        false,
+                    ),
+                    ode::State {
+                        x: 0.0,
+                        v: NUDGE,
+                        ..state
+                    },
+                ),
+                None => (index(Place { region, direction }, false), ode::State { v, ..state }),
+            }
         };
         events.push((Event::switch(excess, next).rising(), Meaning::LetGo));
         let (events, meanings) = events.into_iter().unzip();
@@ -131,7 +179,8 @@ fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, 
             for side in [Side::Left, Side::Right] {
                 if let Some(barrier) = model.barrier(side) {
                     let next = move |state: ode::State| {
-                        let speed = side.sign() * state.v;
+                        // It moves inwards, whatever rounding says of one that rests there.
+                        let speed = (side.sign() * state.v).max(0.0);
                         (
                             to(State::Contact(side)),
                             ode::State {
@@ -152,7 +201,7 @@ fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, 
                     to(State::Free),
                     ode::State {
                         x: origin,
-                        v: sign * state.v,
+                        v: sign * state.v.min(0.0),
                         ..state
                     },
                 )
@@ -213,10 +262,11 @@ pub(super) fn follow(model: &Model, start: Start, options: &Options) -> Result<S
     let (phases, meanings): (Vec<_>, Vec<_>) = (0..REGIONS.len() * MOTIONS)
         .map(|number| phase(model, options, number))
         .unzip();
-    let region = State::Free;
+    let region = beginning(model, start);
+    let Coordinate { sign, origin } = Coordinate::of(model, region);
     let first = match start.velocity {
         _ if !model.sticks() => index(Place { region, direction: 0.0 }, false),
-        0.0 => from_rest(model, region, 0.0, start.x),
+        0.0 => from_rest(model, region, 0.0, sign * (start.x - origin)),
         velocity => {
             let direction = velocity.signum();
             index(Place { region, direction }, false)
@@ -238,11 +288,23 @@ pub(super) fn follow(model: &Model, start: Start, options: &Options) -> Result<S
     };
     let begin = ode::State {
         t: 0.0,
-        x: start.x,
-        v: start.velocity,
+        x: match place(first).0.region {
+            State::Free => start.x,
+            first => {
+                let Coordinate { sign, origin } = Coordinate::of(model, first);
+                sign * (start.x - origin)
+            }
+        },
+        v: sign * start.velocity,
     };
     let trajectory = integrate_phases(&phases, first, begin, options.duration, &settings)?;
-    Ok(told(model, start, options, trajectory, &meanings))
+    Ok(told(
+        model,
+        start,
+        options,
+        trajectory,
+        (place(first).0.region, &meanings),
+    ))
 }
 
 /// The run in the words of a simulation.
@@ -251,9 +313,19 @@ fn told(
     start: Start,
     options: &Options,
     trajectory: Trajectory,
-    meanings: &[Vec<Meaning>],
+    (first, meanings): (State, &[Vec<Meaning>]),
 ) -> Simulation {
     let mut impacts: Vec<Impact> = Vec::new();
+    if let State::Contact(side) | State::Detached(side) = first {
+        let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
+        enter(
+            &mut impacts,
+            (model, options),
+            side,
+            0.0,
+            [depth, side.sign() * start.velocity],
+        );
+    }
     let mut turns = Vec::new();
     if start.velocity == 0.0 {
         turns.push(Turn { t: 0.0, x: start.x });
@@ -261,22 +333,23 @@ fn told(
     for Occurrence { phase, event, state } in trajectory.occurrences().iter().copied() {
         let coordinate = Coordinate::of(model, place(phase).0.region);
         match meanings.get(phase).and_then(|list| list.get(event)) {
-            Some(&Meaning::Touch(side)) => impacts.push(Impact {
-                side,
-                entry_time: state.t,
-                exit_time: None,
-                speed_in: side.sign() * state.v,
-                speed_out: None,
-                penetration: 0.0,
-                restitution: None,
-                energy_lost: None,
-            }),
+            Some(&Meaning::Touch(side)) => {
+                let speed = (side.sign() * state.v).max(0.0);
+                enter(&mut impacts, (model, options), side, state.t, [0.0, speed]);
+            }
             Some(Meaning::Release) => {
                 if let Some(impact) = impacts.last_mut() {
-                    impact.released(state.t, (-state.v).max(0.0));
+                    impact.released(model, state.t, (-state.v).max(0.0));
                 }
             }
-            Some(Meaning::Turn | Meaning::LetGo) => {
+            Some(meaning @ (Meaning::Turn | Meaning::LetGo)) => {
+                let region = place(phase).0.region;
+                let direction = force_at_rest(model, region, state.t, state.x).signum();
+                if let Meaning::LetGo = meaning
+                    && let Some(State::Contact(side)) = pushed_into(model, region, state.x, direction)
+                {
+                    enter(&mut impacts, (model, options), side, state.t, [0.0, 0.0]);
+                }
                 turns.push(Turn {
                     t: state.t,
                     x: coordinate.x(state.x),

@@ -212,13 +212,15 @@ pub struct Impact {
     pub entry_time: f64,
     /// When it is left; nothing where the run ended before.
     pub exit_time: Option<f64>,
-    /// Speed at the touch.
+    /// Speed at the touch; where the motion starts inside the barrier, its speed inwards then, negative if it leaves.
     pub speed_in: f64,
+    /// Depth at the entry, rad: 0 at a touch, more where the motion starts inside the barrier.
+    pub start_depth: f64,
     /// Speed at the release.
     pub speed_out: Option<f64>,
     /// Greatest depth, rad.
     pub penetration: f64,
-    /// Speed out over speed in.
+    /// Speed out over speed in; nothing for a contact that did not begin with a touch.
     pub restitution: Option<f64>,
     /// Energy that the motion has lost between touch and release, units of m g L.
     pub energy_lost: Option<f64>,
@@ -226,12 +228,61 @@ pub struct Impact {
 
 impl Impact {
     /// The contact ends, at this time and with this speed.
-    fn released(&mut self, t: f64, speed: f64) {
+    fn released(&mut self, model: &Model, t: f64, speed: f64) {
         self.exit_time = Some(t);
         self.speed_out = Some(speed);
-        self.restitution = (self.speed_in > 0.0).then(|| speed / self.speed_in);
-        self.energy_lost = Some(0.5 * (self.speed_in - speed) * (self.speed_in + speed));
+        let touched = self.start_depth == 0.0;
+        self.restitution = (touched && self.speed_in > 0.0).then(|| speed / self.speed_in);
+        // Two places inside and outside the barrier differ in height, and the barrier stores energy.
+        let held = match model.barrier(self.side) {
+            Some(barrier) if !touched => {
+                let inside = barrier + self.side.sign() * self.start_depth;
+                model.energy(inside, 0.0) - model.swing_energy(barrier, 0.0)
+            }
+            _ => 0.0,
+        };
+        self.energy_lost = Some(held + 0.5 * (self.speed_in - speed) * (self.speed_in + speed));
     }
+}
+
+/// Notes that a contact begins: at this depth, which is zero at a touch, and with this speed inwards.
+///
+/// A contact left and entered again before x has changed by more than a step may err goes on: the pendulum is pressed
+/// against the barrier and rests there.
+fn enter(
+    impacts: &mut Vec<Impact>,
+    (model, options): (&Model, &Options),
+    side: Side,
+    t: f64,
+    [depth, speed]: [f64; 2],
+) {
+    let place = model.barrier(side).unwrap_or_default().abs();
+    let visible = options.absolute_tolerance + options.relative_tolerance * place;
+    if let Some(last) = impacts.last_mut()
+        && last.side == side
+        && let (Some(exit), Some(left)) = (last.exit_time, last.speed_out)
+        && left.max(speed) * (t - exit) <= visible
+    {
+        *last = Impact {
+            exit_time: None,
+            speed_out: None,
+            restitution: None,
+            energy_lost: None,
+            ..*last
+        };
+        return;
+    }
+    impacts.push(Impact {
+        side,
+        entry_time: t,
+        exit_time: None,
+        speed_in: speed,
+        start_depth: depth,
+        speed_out: None,
+        penetration: depth,
+        restitution: None,
+        energy_lost: None,
+    });
 }
 
 /// A moment of rest: x is largest or smallest there, or friction begins or ceases to hold it.

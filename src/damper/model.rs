@@ -132,19 +132,6 @@ pub enum ModelError {
         /// Position of the right one, rad.
         right: f64,
     },
-    /// The motion begins behind a barrier.
-    #[error(
-        "the motion starts at x = {start}, inside the {} barrier at {barrier}: move the barrier, or give `start` in \
-         [pendulum]", .side.name()
-    )]
-    Inside {
-        /// Which barrier.
-        side: Side,
-        /// Its position, rad.
-        barrier: f64,
-        /// The start, rad.
-        start: f64,
-    },
 }
 
 impl Model {
@@ -178,17 +165,6 @@ impl Model {
         {
             return Err(ModelError::Barriers { left, right });
         }
-        for side in [Side::Left, Side::Right] {
-            if let Some(barrier) = self.barrier(side)
-                && side.sign() * (start.x - barrier) > 0.0
-            {
-                return Err(ModelError::Inside {
-                    side,
-                    barrier,
-                    start: start.x,
-                });
-            }
-        }
         Ok(())
     }
 
@@ -213,6 +189,12 @@ impl Model {
         self.beta * (self.frequency_ratio * t).sin() * x.cos() - x.sin()
     }
 
+    /// How fast [`Model::field`] changes with time at this place.
+    pub fn field_rate(&self, t: f64, x: f64) -> f64 {
+        let eta = self.frequency_ratio;
+        self.beta * eta * (eta * t).cos() * x.cos()
+    }
+
     /// Acceleration by damping: viscous, and dry by equation (6) or, for Coulomb's law, in motion of this direction
     /// (1, -1, or 0 for none).
     pub fn damping(&self, velocity: f64, direction: f64) -> f64 {
@@ -229,6 +211,11 @@ impl Model {
             return 0.0;
         }
         (self.gamma + self.mu * speed).max(0.0) * depth * depth.sqrt()
+    }
+
+    /// Whether a barrier left at this speed (negative: outwards) would have to pull: it comes back more slowly.
+    pub fn would_pull(&self, speed: f64) -> bool {
+        self.gamma + self.mu * speed < 0.0
     }
 
     /// Energy of a motion without contact, in units of m g L: zero at rest in the lowest place.

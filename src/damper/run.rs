@@ -5,6 +5,8 @@
 //! turn:    v = 0, every change of sign in the step; between two of them x only rises or only falls
 //! touch:   x = x_r on a rising part that ends beyond it: whether there is one is decided at the turning point, where
 //!          x is known best, so grazing contacts are neither missed nor invented
+//! lean:    from rest on the barrier into it; w = 0, v = 0 is a standstill of the regularised equation, so the first
+//!          moment is free flight, until the contact force begins to count: v - F t/(3k/2 + 1), d ~ t^k, F ~ d^(3/2)
 //! release: w = 0 on a falling part
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
 //! ```
@@ -20,7 +22,7 @@ use super::polynomial::{
     Roots, bracketed, crossing_of, level_crossing, near_sign_changes, sign_changes, value, variation,
 };
 use super::taylor::{Coefficients, End, HIGHEST_ORDER, INVERSE, LAST, Moment, Terms, contact, flight};
-use super::{Impact, Integrator, Options, Simulation, Stop, Turn};
+use super::{Impact, Integrator, Options, Simulation, Stop, Turn, enter};
 
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
@@ -30,6 +32,13 @@ const SAFETY: f64 = 0.5;
 
 /// The longest step in contact, in units of its own scale.
 const LONGEST_CONTACT_STEP: f64 = 64.0;
+
+/// The part of the velocity that the contact force may have taken when a motion that leans on a barrier is handed to the
+/// equation of the contact: its first order is taken off then, so what is left out is the square of it.
+const LIGHT: f64 = 1e-8;
+
+/// A touch slower than this is none: in contact the fourth power of w, the root of the depth, would be lost.
+const SLOWEST_TOUCH: f64 = 1e-75;
 
 /// A speed that is none.
 const VANISHING: f64 = 1e-280;
@@ -78,8 +87,10 @@ pub(super) struct Runner {
 enum Event {
     Turn,
     Touch(Side),
-    /// At rest on the barrier, see [`Runner::lean`].
+    /// Turned on the barrier and pushed in: at rest there, from where it leans.
     Settle(Side),
+    /// From rest on the barrier into it, far enough for the contact force to begin to count.
+    Lean(Side),
     Release,
     /// The contact would begin to pull.
     Detach,
@@ -146,6 +157,14 @@ impl Runner {
         for side in [Side::Left, Side::Right] {
             if model.barrier(side) == Some(start.x) && side.sign() * start.velocity > 0.0 {
                 runner.touch(side, side.sign() * start.velocity);
+            }
+        }
+        if let Some((side, depth)) = model.depth(start.x) {
+            let speed = side.sign() * start.velocity;
+            enter(&mut runner.impacts, (&model, &options), side, 0.0, [depth, speed]);
+            match model.would_pull(speed) {
+                true => runner.state = State::Detached(side),
+                false => runner.press(side, depth.sqrt(), speed),
             }
         }
         if model.sticks() {
@@ -226,9 +245,6 @@ impl Runner {
             return None;
         }
         self.steps += 1;
-        if self.velocity == 0.0 && self.state == State::Free {
-            self.lean();
-        }
         match self.state {
             State::Contact(_) => Some(Equation::Contact),
             _ => Some(Equation::Flight),
@@ -362,9 +378,8 @@ impl Runner {
     fn press_on(&mut self, (side, barrier): (Side, f64), end: End) -> bool {
         let turns = self.velocity.abs() <= end.variation;
         let lowest = self.velocity - end.variation;
-        let pulls = self.model.gamma + self.model.mu * lowest < 0.0;
         if turns
-            || pulls
+            || self.model.would_pull(lowest)
             || self.options.keep_path
             || self.released
             || end.place <= 0.0
@@ -431,7 +446,11 @@ impl Runner {
             start + end * self.unit
         };
         if self.options.keep_path {
-            self.path.push_flight([start, self.t], self.state, self.unit, x, v);
+            let state = match event {
+                Some(Event::Lean(side)) => State::Contact(side),
+                _ => self.state,
+            };
+            self.path.push_flight([start, self.t], state, self.unit, x, v);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x_end, v_end, sine, cosine);
         self.adapt();
@@ -441,8 +460,13 @@ impl Runner {
                 self.velocity = 0.0;
                 self.turn();
             }
-            Some(Event::Touch(side)) => self.touch(side, side.sign() * v_end),
-            Some(Event::Settle(side)) => {
+            Some(Event::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => self.touch(side, side.sign() * v_end),
+            Some(Event::Lean(side)) => {
+                let depth = side.sign() * rise(x, end);
+                enter(&mut self.impacts, (&self.model, &self.options), side, start, [0.0, 0.0]);
+                self.lean(side, end * self.unit, [depth, side.sign() * v_end]);
+            }
+            Some(Event::Touch(side) | Event::Settle(side)) => {
                 (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
                 self.fly();
             }
@@ -479,6 +503,13 @@ impl Runner {
             let x_to = if turning { value(x, to) } else { end.place };
             for side in [Side::Right, Side::Left] {
                 let sign = side.sign();
+                // At rest on the barrier: which way it goes is in the change of x alone, not in x - x_r.
+                if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
+                    if sign * rise(x, to) > 0.0 {
+                        return (self.onset(side, x, v, to), Some(Event::Lean(side)));
+                    }
+                    continue;
+                }
                 if let Some(barrier) = self.model.barrier(side)
                     && sign * (x_to - barrier) > 0.0
                 {
@@ -640,17 +671,45 @@ impl Runner {
 
     /// Contact begins, at this speed.
     fn touch(&mut self, side: Side, speed: f64) {
-        self.impacts.push(Impact {
+        enter(
+            &mut self.impacts,
+            (&self.model, &self.options),
             side,
-            entry_time: self.t,
-            exit_time: None,
-            speed_in: speed,
-            speed_out: None,
-            penetration: 0.0,
-            restitution: None,
-            energy_lost: None,
-        });
+            self.t,
+            [0.0, speed],
+        );
         self.press(side, 0.0, speed);
+    }
+
+    /// How far a motion that moves into the barrier from rest on it, and does so at least until `to`, may go before the
+    /// contact force counts.
+    fn onset(&self, side: Side, x: &[f64], v: &[f64], to: f64) -> f64 {
+        let mut u = to;
+        // Each time the part of the force shrinks by 4^4 or more.
+        for _ in 0..MOST_IDLE {
+            let (depth, speed) = (side.sign() * rise(x, u), side.sign() * value(v, u));
+            if self.model.contact(depth, speed) * u * self.unit <= LIGHT * speed {
+                break;
+            }
+            u *= 0.25;
+        }
+        u
+    }
+
+    /// Goes over to the equation of the contact after free flight from rest on the barrier, which has taken this time
+    /// and ends at this depth and speed.
+    fn lean(&mut self, side: Side, time: f64, [depth, speed]: [f64; 2]) {
+        let force = self.model.contact(depth, speed);
+        // d ~ t^k.
+        let power = 1.5 * speed * time / depth;
+        let (taken, back) = match power.is_finite() {
+            true => {
+                let taken = force * time / (power + 1.0);
+                (taken, taken * time / (power + 2.0))
+            }
+            false => (0.0, 0.0),
+        };
+        self.press(side, (depth - back).max(0.0).sqrt(), speed - taken);
     }
 
     /// In contact at w with this speed inwards.
@@ -660,14 +719,14 @@ impl Runner {
         self.place = w;
         self.velocity = speed;
         self.look(barrier + side.sign() * w * w);
-        // The time of a Hertz contact in s: depth ~ (5 v^2/(4 gamma))^(2/5), w = sqrt(depth), dw/ds = v/2.
-        let depth = (1.25 * speed * speed / self.model.gamma).powf(0.4);
-        let unit = depth.sqrt() / speed.abs();
-        self.unit = if unit.is_finite() && unit > 0.0 {
-            unit.min(1.0)
-        } else {
-            1.0
-        };
+        // The time of a Hertz contact in s: its greatest depth is that at which the barrier stores all the energy,
+        // v^2/2 = (2/5) gamma d^(5/2), w = sqrt(d), dw/ds = v/2.
+        let reached = (1.25 * speed * speed / self.model.gamma).powf(0.4).max(w * w);
+        let fastest = (speed * speed + 2.0 * self.model.elastic_energy(w * w)).sqrt();
+        // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next to none.
+        let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
+        let unit = (reached.sqrt() / fastest).min((2.0 / others).sqrt());
+        self.unit = if unit.is_finite() && unit > 0.0 { unit } else { 1.0 };
     }
 
     /// Contact ends at this velocity.
@@ -675,7 +734,7 @@ impl Runner {
         if let Some((side, barrier)) = self.side() {
             self.place = barrier;
             if let Some(impact) = self.impacts.last_mut() {
-                impact.released(self.t, (-side.sign() * velocity).max(0.0));
+                impact.released(&self.model, self.t, (-side.sign() * velocity).max(0.0));
             }
         }
         self.velocity = velocity;
@@ -700,8 +759,9 @@ impl Runner {
     fn adapt(&mut self) {
         let proposed = self.proposed;
         if !(0.125..=8.0).contains(&proposed) && proposed.is_finite() {
-            let unit = self.unit * proposed;
-            if unit > 0.0 && unit <= LONGEST_STEP {
+            let in_contact = matches!(self.state, State::Contact(_));
+            let unit = self.unit * proposed.min(LONGEST_CONTACT_STEP);
+            if unit > 0.0 && (unit <= LONGEST_STEP || in_contact && unit.is_finite()) {
                 self.unit = unit;
             }
         }
@@ -751,39 +811,13 @@ impl Runner {
             self.stop = Some(Stop::Duration);
         }
     }
+}
 
-    /// At rest exactly on a barrier and pushed into it: w = 0 and v = 0 is a standstill of the regularised equation, so
-    /// the first moment is taken in time, where the depth is a t^2/2 and the contact does not press yet.
-    fn lean(&mut self) {
-        for side in [Side::Left, Side::Right] {
-            if self.model.barrier(side) != Some(self.place) {
-                continue;
-            }
-            let push = side.sign() * (self.model.field(self.t, self.place) + self.model.damping(0.0, self.direction));
-            if push <= 0.0 {
-                continue;
-            }
-            // The contact force at the end of it is 1e-9 of the push.
-            let time = (1e-9 * push / (self.model.gamma * (0.5 * push).powf(1.5)))
-                .cbrt()
-                .min(1e-6);
-            let speed = push * time * (1.0 - self.model.zeta * time);
-            let depth = 0.5 * push * time * time * (1.0 - 2.0 / 3.0 * self.model.zeta * time);
-            let (start, x) = (self.t, self.place);
-            self.touch(side, 0.0);
-            self.t = start + time;
-            if self.options.keep_path {
-                self.path.push_flight(
-                    [start, self.t],
-                    State::Contact(side),
-                    1.0,
-                    &[x, 0.0, 0.5 * side.sign() * push],
-                    &[0.0, side.sign() * push, 0.0],
-                );
-            }
-            self.press(side, depth.sqrt(), speed);
-            return;
-        }
+/// How far x has risen since the start of the step: to more digits than x has.
+fn rise(x: &[f64], u: f64) -> f64 {
+    match x.split_first() {
+        Some((_, rest)) => u * value(rest, u),
+        None => 0.0,
     }
 }
 

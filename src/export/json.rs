@@ -237,6 +237,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Value {
         order,
         rule,
         integrator_tolerance,
+        step_limit: _,
     } = &impact.setup;
     let [to_contact, speed, penetration, duration, period] = impact.quantities().map(|quantity| {
         json!({

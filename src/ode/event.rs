@@ -135,11 +135,21 @@ impl Watch {
             }
             samples.push((fraction, value));
         }
+        let mut starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
+        if starts_on_surface && step.state_at(0.0).v == 0.0 {
+            // From rest it leaves as a square of time at least; a slope there is the error of the polynomial, and has any sign.
+            let largest = samples
+                .iter()
+                .fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
+            samples
+                .iter_mut()
+                .take_while(|(fraction, value)| value.abs() <= SLOPE_ERROR * fraction * largest)
+                .for_each(|(_, value)| *value = 0.0);
+        }
         insert_near_misses(&mut samples, value_at);
 
         let mut found = Vec::new();
         let mut before = 0.0;
-        let mut starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
         for &(fraction, value) in &samples {
             match (self.positive, value) {
                 (Some(positive), _) if value == 0.0 => {
@@ -183,6 +193,9 @@ static SAMPLES: LazyLock<[f64; 17]> =
 /// Extra samples between the first two points of a phase: one that starts on a surface may leave and meet it again
 /// within a tiny part of its first step.
 const NEAR_START: usize = 20;
+
+/// The error of the slope of a step at its start, relative to the largest value in the step.
+const SLOPE_ERROR: f64 = 1e-9;
 
 fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
     let near_start = if first { NEAR_START } else { 0 };

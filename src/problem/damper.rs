@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::{Barrier, Problem, ProblemError};
-use crate::damper::{Friction, Model, ModelError, Options, Start};
+use crate::damper::{Friction, Model, ModelError, Options, Side, Start};
 use crate::spelling::nearest;
 
 /// What a problem file says about the damper.
@@ -36,6 +36,19 @@ pub enum DamperError {
     /// A release that is none.
     #[error("[pendulum] amplitude must be a positive number, not {0}; for another start give `start` and `speed`")]
     Amplitude(f64),
+    /// A release behind a barrier, which is no release.
+    #[error(
+        "the motion starts at x = {start}, inside the {} barrier at {barrier}: move the barrier, or give `start` in \
+         [pendulum]", .side.name()
+    )]
+    Inside {
+        /// Which barrier.
+        side: Side,
+        /// Its position, rad.
+        barrier: f64,
+        /// The start, rad.
+        start: f64,
+    },
     /// Two dampings of the contact.
     #[error("[contact] has both mu and lambda: mu = gamma*lambda*sqrt(g*L), give one of them")]
     TwoDampings,
@@ -161,6 +174,15 @@ impl Problem {
             right,
         };
         model.check(start)?;
+        if self.pendulum.start.is_none()
+            && let Some((side, _)) = model.depth(start.x)
+        {
+            return Err(DamperError::Inside {
+                side,
+                barrier: model.barrier(side).unwrap_or_default(),
+                start: start.x,
+            });
+        }
         let tolerance = self.run.integrator_tolerance;
         if !(1e-15..=0.01).contains(&tolerance) {
             return Err(DamperError::Tolerance(tolerance));

@@ -88,6 +88,13 @@ fn notes(report: &Report) -> Vec<String> {
             ),
         });
     }
+    if let Some((side, depth)) = motion.model.depth(motion.start.x) {
+        notes.push(format!(
+            "the motion starts inside the {} barrier, {} deep: the first impact has no touch and so no restitution",
+            side.name(),
+            decimal(depth)
+        ));
+    }
     if motion.impacts.last().is_some_and(|impact| impact.exit_time.is_none()) {
         notes.push("the run ends in contact: the last impact has no exit".to_owned());
     }

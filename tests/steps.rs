@@ -540,6 +540,26 @@ fn max_min_has_the_bounds_of_the_motion() {
                 (hi - largest).abs() < 2e-3 * width,
                 "{equation} at {amplitude}: {hi} {largest}"
             );
+            // The share k of the bounds that stand before it gives the law, by quadrature c_1/A.
+            let stated = lines.iter().any(|line| line.starts_with("k = "));
+            if stated && (turning.is_empty() || passed > 0) {
+                at.extend(numbers(&[("lo", lo), ("hi", hi)]));
+                let share = value_of("k", &lines).evaluate(&at).expect("a number");
+                let (from, to) = match passed {
+                    0 => (value_of("q_rest", &lines).evaluate(&at).expect("a number"), q_end),
+                    _ => (lo, hi),
+                };
+                let mean = |i: u32| {
+                    let cosine = (std::f64::consts::PI * (f64::from(i) + 0.5) / 4000.0).cos();
+                    2.0 * quotient(amplitude * cosine) * cosine * cosine / 4000.0
+                };
+                let law: f64 = (0..4000).map(mean).sum();
+                let found = from + share * (to - from);
+                assert!(
+                    (found / law - 1.0).abs() < 1e-4,
+                    "{equation} at {amplitude}: {found} {law}"
+                );
+            }
         }
     }
 }

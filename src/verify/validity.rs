@@ -146,7 +146,6 @@ fn vanishing(
         .chain(reach::places_of_law(solution, numbers, amplitude.signum() * farthest))
         .collect();
     places.sort_by(f64::total_cmp);
-    let reference = squared(1e-3 * amplitude.abs()).abs();
     let (mut before, mut value_before) = (1e-9 * amplitude.abs(), squared(1e-9 * amplitude.abs()));
     for place in places {
         let value = squared(place);
@@ -154,14 +153,12 @@ fn vanishing(
             let Ok(zero) = find_root(squared, before, place) else {
                 return None;
             };
-            // A sign change by way of infinity is a pole.
-            let near = squared(zero * (1.0 - 1e-15))
-                .abs()
-                .max(squared(zero * (1.0 + 1e-15)).abs());
-            let scale = value_before.abs().max(value.abs()).max(reference);
+            // A sign change by way of infinity is a pole: towards it the values grow, towards a zero they shrink.
+            let size = |distance: f64| squared(zero * (1.0 - distance)).abs();
+            let is_pole = size(1e-9) > 10.0 * size(1e-6);
             let at = significant(zero.copysign(amplitude), 6);
             return Some(Range {
-                text: match near > 1e3 * scale {
+                text: match is_pole {
                     true => format!("the formula has a pole at {symbol} = {at}"),
                     false => format!("omega^2 of the formula reaches zero at {symbol} = {at}"),
                 },

@@ -1,0 +1,179 @@
+//! Laws that have no closed form are printed as integrals: evaluated as they stand, at the numbers that are given with them,
+//! every printed equation holds.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+
+use lindstedt::derivation::{Formula, Line};
+use lindstedt::method::numbers::evaluate;
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::Method;
+use lindstedt::{Oscillator, Solution, Symbol};
+
+type Numbers = BTreeMap<Symbol, f64>;
+
+/// What else is known once a variable of integration has its value.
+type Context<'a> = dyn Fn(&mut Numbers, Symbol, f64) + 'a;
+
+/// The value of a formula; `None` for what is no number.
+fn value(formula: &Formula, numbers: &Numbers, context: &Context) -> Option<f64> {
+    match formula {
+        Formula::Expression(expression) => expression.evaluate(numbers).ok(),
+        Formula::OverRoot(numerator, inside) => {
+            Some(numerator.evaluate(numbers).ok()? / value(inside, numbers, context)?.sqrt())
+        }
+        Formula::Integral {
+            factor,
+            from,
+            to,
+            integrand,
+            variable,
+        } => {
+            // The double exponential rule (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), for roots below the line at the ends.
+            const STEP: f64 = 0.06;
+            let [factor, from, to] = [factor, from, to].map(|part| part.evaluate(numbers).ok());
+            let (from, to) = (from?, to?);
+            let mut sum = 0.0;
+            for k in -50..=50 {
+                let t = STEP * f64::from(k);
+                let tangent = (0.5 * PI * t.sinh()).tanh();
+                let weight = 0.25 * PI * t.cosh() * (1.0 - tangent * tangent);
+                let place = from + (to - from) * 0.5 * (1.0 + tangent);
+                let mut there = numbers.clone();
+                there.insert(*variable, place);
+                context(&mut there, *variable, place);
+                sum += value(integrand, &there, context)? * weight;
+            }
+            Some(factor? * sum * (to - from) * STEP)
+        }
+        _ => None,
+    }
+}
+
+/// How many equations of an answer could be evaluated; each of them holds.
+fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name: &str) -> usize {
+    let mut count = 0;
+    for line in lines.iter().filter(|line| line.equal.len() > 1) {
+        // The other turning point is where the printed equation for it is true.
+        let unknown = Symbol::new("x1");
+        if line.words.contains("turning point") {
+            let amplitude = numbers[&"A".into()];
+            let excess = |x: f64| {
+                let mut there = numbers.clone();
+                there.insert(unknown, x);
+                value(&line.equal[0], &there, context).expect("an equation")
+            };
+            let (mut near, mut far) = (-0.05 * amplitude, -1.9 * amplitude);
+            assert!(excess(near) * excess(far) < 0.0, "{name}: {line}");
+            for _ in 0..60 {
+                let middle = 0.5 * (near + far);
+                if excess(near) * excess(middle) > 0.0 {
+                    near = middle;
+                } else {
+                    far = middle;
+                }
+            }
+            numbers.insert(unknown, near);
+            continue;
+        }
+        let indices: Vec<f64> = match line.words.strip_prefix("for k = ") {
+            Some(list) => list.split(", ").map(|k| k.parse().expect("a harmonic")).collect(),
+            None => vec![1.0],
+        };
+        for k in indices {
+            numbers.insert("k".into(), k);
+            let values: Option<Vec<f64>> = line.equal.iter().map(|part| value(part, numbers, context)).collect();
+            let Some(values) = values else {
+                continue;
+            };
+            for other in &values[1..] {
+                let size = values[0].abs().max(other.abs()).max(0.1);
+                assert!((values[0] - other).abs() < 5e-6 * size, "{name}: {line}: {values:?}");
+            }
+            count += 1;
+        }
+    }
+    count
+}
+
+fn derived(equation: &str, method: Method) -> Option<(Oscillator, Solution)> {
+    let oscillator = Oscillator::parse(equation).expect("an equation");
+    let options = Options {
+        method: Some(method),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).ok()?;
+    Some((oscillator, solution))
+}
+
+#[test]
+fn every_printed_integral_is_the_number_given_with_it() {
+    /// Equation, `M` of its energy, and how many methods print integrals for it.
+    type Case = (&'static str, fn(f64) -> f64, usize);
+    let cases: [Case; 6] = [
+        ("x'' + x + x^3/(1 + x^4) = 0", |_| 1.0, 8),
+        ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0, 6),
+        ("x'' + atan(3*x) + x^5/(2 + cos(x)) = 0", |_| 1.0, 8),
+        // log M = 2 int g, g what stands before x'^2.
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0", |x| 1.0 + x.powi(4), 4),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4), 2),
+        (
+            "(2 + cos(x)^2)*x'' - sin(x)*cos(x)*x'^2 + 2*sin(x) = 0",
+            |x| (2.0 + x.cos().powi(2)) / 3.0,
+            4,
+        ),
+    ];
+    for (equation, mass, expected) in cases {
+        let mut methods = 0;
+        for method in Method::ALL {
+            let Some((oscillator, solution)) = derived(equation, method) else {
+                continue;
+            };
+            let Some(lines) = &solution.by_quadrature else {
+                continue;
+            };
+            methods += 1;
+            for amplitude in [0.9] {
+                let name = format!("{equation} by {} at {amplitude}", method.name());
+                let mut numbers = Numbers::from([("A".into(), amplitude)]);
+                let found =
+                    evaluate(&oscillator, &solution, &numbers).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let omega = found.frequency_squared.sqrt();
+                numbers.extend(found.chosen.iter().copied());
+                numbers.extend([
+                    ("omega".into(), omega),
+                    ("T".into(), TAU / omega),
+                    ("M_eighth".into(), mass(amplitude * (PI / 4.0).cos())),
+                ]);
+                let motion = found.motion.expect("a motion");
+                let velocity = motion.derivative();
+                let acceleration = velocity.derivative();
+                let context = |numbers: &mut Numbers, variable: Symbol, place: f64| {
+                    let x = if variable.name() == "theta" {
+                        let x = motion.evaluate(place);
+                        numbers.extend([
+                            ("x".into(), x),
+                            ("x'".into(), omega * velocity.evaluate(place)),
+                            ("x''".into(), omega * omega * acceleration.evaluate(place)),
+                        ]);
+                        x
+                    } else {
+                        place
+                    };
+                    numbers.insert("M".into(), mass(x));
+                };
+                let held = equations_hold(lines, &mut numbers, &context, &name);
+                assert!(held > 0, "{name}: nothing could be evaluated in {lines:?}");
+                // The derivation may show more.
+                let more: Vec<Line> = solution
+                    .derivation
+                    .iter()
+                    .filter(|line| !lines.contains(line))
+                    .cloned()
+                    .collect();
+                equations_hold(&more, &mut numbers, &context, &name);
+            }
+        }
+        assert_eq!(methods, expected, "{equation}");
+    }
+}

@@ -1,0 +1,272 @@
+//! Where a formula holds, beside what is known in closed form: zeros and poles of laws, wells and what lies beyond them,
+//! radii of convergence, the first amplitude at which a formula fails, and the size of what is left over.
+
+use lindstedt::expr::parse_expression;
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::Method;
+use lindstedt::verify::validity::Range;
+use lindstedt::verify::{Values, Verification, judge};
+use lindstedt::{Oscillator, Symbol};
+
+fn judged_by(oscillator: &Oscillator, options: &Options, at: &[(&str, &str)]) -> Verification {
+    let mut values = Values::default();
+    for (name, value) in at {
+        values.insert(Symbol::new(name), value.parse().unwrap()).unwrap();
+    }
+    let solution = solve(oscillator, options).unwrap();
+    judge(oscillator, &solution, &values, 0.01).unwrap()
+}
+
+fn judged(equation: &str, method: Method, order: Option<u32>, amplitude: &str) -> Verification {
+    let options = Options {
+        method: Some(method),
+        order,
+        ..Options::default()
+    };
+    judged_by(&Oscillator::parse(equation).unwrap(), &options, &[("A", amplitude)])
+}
+
+/// The range whose text has these words.
+fn range<'a>(verification: &'a Verification, words: &str) -> Option<&'a Range> {
+    verification.ranges.iter().find(|range| range.text.contains(words))
+}
+
+/// The number behind the words in the text of a range.
+fn number_behind(verification: &Verification, words: &str) -> f64 {
+    let found = range(verification, words).unwrap_or_else(|| panic!("no `{words}` in {:?}", verification.ranges));
+    let (_, rest) = found.text.split_once(words).expect("the words");
+    let number: String = rest.chars().take_while(|letter| !": ;<".contains(*letter)).collect();
+    number.parse().unwrap_or_else(|_| panic!("{}", found.text))
+}
+
+/// By halving.
+fn zero(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    assert!(function(low) * function(high) < 0.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if function(low) * function(middle) <= 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn a_law_that_reaches_zero_says_where() {
+    const WORDS: &str = "omega^2 of the formula reaches zero at A = ";
+    // omega^2 = 1 +- 3 A^2/4 - 3 A^4/128.
+    let root = |sign: f64| ((0.75 * sign + (0.5625 + 12.0 / 128.0_f64).sqrt()) / (6.0 / 128.0)).sqrt();
+    for (equation, sign) in [("x'' + x + x^3 = 0", 1.0), ("x'' + x - x^3 = 0", -1.0)] {
+        for (amplitude, side) in [("1/2", 1.0), ("-1/2", -1.0)] {
+            let found = judged(equation, Method::LindstedtPoincare, Some(4), amplitude);
+            let place = number_behind(&found, WORDS);
+            assert!((place / (side * root(sign)) - 1.0).abs() < 1e-5, "{equation}: {place}");
+            assert!(!range(&found, WORDS).unwrap().outside);
+        }
+    }
+    let beyond = judged("x'' + x + x^3 = 0", Method::LindstedtPoincare, Some(4), "6");
+    assert!(range(&beyond, WORDS).unwrap().outside && beyond.frequency.is_none());
+    let never = judged("x'' + x + x^3 = 0", Method::LindstedtPoincare, Some(2), "6");
+    assert!(range(&never, "reaches zero").is_none() && range(&never, "pole").is_none());
+    // omega^2 = f'(A/2), which is negative in a place far narrower than any amplitude.
+    let slope = |x: f64| {
+        let bump = (-1e4 * (x * x - 1.0).powi(2)).exp() / 10.0;
+        1.0 + bump * (1.0 - 4e4 * x * x * (x * x - 1.0))
+    };
+    let equation = "x'' + x + x*exp(-10000*(x^2 - 1)^2)/10 = 0";
+    let narrow = judged(equation, Method::FrequencyFormula, None, "1");
+    let expected = 2.0 * zero(slope, 1.0, 1.002);
+    let place = number_behind(&narrow, WORDS);
+    assert!((place / expected - 1.0).abs() < 1e-5, "{place} {expected}");
+}
+
+#[test]
+fn a_pole_of_a_law_is_no_zero() {
+    const WORDS: &str = "the formula has a pole at A = ";
+    // omega^2 = 1 + c1 s + c2 s^2 with s = A^2 gives the approximant [1/1] = (1 + (c1 - c2/c1) s)/(1 - c2 s/c1).
+    for (cubic, quintic, amplitude, outside) in [
+        ("1", "1", "1/2", false),
+        ("1", "1", "-1/2", false),
+        ("1", "1", "6/5", true),
+        ("4", "1", "1", false),
+        ("1/1000", "1/1000000", "10", false),
+    ] {
+        let number = |text: &str| parse_expression(text).unwrap().evaluate(&Default::default()).unwrap();
+        let (c1, quintic_term) = (0.75 * number(cubic), 0.625 * number(quintic));
+        let c2 = quintic_term - 3.0 / 128.0 * number(cubic).powi(2);
+        let equation = format!("x'' + x + {cubic}*x^3 + {quintic}*x^5 = 0");
+        let options = Options {
+            method: Some(Method::Pade),
+            pade: Some((1, 1)),
+            ..Options::default()
+        };
+        let found = judged_by(&Oscillator::parse(&equation).unwrap(), &options, &[("A", amplitude)]);
+        let expected = (c1 / c2).sqrt().copysign(number(amplitude));
+        let place = number_behind(&found, WORDS);
+        assert!((place / expected - 1.0).abs() < 1e-5, "{equation}: {place} {expected}");
+        assert_eq!(
+            range(&found, WORDS).unwrap().outside,
+            outside,
+            "{equation} at {amplitude}"
+        );
+        assert!(range(&found, "reaches zero").is_none(), "{:?}", found.ranges);
+    }
+}
+
+#[test]
+fn what_lies_beyond_one_well_may_be_several() {
+    // V = x^4/4 - x^2/2 about x = 1: the separatrix through x = 0 ends at x = sqrt(2).
+    let wells = Oscillator::parse("x'' - x + x^3 = 0").unwrap();
+    let wells = wells.about(parse_expression("1").unwrap());
+    let options = Options::default();
+    let found = |amplitude| judged_by(&wells, &options, &[("A", amplitude)]);
+    let words = "periodic for -1 < A < 0.414214: the separatrix passes the unstable equilibrium x = 0";
+    for inside in ["1/4", "-3/4"] {
+        let found = found(inside);
+        assert_eq!(range(&found, "periodic").map(|range| range.text.as_str()), Some(words));
+    }
+    for beyond in ["1/2", "1", "-3"] {
+        let found = found(beyond);
+        let range = range(&found, words).unwrap_or_else(|| panic!("{:?}", found.ranges));
+        assert!(
+            range
+                .text
+                .ends_with("the motion runs over several wells, and does so here")
+                && !range.outside,
+            "{range:?}"
+        );
+    }
+}
+
+#[test]
+fn a_force_without_end_has_no_well() {
+    for (equation, amplitude) in [
+        // Beyond all numbers, but only in numbers.
+        ("x'' + sinh(x) = 0", "1"),
+        ("x'' + x*exp(x^2) = 0", "-1"),
+        ("x'' + x + x^31 = 0", "1/2"),
+        // Without a value at x = 1, where its branches meet.
+        ("x'' + 2*x + (x - 1)^2/abs(x - 1) - 1 = 0", "1/2"),
+        // Dying away.
+        ("x'' + x*exp(-x^2) = 0", "1"),
+        ("x'' + x/(1 + x^2)^2 = 0", "1"),
+    ] {
+        let found = judged(equation, Method::Exact, None, amplitude);
+        assert!(range(&found, "periodic").is_none(), "{equation}: {:?}", found.ranges);
+    }
+    for (equation, amplitude, words) in [
+        (
+            "x'' + x/(1 - x^2) = 0",
+            "1/2",
+            "periodic for |A| < 1: the force ends at x = 1",
+        ),
+        (
+            "x'' + tan(3*x) = 0",
+            "1/10",
+            "periodic for |A| < 0.523599: the force ends at x = 0.523599",
+        ),
+        (
+            "x'' + log(1 + x) = 0",
+            "-1/2",
+            "periodic for -1 < A < 1.71828: the force ends at x = -1",
+        ),
+        (
+            "x'' + x*(2 - x)*(x + 3) = 0",
+            "1",
+            "periodic for -1.33333 < A < 2: the separatrix passes the unstable equilibrium x = 2",
+        ),
+    ] {
+        let found = judged(equation, Method::Exact, None, amplitude);
+        assert_eq!(
+            range(&found, "periodic").map(|range| range.text.as_str()),
+            Some(words),
+            "{equation}"
+        );
+    }
+}
+
+#[test]
+fn singularities_have_their_place_and_an_amplitude_beyond_is_outside() {
+    // The exact law of a cubic force ends at A^2 = -c1/c3.
+    for (equation, radius) in [
+        ("x'' + x + x^3 = 0", 1.0_f64),
+        ("x'' + 2*x + x^3 = 0", 2.0_f64.sqrt()),
+        ("x'' + 9*x + 4*x^3 = 0", 1.5),
+    ] {
+        for (amplitude, outside) in [
+            ("1/2", false),
+            ("-1/2", false),
+            ("9/10", false),
+            ("8/5", true),
+            ("-8/5", true),
+        ] {
+            let found = judged(equation, Method::LindstedtPoincare, None, amplitude);
+            let place = number_behind(&found, "singularity is at A^2 = ");
+            assert!((place / -radius.powi(2) - 1.0).abs() < 5e-3, "{equation}: {place}");
+            let estimate = number_behind(&found, "|A| < about ");
+            assert!((estimate / radius - 1.0).abs() < 5e-3, "{equation}: {estimate}");
+            let range = range(&found, "the series converges").unwrap();
+            assert_eq!(range.outside, outside, "{equation} at {amplitude}");
+        }
+    }
+    // At the separatrix of a softening force the singularity is real and positive.
+    let soft = judged("x'' + x - x^3 = 0", Method::LindstedtPoincare, None, "1/2");
+    let place = number_behind(&soft, "singularity is at A^2 = ");
+    assert!((place - 1.0).abs() < 0.02, "{place}");
+}
+
+#[test]
+fn a_formula_fails_first_where_the_far_turning_point_meets_a_narrow_place() {
+    // At x = -1 the force all but vanishes: a motion that turns there takes its time, one that passes it does not notice.
+    let equation = "x'' + x + x^2/5 + 79/100*exp(-10000*(x + 1)^2) = 0";
+    let rise = |x: f64| x * x / 2.0 + x.powi(3) / 15.0;
+    // The bump is worth 0.79 sqrt(pi)/100 of energy, half of it up to its middle.
+    let bump = 0.79 * std::f64::consts::PI.sqrt() / 100.0;
+    let reaching = |part: f64| zero(|x| rise(x) + part * bump - rise(-1.0), 0.1, 2.0);
+    for method in [Method::LindstedtPoincare, Method::HarmonicBalance] {
+        let found = judged(equation, method, None, "2");
+        let end = number_behind(&found, "within 1 % up to A = ");
+        assert!(
+            reaching(1.2) < end && end < reaching(-0.2),
+            "{end} between {} and {}",
+            reaching(1.2),
+            reaching(-0.2)
+        );
+    }
+}
+
+#[test]
+fn an_integral_by_quadrature_says_how_good_it_is() {
+    let found = judged("x'' + x + x^3/(1 + x^4) = 0", Method::Hamiltonian, None, "1");
+    let range = range(&found, "the integral of the law is good to").unwrap();
+    assert!(range.text.ends_with("good to 1e-15") && !range.outside, "{range:?}");
+}
+
+#[test]
+fn what_is_left_over_and_how_far_the_motion_strays() {
+    // x = A cos(theta) with omega^2 = 1 + 3 A^2/4 leaves A^3 cos(3 theta)/4 of a force of
+    // (A + 3 A^3/4) cos(theta) + A^3 cos(3 theta)/4.
+    for (amplitude, a) in [("1", 1.0_f64), ("-2", 2.0), ("1/10", 0.1)] {
+        let found = judged("x'' + x + x^3 = 0", Method::EnergyBalance, None, amplitude);
+        let exact = judged("x'' + x + x^3 = 0", Method::Hamiltonian, None, amplitude);
+        let left = a.powi(3) / 4.0;
+        let expected = left / (a + 3.0 * left).hypot(left);
+        let residual = exact.residual.unwrap();
+        assert!((residual / expected - 1.0).abs() < 1e-9, "{residual} {expected}");
+        // The same law, so the same motion and the same numbers.
+        assert!((found.residual.unwrap() / expected - 1.0).abs() < 1e-9);
+    }
+    // Over the amplitude: in units a thousand times larger it is the same.
+    let deviation = |equation, amplitude| {
+        judged(equation, Method::Hamiltonian, None, amplitude)
+            .max_deviation
+            .unwrap()
+    };
+    let (one, other) = (
+        deviation("x'' + x + x^3 = 0", "2"),
+        deviation("x'' + x + x^3/1000000 = 0", "2000"),
+    );
+    assert!((one / other - 1.0).abs() < 1e-6 && one > 0.01, "{one} {other}");
+}

@@ -26,6 +26,7 @@
 //! | names and numbers | [`symbol`], [`spelling`], [`decimal`], [`exact`] | symbols, fractions, polynomials, the coefficient ring |
 //! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
 //! | series | [`series`] | Taylor, Fourier, running convolutions |
+//! | any equations | [`system`] | first-order systems of any size by Taylor series, with events |
 //! | answer and question | [`derivation`], [`solution`], [`oscillator`] | what a method returns and how it got there, and what it is given |
 //! | numbers alone | [`ode`], [`period`], [`return_map`] | Runge-Kutta, quadrature, roots; the true period; limit cycles |
 //! | forces of position alone | [`conservative`] | potential and projections in closed form |
@@ -49,6 +50,7 @@ pub mod spelling;
 
 pub mod expr;
 pub mod series;
+pub mod system;
 
 pub mod derivation;
 pub mod solution;

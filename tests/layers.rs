@@ -14,7 +14,7 @@ const LAYERS: [&[&str]; 19] = [
     &["exact", "period", "return_map"],
     &["decimal"],
     &["expr"],
-    &["series"],
+    &["series", "system"],
     &["derivation"],
     &["solution"],
     &["oscillator"],

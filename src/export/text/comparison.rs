@@ -137,17 +137,23 @@ fn entry(name: &str, words: &str, longest: usize, width: usize) -> String {
 }
 
 /// Text in lines of at most `width` characters, `first` before the first of them and `next` before the others. A sign stays
-/// with the term that it belongs to.
+/// with the term that it belongs to, and a value with its name.
 fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
     let mut lines = vec![first.to_owned()];
     let mut indent = first.chars().count();
-    let mut sign = String::new();
+    let mut words: Vec<String> = Vec::new();
+    let mut together = false;
     for word in text.split(' ') {
-        if matches!(word, "+" | "-" | "=") {
-            sign = format!("{word} ");
-            continue;
+        match words.last_mut() {
+            Some(last) if together || word == "=" => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
         }
-        let word = std::mem::take(&mut sign) + word;
+        together = matches!(word, "+" | "-" | "=");
+    }
+    for word in words {
         let line = lines.last_mut().expect("a line was begun");
         let length = line.chars().count();
         if length == indent {
@@ -160,7 +166,7 @@ fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
             indent = next.chars().count();
         }
     }
-    lines.join("\n") + sign.trim_end()
+    lines.join("\n")
 }
 
 /// What stands in the place of a frequency.

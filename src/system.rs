@@ -292,7 +292,7 @@ impl System {
                 break End::Singular;
             }
             let mut length = tape.step(options.tolerance).min(end - time);
-            if !(length > 0.0) || time + length == time {
+            if length.is_nan() || length <= 0.0 || time + length == time {
                 break End::Singular;
             }
             // A corner within the step ends it.

@@ -4,6 +4,7 @@
 //! 1/omega, omega^2 = g/L.
 
 mod damper;
+mod keys;
 mod mistakes;
 
 use std::str::FromStr;
@@ -17,6 +18,7 @@ use crate::symbol::Symbol;
 use crate::verify::{ValueError, Values};
 
 pub use damper::{Damper, DamperError, PARAMETERS};
+pub use keys::{KEYS, Reader, UnreadKey};
 
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
@@ -51,6 +53,9 @@ pub struct Problem {
     pub design: DesignSection,
     /// Duration and accuracy of integrations.
     pub run: Run,
+    /// The keys that are given, as [`KEYS`] names them: what is absent has its default.
+    #[serde(skip)]
+    pub given: Vec<String>,
 }
 
 /// A whole number, or the two degrees of a Pade approximant: `order = 4`, `order = [2, 1]`.
@@ -245,7 +250,9 @@ impl FromStr for Problem {
             return Err(ProblemError::TooLarge);
         }
         let text = text.trim_start_matches('\u{feff}');
-        toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))
+        let problem: Self = toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))?;
+        let given = toml::from_str(text).map_or_else(|_| Vec::new(), |file| keys::given(&file));
+        Ok(Self { given, ..problem })
     }
 }
 
@@ -256,7 +263,15 @@ impl Problem {
     /// A design with a quantity that is not positive.
     pub fn stiffness(&self) -> Result<(f64, &'static str), ProblemError> {
         if let Some(gamma) = self.contact.gamma {
-            return Ok((gamma, "given"));
+            let of_design = |key: &&str| self.gives(&format!("[design] {key}"));
+            let unused = self.unused_design().iter().any(of_design);
+            return Ok((
+                gamma,
+                match unused {
+                    true => "given: [design] has no say in it",
+                    false => "given",
+                },
+            ));
         }
         let DesignSection {
             mass,
@@ -278,6 +293,16 @@ impl Problem {
             "equation (8) with the given design and l = L"
         };
         Ok((design.stiffness()?, source))
+    }
+
+    /// The keys of `[design]` that change nothing because `[contact] gamma` is given.
+    fn unused_design(&self) -> &'static [&'static str] {
+        match (self.contact.gamma, self.contact.lambda) {
+            (None, _) => &[],
+            (Some(_), None) => &["mass", "radius", "modulus", "length", "gravity"],
+            // mu = gamma*lambda*sqrt(g*L)
+            (Some(_), Some(_)) => &["mass", "radius", "modulus"],
+        }
     }
 
     /// The rule that replaces the elastic force by a line.

@@ -282,7 +282,7 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 53] = [
+    const COMMANDS: [&str; 54] = [
         "int",
         "Rightarrow",
         "hbar",
@@ -324,6 +324,7 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "mathrm",
         "quad",
         "qquad",
+        "le",
         "cdot",
         "text",
         "hline",

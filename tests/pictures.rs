@@ -306,3 +306,64 @@ fn a_sweep_is_drawn_as_its_rows_say() {
         }
     }
 }
+
+#[test]
+fn a_map_keeps_its_quantity_where_some_motions_lack_it() {
+    let path = std::env::temp_dir().join(format!("lindstedt-map-{}.svg", std::process::id()));
+    let problem = path.with_extension("toml");
+    std::fs::write(&problem, "[pendulum]\namplitude = 0.5\n[run]\nduration = 40\n").expect("a file");
+    let (name, file) = (path.to_str().expect("text"), problem.to_str().expect("text"));
+    let arguments = ["--sweep", "zeta=0.01:0.2:6", "--sweep", "mu=1e5:1e6:3"];
+    let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["simulate", file, "--format", "json", "--plot", name])
+        .args(arguments)
+        .output()
+        .expect("the program starts");
+    assert!(output.status.success());
+    let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let rows = document["rows"].as_array().expect("rows");
+    let restless = rows.iter().filter(|row| row["rest_time"].is_null()).count();
+    assert!(restless > 0 && restless < rows.len(), "{restless}");
+    let svg = std::fs::read_to_string(&path).expect("the picture");
+    let cells: Vec<&str> = svg.lines().filter(|line| line.starts_with("    <rect")).collect();
+    assert_eq!(cells.len(), rows.len());
+    let grey = cells.iter().filter(|cell| cell.contains("#c8c8c8")).count();
+    assert_eq!(grey, restless);
+    let caption = format!("Grey: no rest time within the run, {restless} of them.");
+    for words in [
+        ">Rest time<",
+        ">rest time (units of 1/ω)<",
+        ">damping ratio ζ<",
+        "ζ from 0.01 to 0.2 and μ from 100000 to 1e6",
+        &caption,
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+    for file in [path, problem] {
+        std::fs::remove_file(file).expect("the file goes");
+    }
+}
+
+#[test]
+fn the_energy_is_drawn_as_closely_as_the_motion() {
+    // A plain pendulum takes some steps of the length of a swing: between them the work of damping bends.
+    let path = std::env::temp_dir().join(format!("lindstedt-energy-{}.toml", std::process::id()));
+    std::fs::write(
+        &path,
+        "[pendulum]\nbarrier = 3.0\n[damping]\nzeta = 0.2\n[run]\nduration = 20\n",
+    )
+    .expect("a file");
+    let (panels, _) = drawn("energy", &["simulate", path.to_str().expect("text")]);
+    let [motion, _, energy] = &panels[..] else {
+        panic!("{} panels", panels.len());
+    };
+    let motion = motion.curves[0].1.len();
+    for (colour, points) in &energy.curves {
+        assert!(
+            points.len() >= motion,
+            "{colour}: {} points beside {motion}",
+            points.len()
+        );
+    }
+    std::fs::remove_file(path).expect("the file goes");
+}

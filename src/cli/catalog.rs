@@ -17,6 +17,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.common.plot.is_some() {
         return Err(Failure::Usage("--plot: the catalogue has no picture".to_owned()));
     }
+    if arguments.common.tolerance.is_some() {
+        return Err(Failure::Usage("--tolerance: the catalogue has no verdict".to_owned()));
+    }
     let text = match arguments.common.format {
         Format::Text => CATALOG.iter().map(text).collect::<Vec<_>>().join("\n"),
         Format::Latex => {

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use lindstedt::export::{json, latex, text};
+use lindstedt::problem::Reader;
 use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
@@ -29,10 +30,18 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
+    problem
+        .check_keys(Reader::Compare)
+        .map_err(|error| Failure::refused(&error, None))?;
     let oscillator = oscillator(&problem, arguments.about.as_deref())?;
     let (oscillator, values) = with_known_equilibrium(oscillator, exact_values(&arguments.at, &problem)?)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(problem.small.as_deref());
+    if small.is_some() {
+        oscillator
+            .small_parameter(small)
+            .map_err(|error| Failure::refused(&error, error.help()))?;
+    }
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(|error| match &error {
         comparison::ComparisonError::NoMethod(reason) => Failure::refused(&error, reason.help()),

@@ -5,7 +5,7 @@ use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{self, Options, Refusal};
-use lindstedt::problem::{self, Problem};
+use lindstedt::problem::{self, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::spelling::nearest;
 use lindstedt::verify::{self, Values, VerificationError};
@@ -97,8 +97,17 @@ impl std::str::FromStr for Order {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
+    problem
+        .check_keys(Reader::Derive)
+        .map_err(|error| Failure::refused(&error, None))?;
     let oscillator = oscillator(&problem, arguments.about.as_deref())?;
     let options = options(arguments, &problem)?;
+    // The name is refused here, for a method that has no use for it would pass over it.
+    if options.small.is_some() {
+        oscillator
+            .small_parameter(options.small.as_deref())
+            .map_err(|error| Failure::refused(&error, error.help()))?;
+    }
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let (oscillator, values, solution) = solve_at(oscillator, values, &options)?;
@@ -253,7 +262,31 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             }
         },
     };
+    let chosen = method.unwrap_or(Method::LindstedtPoincare);
+    let without = |option: &str, owners: &str| {
+        usage(format!(
+            "{option} says nothing to --method {}: it belongs to {owners}",
+            chosen.name()
+        ))
+    };
+    let by_polynomial = [
+        Method::HomotopyPerturbation,
+        Method::HomotopyAnalysis,
+        Method::ParameterExpansion,
+    ];
+    if arguments.taylor.is_some() && !by_polynomial.contains(&chosen) {
+        return without(
+            "--taylor",
+            "homotopy-perturbation, homotopy-analysis and parameter-expansion",
+        );
+    }
+    if arguments.cycle.is_some() && ![Method::LindstedtPoincare, Method::Pade].contains(&chosen) {
+        return without("--cycle", "lindstedt-poincare");
+    }
     let (order, pade) = match arguments.order.or(problem.order.map(Order::from)) {
+        Some(_) if method == Some(Method::Exact) => {
+            return without("--order, or `order` in the file,", "the methods that approximate");
+        }
         Some(Order::Degrees(..)) if method != Some(Method::Pade) => {
             return usage("degrees L,M are those of --method pade".to_owned());
         }

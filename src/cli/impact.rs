@@ -6,7 +6,7 @@ use clap::Args;
 use lindstedt::contact::phases::Column;
 use lindstedt::export::{json, latex, text};
 use lindstedt::impact::{Impact, Setup, solve};
-use lindstedt::problem::{Barrier, Order, Problem};
+use lindstedt::problem::{Barrier, Order, Problem, Reader};
 
 use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
@@ -26,7 +26,6 @@ impl Default for Arguments {
             output: None,
             plot: None,
             tolerance: None,
-            quiet: false,
             timeout: None,
         };
         Self { file: None, common }
@@ -64,6 +63,9 @@ const ORDER: u32 = 2;
 
 fn setup(problem: &Problem) -> Result<Setup, Failure> {
     let refuse = |message: &str| Err(Failure::Refused(message.to_owned()));
+    problem
+        .check_keys(Reader::Impact)
+        .map_err(|error| Failure::refused(&error, None))?;
     let damping = &problem.damping;
     if damping.zeta != 0.0
         || damping.alpha != 0.0
@@ -74,16 +76,18 @@ fn setup(problem: &Problem) -> Result<Setup, Failure> {
             .is_some_and(|mu| mu != 0.0)
     {
         return refuse(
-            "the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda",
+            "the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda, or use `lindstedt simulate`",
         );
     }
     if problem.excitation.beta != 0.0 {
         return refuse(
-            "the three phases in closed form are those of the free motion, equation (9): leave out [excitation]",
+            "the three phases in closed form are those of the free motion, equation (9): leave out [excitation], or use `lindstedt simulate`",
         );
     }
     if problem.pendulum.start.is_some() || problem.pendulum.speed.is_some() {
-        return refuse("the three phases begin at rest at x = -amplitude: leave out `start` and `speed`");
+        return refuse(
+            "the three phases begin at rest at x = -amplitude: leave out `start` and `speed`, or use `lindstedt simulate`",
+        );
     }
     let order = match problem.order {
         None => ORDER,
@@ -155,7 +159,7 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
     let motions: Vec<_> = drawn.iter().zip(styles).map(motion).collect();
     let setup = &impact.setup;
     let caption = format!(
-        "Pendulum and elastic barrier: A = {}, x_c = {}, gamma = {}; one period from the release.",
+        "Pendulum and elastic barrier: A = {}, x_c = {}, γ = {}; one period from the release.",
         decimal(setup.amplitude),
         decimal(setup.barrier),
         decimal(setup.stiffness)

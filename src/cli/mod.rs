@@ -66,9 +66,6 @@ struct Common {
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Print results only, no notes
-    #[arg(long)]
-    quiet: bool,
     /// Give up after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     timeout: Option<f64>,
@@ -263,7 +260,7 @@ fn finish(outcome: Outcome, common: &Common) -> ExitCode {
     {
         return fail(1, &error);
     }
-    if let Some(note) = outcome.note.filter(|_| !common.quiet) {
+    if let Some(note) = outcome.note {
         eprintln!("{note}");
     }
     match files::write(common.output.as_deref(), outcome.result) {

@@ -31,6 +31,9 @@ pub struct Arguments {
     /// Threads of a sweep; all cores without it. The result is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
+    /// Print results only, no notes
+    #[arg(long)]
+    quiet: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -67,11 +70,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             "a simulation has no LaTeX form: choose --format text, json or csv".to_owned(),
         ));
     }
-    if arguments.sweep.is_empty() {
-        one(arguments, &problem)
-    } else {
-        many(arguments, &problem)
+    if arguments.sweep.is_empty() && arguments.jobs.is_some() {
+        return Err(Failure::Usage(
+            "--jobs are the threads of a sweep: leave it out, or give --sweep".to_owned(),
+        ));
     }
+    let outcome = match arguments.sweep.is_empty() {
+        true => one(arguments, &problem),
+        false => many(arguments, &problem),
+    }?;
+    let note = outcome.note.filter(|_| !arguments.quiet);
+    Ok(Outcome { note, ..outcome })
 }
 
 fn refused(error: DamperError) -> Failure {
@@ -209,7 +218,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     };
     options.interrupt = Interrupt::by(&STOP);
     // Draws on standard error, and only where that is a terminal.
-    let bar = if arguments.common.quiet {
+    let bar = if arguments.quiet {
         ProgressBar::hidden()
     } else {
         ProgressBar::new(total as u64)

@@ -14,6 +14,9 @@ use super::Simulation;
 use super::model::{Friction, Side};
 use super::path::{Node, State};
 
+/// The most points inside one step.
+const MOST_PARTS: f64 = 1e4;
+
 /// Energies and works, in units of m g L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBook {
@@ -56,7 +59,7 @@ impl Simulation {
         let mut largest = 0.0_f64;
         let mut worst = 0.0_f64;
         let mut total = EnergyBook::default();
-        self.energy_points(|point| {
+        self.energy_points(f64::INFINITY, |point| {
             largest = largest.max(point.energy);
             worst = worst.max(point.book.residual.abs());
             total = point.book;
@@ -65,8 +68,9 @@ impl Simulation {
         total
     }
 
-    /// The same, knot by knot.
-    pub fn energy_points(&self, mut each: impl FnMut(EnergyPoint)) {
+    /// The same, knot by knot, and between knots that lie further apart than `longest`, in units of 1/omega, at points that
+    /// do not.
+    pub fn energy_points(&self, longest: f64, mut each: impl FnMut(EnergyPoint)) {
         let model = &self.model;
         let start = model.energy(self.start.x, self.start.velocity);
         let mut book = EnergyBook {
@@ -80,36 +84,40 @@ impl Simulation {
             book,
         });
         for piece in self.path.pieces() {
+            let parts = ((piece.end - piece.start) / longest).ceil().clamp(1.0, MOST_PARTS) as u32;
             let stored = |fraction: f64| {
                 let node = self.path.node(piece, fraction);
                 (model.elastic_energy(self.depth(piece.state, &node)), node)
             };
-            for node in self.path.quadrature(piece) {
-                let v = node.velocity;
-                book.viscous -= node.weight * 2.0 * model.zeta * v * v;
-                let direction = if piece.state == State::Stuck { 0.0 } else { v.signum() };
-                let dry = match model.friction {
-                    Friction::Exact => model.alpha * direction * v,
-                    Friction::Arctangent => -(model.damping(v, 0.0) + 2.0 * model.zeta * v) * v,
-                };
-                book.friction -= node.weight * dry;
-                book.excitation += node.weight * (model.field(node.t, node.x) + node.x.sin()) * v;
-                if let State::Contact(_) = piece.state {
-                    let depth = node.depth;
-                    book.contact -= node.weight * model.mu * v * v * depth * depth.sqrt();
+            for part in 0..parts {
+                let span = [part, part + 1].map(|end| f64::from(end) / f64::from(parts));
+                for node in self.path.quadrature(piece, span) {
+                    let v = node.velocity;
+                    book.viscous -= node.weight * 2.0 * model.zeta * v * v;
+                    let direction = if piece.state == State::Stuck { 0.0 } else { v.signum() };
+                    let dry = match model.friction {
+                        Friction::Exact => model.alpha * direction * v,
+                        Friction::Arctangent => -(model.damping(v, 0.0) + 2.0 * model.zeta * v) * v,
+                    };
+                    book.friction -= node.weight * dry;
+                    book.excitation += node.weight * (model.field(node.t, node.x) + node.x.sin()) * v;
+                    if let State::Contact(_) = piece.state {
+                        let depth = node.depth;
+                        book.contact -= node.weight * model.mu * v * v * depth * depth.sqrt();
+                    }
                 }
+                let (last, end) = stored(span[1]);
+                if let State::Detached(_) = piece.state {
+                    book.contact += last - stored(span[0]).0;
+                }
+                book.end = model.swing_energy(end.x, end.velocity) + last;
+                book.residual = book.end - start - book.works();
+                each(EnergyPoint {
+                    t: if part + 1 == parts { piece.end } else { end.t },
+                    energy: book.end,
+                    book,
+                });
             }
-            let (last, end) = stored(1.0);
-            if let State::Detached(_) = piece.state {
-                book.contact += last - stored(0.0).0;
-            }
-            book.end = model.swing_energy(end.x, end.velocity) + last;
-            book.residual = book.end - start - book.works();
-            each(EnergyPoint {
-                t: piece.end,
-                energy: book.end,
-                book,
-            });
         }
     }
 

@@ -198,11 +198,11 @@ impl Path {
         });
     }
 
-    /// Points and weights of a quadrature over the time of a piece: exact to rounding where the motion is a power
-    /// series that converges over it.
-    pub(super) fn quadrature(&self, piece: &Piece) -> impl Iterator<Item = Node> + '_ {
+    /// Points and weights of a quadrature over a part of a piece, from one fraction of it to another: exact to rounding where
+    /// the motion is a power series that converges over it.
+    pub(super) fn quadrature(&self, piece: &Piece, [from, to]: [f64; 2]) -> impl Iterator<Item = Node> + '_ {
         let piece = *piece;
-        nodes_and_weights(0.0, 1.0).map(move |(fraction, weight)| {
+        nodes_and_weights(from, to).map(move |(fraction, weight)| {
             let node = self.node(&piece, fraction);
             Node {
                 weight: weight * node.weight,

@@ -541,7 +541,7 @@ fn printable(text: &str) -> String {
 
 /// The scene and its caption as SVG, without the library's version, and with the clip regions, which the library
 /// counts through the life of the process, numbered from 0.
-fn written(mut scene: Scene, caption: &str) -> String {
+pub(super) fn written(mut scene: Scene, caption: &str) -> String {
     // SVG runs ordinary spaces together.
     let mut lines = wrap_text(&printable(caption.trim()).replace("  ", " \u{a0}"), 106);
     lines.retain(|line| !line.is_empty());

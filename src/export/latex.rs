@@ -162,7 +162,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         ("contact speed from the energy", &impact.energy),
     ] {
         lines.push(format!("&\\text{{{title}:}}"));
-        lines.extend(phases.phases.iter().map(phase));
+        lines.extend(phases.phases.iter().flat_map(phase));
     }
     let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
     text.push_str("\\begin{tabular}{lrrrrr}\n & Runge--Kutta & paper & error & energy & error \\\\\n\\hline\n");
@@ -196,7 +196,8 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
     text
 }
 
-fn phase(phase: &Phase) -> String {
+/// The name of a phase and when it is, and its closed form.
+fn phase(phase: &Phase) -> [String; 2] {
     let clock = match phase.name {
         "contact" => "(t - t_{1})",
         "return" => "(t - t_{2})",
@@ -234,7 +235,15 @@ fn phase(phase: &Phase) -> String {
             )
         }
     };
-    format!("x(t) &= {form}")
+    let (from, to) = match phase.name {
+        "approach" => ("0", format!("t_{{1}} = {}", scientific(phase.end))),
+        "contact" => ("t_{1}", format!("t_{{2}} = {}", scientific(phase.end))),
+        _ => ("t_{2}", scientific(phase.end)),
+    };
+    [
+        format!("&\\text{{{},}} \\quad {from} \\le t \\le {to}", phase.name),
+        format!("x(t) &= {form}"),
+    ]
 }
 
 pub(super) const NOTATION: Notation = Notation {

@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use super::{Barrier, Problem, ProblemError};
+use super::keys::key_of;
+use super::{Barrier, Problem, ProblemError, Reader, UnreadKey};
 use crate::damper::{Friction, Model, ModelError, Options, Side, Start};
 use crate::spelling::nearest;
 
@@ -49,6 +50,25 @@ pub enum DamperError {
         /// The start, rad.
         start: f64,
     },
+    /// A key that another one leaves nothing to say.
+    #[error("`{key}` changes nothing where `{other}` is given: leave one of them out")]
+    NoEffect {
+        /// The key.
+        key: &'static str,
+        /// The other one.
+        other: &'static str,
+    },
+    /// A key that says something only beside another one.
+    #[error("`{key}` changes nothing without `{other}`: give that too, or leave it out")]
+    Alone {
+        /// The key.
+        key: &'static str,
+        /// The other one.
+        other: &'static str,
+    },
+    /// A key that belongs to another command.
+    #[error(transparent)]
+    Unread(#[from] UnreadKey),
     /// Two dampings of the contact.
     #[error("[contact] has both mu and lambda: mu = gamma*lambda*sqrt(g*L), give one of them")]
     TwoDampings,
@@ -126,6 +146,7 @@ impl Problem {
         if self.equation.is_some() {
             return Err(DamperError::Equation);
         }
+        self.check_keys(Reader::Simulate)?;
         let amplitude = self.pendulum.amplitude;
         let x = match self.pendulum.start {
             Some(start) => start,
@@ -194,6 +215,21 @@ impl Problem {
         if !(duration > 0.0 && duration.is_finite()) {
             return Err(DamperError::Duration(duration));
         }
+        let (amplitude, start_key) = ("[pendulum] amplitude", "[pendulum] start");
+        if self.gives(amplitude) && self.gives(start_key) {
+            return Err(DamperError::NoEffect {
+                key: amplitude,
+                other: start_key,
+            });
+        }
+        for (key, other) in [
+            ("[excitation] frequency_ratio", "[excitation] beta"),
+            ("[damping] friction", "[damping] alpha"),
+        ] {
+            if self.gives(key) && !self.gives(other) {
+                return Err(DamperError::Alone { key, other });
+            }
+        }
         let options = Options {
             duration,
             // The errors of some hundred steps add up, and impacts multiply them.
@@ -214,8 +250,18 @@ impl Problem {
     /// Gives a parameter another value, by the name of its key.
     ///
     /// # Errors
-    /// [`DamperError::Parameter`] where there is none of that name.
+    /// [`DamperError::Parameter`] where there is none of that name, [`DamperError::NoEffect`] where another key leaves it
+    /// nothing to say.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), DamperError> {
+        if let Some(key) = key_of(name) {
+            if self.unused_design().contains(&name) {
+                let other = "[contact] gamma";
+                return Err(DamperError::NoEffect { key, other });
+            }
+            if !self.gives(key) {
+                self.given.push(key.to_owned());
+            }
+        }
         match name {
             "amplitude" => self.pendulum.amplitude = value,
             "start" => self.pendulum.start = Some(value),

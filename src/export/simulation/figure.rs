@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, SvgBackend, TickFormat};
-use kuva::render::render::render_multiple;
+use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, TickFormat};
+use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 
-use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
+use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure, written};
 use super::{Report, SweepReport};
 use crate::damper::Simulation;
-use crate::damper::sweep::Summary;
+use crate::damper::sweep::{Axis, Summary};
 use crate::decimal::decimal;
 
 /// Points of a curve, equally spaced in time; the turning points come on top.
@@ -46,7 +46,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let phase: Vec<(f64, f64)> = points.iter().map(|&(_, x, v)| (x, v)).collect();
     let (mut energy, mut viscous, mut friction, mut contact, mut excitation) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    motion.energy_points(|point| {
+    motion.energy_points(motion.end_time / POINTS as f64, |point| {
         energy.push((point.t, point.energy));
         viscous.push((point.t, point.book.viscous));
         friction.push((point.t, point.book.friction));
@@ -140,7 +140,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         panel("Energy", TIME, "energy (units of m g L)", energies, Vec::new()),
     ];
     let caption = format!(
-        "Equation (7): gamma = {}, mu = {}, zeta = {}, alpha = {}, beta = {}; {} impacts until t = {}.",
+        "Equation (7): γ = {}, μ = {}, ζ = {}, α = {}, β = {}; {} impacts until t = {}.",
         decimal(model.gamma),
         decimal(model.mu),
         decimal(model.zeta),
@@ -165,6 +165,8 @@ type Points = Vec<(f64, f64)>;
 struct Quantity {
     title: &'static str,
     label: &'static str,
+    /// What a motion without it lacks.
+    name: &'static str,
     value: fn(&Summary) -> Option<f64>,
 }
 
@@ -172,27 +174,60 @@ const QUANTITIES: [Quantity; 4] = [
     Quantity {
         title: "Rest time",
         label: "rest time (units of 1/ω)",
+        name: "rest time",
         value: |summary| summary.rest_time.ok(),
     },
     Quantity {
         title: "Impacts",
         label: "number of impacts",
+        name: "impacts",
         value: |summary| Some(summary.impacts as f64),
     },
     Quantity {
         title: "Deepest penetration",
         label: "penetration (rad)",
+        name: "penetration",
         value: |summary| Some(summary.deepest),
     },
     Quantity {
         title: "Energy lost in contact",
         label: "energy (units of m g L)",
+        name: "energy",
         value: |summary| Some(summary.energy_lost),
     },
 ];
 
-/// Curves over one parameter, or a heat map over two: of the rest time where every motion has one, otherwise of the
-/// number of impacts.
+/// How a swept parameter is written at an axis and in a caption: what it is with its unit, and its symbol.
+fn parameter(name: &str) -> [&str; 2] {
+    match name {
+        "amplitude" => ["amplitude A (rad)", "A"],
+        "start" => ["start x(0) (rad)", "x(0)"],
+        "speed" => ["start x′(0)", "x′(0)"],
+        "barrier" => ["barrier x_c (rad)", "x_c"],
+        "gamma" => ["stiffness γ", "γ"],
+        "mu" => ["contact damping μ", "μ"],
+        "lambda" => ["contact damping λ (s/m)", "λ"],
+        "zeta" => ["damping ratio ζ", "ζ"],
+        "alpha" => ["friction α", "α"],
+        "beta" => ["excitation β", "β"],
+        "frequency_ratio" => ["frequency ratio Ω/ω", "Ω/ω"],
+        "mass" => ["mass m (kg)", "m"],
+        "radius" => ["radius R (m)", "R"],
+        "length" => ["length L (m)", "L"],
+        "modulus" => ["modulus E (Pa)", "E"],
+        "gravity" => ["gravity g (m/s²)", "g"],
+        other => [other, other],
+    }
+}
+
+/// From where to where: `ζ from 0.01 to 0.05`.
+fn range(axis: &Axis) -> String {
+    let [_, symbol] = parameter(&axis.name);
+    format!("{symbol} from {} to {}", decimal(axis.from), decimal(axis.to))
+}
+
+/// Curves over one parameter, or a heat map over two: of the rest time where a motion has one, otherwise of the number of
+/// impacts.
 ///
 /// # Errors
 /// As [`figure`].
@@ -220,7 +255,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 .iter()
                 .map(|(quantity, runs)| Panel {
                     title: quantity.title,
-                    x_label: &one.name,
+                    x_label: parameter(&one.name)[0],
                     y_label: quantity.label,
                     curves: runs
                         .iter()
@@ -230,13 +265,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 })
                 .collect();
             let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
-            let mut caption = format!(
-                "{} motions, {} from {} to {}.",
-                report.rows.len(),
-                one.name,
-                decimal(one.from),
-                decimal(one.to)
-            );
+            let mut caption = format!("{} motions, {}.", report.rows.len(), range(one));
             if restless > 0 {
                 caption.push_str(&format!(" No rest time in {restless} of them."));
             }
@@ -244,18 +273,30 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
         }
         [down, across] => {
             let [rest, impacts, ..] = &QUANTITIES;
-            let all_rest = report.rows.iter().all(|row| row.rest_time.is_ok());
-            let quantity = if all_rest { rest } else { impacts };
+            let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
+            let total = report.rows.len();
+            let quantity = if restless < total { rest } else { impacts };
             let grid: Vec<Vec<f64>> = report
                 .rows
                 .chunks(across.count.max(1))
                 .map(|row| {
                     row.iter()
-                        .map(|summary| (quantity.value)(summary).unwrap_or(0.0))
+                        .map(|summary| (quantity.value)(summary).unwrap_or(f64::NAN))
                         .collect()
                 })
                 .collect();
-            Ok(heat_map(&grid, [down, across], quantity))
+            let mut caption = format!("{total} motions, {} and {}.", range(down), range(across));
+            match restless {
+                0 => {}
+                _ if restless < total => {
+                    caption.push_str(&format!(
+                        " Grey: no {} within the run, {restless} of them.",
+                        quantity.name
+                    ));
+                }
+                _ => caption.push_str(" None of them has a rest time within the run."),
+            }
+            Ok(heat_map(&grid, [down, across], quantity, &caption))
         }
         _ => Err(FigureError::Empty("the sweep".to_owned())),
     }
@@ -273,37 +314,53 @@ fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f6
     rows
 }
 
-fn heat_map(grid: &[Vec<f64>], [down, across]: [&crate::damper::sweep::Axis; 2], quantity: &Quantity) -> String {
-    let half = |axis: &crate::damper::sweep::Axis| 0.5 * (axis.to - axis.from) / (axis.count.max(2) - 1) as f64;
-    let range = |axis: &crate::damper::sweep::Axis| {
+/// The colour of a cell without a value.
+const MISSING: &str = "#c8c8c8";
+
+/// A cell for each motion, grey where its value is no number, with the quantity and its unit at the scale of colours.
+fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, caption: &str) -> String {
+    let half = |axis: &Axis| 0.5 * (axis.to - axis.from) / (axis.count.max(2) - 1) as f64;
+    let range = |axis: &Axis| {
         let (from, to) = (axis.from - half(axis), axis.to + half(axis));
         (from.min(to), from.max(to))
     };
     let (x, y) = (range(across), range(down));
     let map = Heatmap::new()
         .with_data(rising(grid, down.to >= down.from, across.to >= across.from))
-        .with_color_map(ColorMap::Viridis)
-        .with_legend(quantity.label)
+        .with_color_map(ColorMap::Custom(Arc::new(|part: f64| match part.is_finite() {
+            true => ColorMap::Viridis.map(part),
+            false => MISSING.to_owned(),
+        })))
         .with_x_range(x.0, x.1)
         .with_y_range(y.0, y.1);
     let ticks = TickFormat::Custom(Arc::new(|value: f64| decimal((value * 1e12).round() / 1e12)));
     let mut layout = Layout::new(x, y)
         .with_title(quantity.title)
-        .with_x_label(across.name.as_str())
-        .with_y_label(down.name.as_str())
+        .with_x_label(parameter(&across.name)[0])
+        .with_y_label(parameter(&down.name)[0])
         .with_tick_format(ticks);
     (layout.x_axis_min, layout.x_axis_max) = (Some(x.0), Some(x.1));
     (layout.y_axis_min, layout.y_axis_max) = (Some(y.0), Some(y.1));
     layout.show_colorbar = true;
-    let scene = render_multiple(vec![Plot::Heatmap(map)], layout.with_width(700.0).with_height(480.0));
-    let svg = SvgBackend::new().with_pretty(true).render_scene(&scene);
-    svg.replacen(&format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION), "", 1)
+    let mut scene = render_multiple(vec![Plot::Heatmap(map)], layout.with_width(700.0).with_height(480.0));
+    scene.width += 26.0;
+    let (x, y) = (scene.width - 10.0, 0.5 * scene.height);
+    scene.add(Primitive::Text {
+        x,
+        y,
+        content: quantity.label.to_owned(),
+        size: 14,
+        anchor: TextAnchor::Middle,
+        rotate: Some(-90.0),
+        bold: false,
+        color: None,
+    });
+    written(scene, caption)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::damper::sweep::Axis;
 
     /// Where the one hot cell stands in the picture: left or right, above or below.
     #[test]
@@ -317,7 +374,7 @@ mod tests {
         // The second value of the ordinate, the first of the abscissa.
         let grid = [vec![0.0, 0.0], vec![1.0, 0.0]];
         let place = |down: &Axis, across: &Axis| {
-            let svg = heat_map(&grid, [down, across], &QUANTITIES[0]);
+            let svg = heat_map(&grid, [down, across], &QUANTITIES[0], "Two by two.");
             let number = |cell: &str, key: &str| -> f64 {
                 let rest = cell.split(&format!(" {key}=\"")).nth(1).expect("a coordinate");
                 rest.split('"')

@@ -1,0 +1,168 @@
+//! Which command reads which key of a problem file: a key that would change nothing is refused by name.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use super::Problem;
+
+/// The commands that read problem files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reader {
+    /// `lindstedt derive`
+    Derive,
+    /// `lindstedt compare`
+    Compare,
+    /// `lindstedt impact`
+    Impact,
+    /// `lindstedt simulate`
+    Simulate,
+}
+
+use Reader::{Compare, Derive, Impact, Simulate};
+
+impl fmt::Display for Reader {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Derive => "lindstedt derive",
+            Compare => "lindstedt compare",
+            Impact => "lindstedt impact",
+            Simulate => "lindstedt simulate",
+        })
+    }
+}
+
+/// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
+pub const KEYS: [(&str, &[Reader]); 28] = [
+    ("equation", &[Derive, Compare, Impact, Simulate]),
+    ("method", &[Derive, Impact]),
+    ("order", &[Derive, Impact]),
+    ("small", &[Derive, Compare]),
+    ("amplitude", &[Derive]),
+    ("about", &[Derive, Compare]),
+    ("[values]", &[Derive, Compare]),
+    ("[pendulum] amplitude", &[Impact, Simulate]),
+    ("[pendulum] barrier", &[Impact, Simulate]),
+    ("[pendulum] start", &[Impact, Simulate]),
+    ("[pendulum] speed", &[Impact, Simulate]),
+    ("[contact] gamma", &[Impact, Simulate]),
+    ("[contact] mu", &[Impact, Simulate]),
+    ("[contact] lambda", &[Impact, Simulate]),
+    ("[contact] linearisation", &[Impact]),
+    ("[damping] zeta", &[Impact, Simulate]),
+    ("[damping] alpha", &[Impact, Simulate]),
+    ("[damping] friction", &[Simulate]),
+    ("[excitation] beta", &[Impact, Simulate]),
+    ("[excitation] frequency_ratio", &[Simulate]),
+    ("[design] mass", &[Impact, Simulate]),
+    ("[design] radius", &[Impact, Simulate]),
+    ("[design] length", &[Impact, Simulate]),
+    ("[design] modulus", &[Impact, Simulate]),
+    ("[design] gravity", &[Impact, Simulate]),
+    ("[run] duration", &[Simulate]),
+    ("[run] integrator_tolerance", &[Impact, Simulate]),
+    ("[run] step_limit", &[Impact, Simulate]),
+];
+
+/// The key of a parameter that a sweep varies: `zeta` stands in `[damping]`.
+pub(super) fn key_of(parameter: &str) -> Option<&'static str> {
+    KEYS.iter()
+        .map(|(key, _)| *key)
+        .find(|key| key.split_once("] ").is_some_and(|(_, name)| name == parameter))
+}
+
+/// The keys that a file gives.
+pub(super) fn given(file: &toml::Table) -> Vec<String> {
+    let mut keys = Vec::new();
+    for (name, value) in file {
+        match value {
+            toml::Value::Table(_) if name == "values" => keys.push("[values]".to_owned()),
+            toml::Value::Table(section) => keys.extend(section.keys().map(|key| format!("[{name}] {key}"))),
+            _ => keys.push(name.clone()),
+        }
+    }
+    keys
+}
+
+/// A file that a command cannot take at its word.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum UnreadKey {
+    /// A key that would be ignored.
+    #[error("`{key}` says nothing to `{reader}`: leave it out, or use {others}")]
+    Key {
+        /// The key, with its section.
+        key: String,
+        /// The command.
+        reader: Reader,
+        /// Those that read it.
+        others: String,
+    },
+    /// A pendulum and its barrier where an equation is wanted.
+    #[error(
+        "the file describes a pendulum and a barrier and has no `equation` for `{0}`: use `lindstedt impact` or \
+         `lindstedt simulate`"
+    )]
+    NoEquation(Reader),
+}
+
+impl Problem {
+    /// Whether the file gives this key: `order`, `[run] duration`.
+    pub(super) fn gives(&self, key: &str) -> bool {
+        self.given.iter().any(|given| given == key)
+    }
+
+    /// Refuses keys that this command would ignore.
+    ///
+    /// # Errors
+    /// [`UnreadKey`] names the first, and the commands that read it.
+    pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
+        let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
+        if matches!(reader, Derive | Compare) && self.equation.is_none() && described {
+            return Err(UnreadKey::NoEquation(reader));
+        }
+        for (key, readers) in KEYS {
+            if self.gives(key) && !readers.contains(&reader) {
+                let names: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
+                return Err(UnreadKey::Key {
+                    key: key.to_owned(),
+                    reader,
+                    others: names.join(" or "),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_that_a_file_may_have_is_listed() {
+        // The parser lists what it expects where it meets something else.
+        for (section, prefix) in [
+            ("", ""),
+            ("pendulum", "[pendulum] "),
+            ("contact", "[contact] "),
+            ("damping", "[damping] "),
+            ("excitation", "[excitation] "),
+            ("design", "[design] "),
+            ("run", "[run] "),
+        ] {
+            let text = match section {
+                "" => "nonsense = 1".to_owned(),
+                section => format!("[{section}]\nnonsense = 1"),
+            };
+            let error = toml::from_str::<Problem>(&text).unwrap_err();
+            let expected: Vec<&str> = error.message().split('`').skip(3).step_by(2).collect();
+            assert!(expected.len() > 1, "{error}");
+            for name in expected {
+                let key = format!("{prefix}{name}");
+                let is_section = KEYS.iter().any(|(known, _)| known.starts_with(&format!("[{name}]")));
+                let known = KEYS.iter().any(|(known, _)| *known == key);
+                assert!(known || prefix.is_empty() && is_section, "{key}");
+            }
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! Nothing is silently ignored: every option of every command and every key of every file either changes what comes out or is
+//! refused by name.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use lindstedt::problem::{KEYS, Reader};
+
+/// Exit code, standard output, standard error.
+type Answer = (Option<i32>, String, String);
+
+fn run(arguments: &[&str]) -> Answer {
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(arguments)
+        .output()
+        .expect("the program starts");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+    (status.code(), text(stdout), text(stderr))
+}
+
+fn is_refused(answer: &Answer, word: &str) -> bool {
+    matches!(answer.0, Some(1 | 2)) && answer.1.is_empty() && answer.2.contains(word)
+}
+
+/// A file of its own for each test.
+fn path(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("lindstedt-unread-{name}-{}.toml", std::process::id()))
+}
+
+fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
+    let path = path(name);
+    std::fs::write(&path, text).expect("a file");
+    let answer = run(&[
+        &arguments[..1],
+        &[path.to_str().expect("a path in text")],
+        &arguments[1..],
+    ]
+    .concat());
+    std::fs::remove_file(path).expect("the file goes");
+    answer
+}
+
+const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
+
+/// A key, a line that gives it, and what stands beside it.
+const LINES: [(&str, &str, &str); 28] = [
+    ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
+    ("method", "method = \"harmonic-balance\"", FORMULA),
+    ("order", "order = 1", FORMULA),
+    ("small", "small = \"A\"", FORMULA),
+    ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
+    ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
+    ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),
+    ("[pendulum] amplitude", "[pendulum]\namplitude = 1.25", ""),
+    ("[pendulum] barrier", "[pendulum]\nbarrier = 0.25", ""),
+    ("[pendulum] start", "[pendulum]\nstart = 0.25", ""),
+    ("[pendulum] speed", "[pendulum]\nspeed = 0.25", ""),
+    ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
+    ("[contact] mu", "[contact]\nmu = 1e5", ""),
+    ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
+    (
+        "[contact] linearisation",
+        "[contact]\nlinearisation = \"equal-energy\"",
+        "",
+    ),
+    ("[damping] zeta", "[damping]\nzeta = 0.25", ""),
+    ("[damping] alpha", "[damping]\nalpha = 0.25", ""),
+    (
+        "[damping] friction",
+        "friction = \"arctangent\"",
+        "[damping]\nalpha = 0.1\n",
+    ),
+    (
+        "[excitation] beta",
+        "beta = 0.25",
+        "[excitation]\nfrequency_ratio = 0.5\n",
+    ),
+    (
+        "[excitation] frequency_ratio",
+        "frequency_ratio = 0.75",
+        "[excitation]\nbeta = 0.1\n",
+    ),
+    ("[design] mass", "[design]\nmass = 0.02", ""),
+    ("[design] radius", "[design]\nradius = 0.02", ""),
+    ("[design] length", "[design]\nlength = 0.1", ""),
+    ("[design] modulus", "[design]\nmodulus = 1e8", ""),
+    ("[design] gravity", "[design]\ngravity = 1.6", ""),
+    ("[run] duration", "[run]\nduration = 25", ""),
+    ("[run] integrator_tolerance", "[run]\nintegrator_tolerance = 1e-6", ""),
+    ("[run] step_limit", "[run]\nstep_limit = 3", ""),
+];
+
+#[test]
+fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
+    let known: Vec<&str> = KEYS.iter().map(|(key, _)| *key).collect();
+    assert_eq!(known, LINES.map(|(key, ..)| key), "a line for every key");
+    for (key, line, beside) in LINES {
+        let (_, word) = key.split_once("] ").unwrap_or(("", key));
+        let (_, readers) = KEYS.iter().find(|(known, _)| *known == key).expect("a key");
+        for (command, reader) in [
+            ("derive", Reader::Derive),
+            ("compare", Reader::Compare),
+            ("impact", Reader::Impact),
+            ("simulate", Reader::Simulate),
+        ] {
+            // Keys of the top stand first; those of a section that is there already stand in it.
+            let (with, without) = match (key.starts_with('['), line.starts_with('[')) {
+                (true, false) => (format!("{beside}{line}\n"), beside.to_owned()),
+                (true, true) => (format!("{beside}{line}\n"), beside.to_owned()),
+                (false, _) => (format!("{line}\n{beside}"), beside.to_owned()),
+            };
+            // An impact takes nothing of [excitation].
+            let (with, without) = match (reader, key) {
+                (Reader::Impact, "[excitation] beta") => ("[excitation]\nbeta = 0.25\n".to_owned(), String::new()),
+                _ => (with, without),
+            };
+            let foreign = matches!(reader, Reader::Impact | Reader::Simulate) && beside.starts_with("equation");
+            let (with, without) = match foreign {
+                true => (format!("{line}\n"), String::new()),
+                false => (with, without),
+            };
+            // What compares needs numbers.
+            let mut arguments = vec![command, "--format", "json"];
+            if command == "compare" && key != "[values]" {
+                arguments.extend(["--at", "A=0.5"]);
+                if beside == FORMULA {
+                    arguments.extend(["--at", "eps=0.5"]);
+                }
+            }
+            let answer = of_file("key", &with, &arguments);
+            let refused = is_refused(&answer, word);
+            let named = refused || answer.2.contains("`equation`") || answer.2.contains("start");
+            if !readers.contains(&reader) {
+                assert!(
+                    matches!(answer.0, Some(1 | 2)) && named,
+                    "`{key}` in a file for {command}: {answer:?}"
+                );
+                continue;
+            }
+            let base = of_file("base", &without, &arguments);
+            assert!(answer != base, "`{key}` changes nothing for {command}: {answer:?}");
+        }
+    }
+}
+
+#[test]
+fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
+    for (text, arguments, words) in [
+        ("[pendulum]\namplitude = 1\nstart = 0.1", vec![], ["amplitude", "start"]),
+        (
+            "[excitation]\nfrequency_ratio = 0.5",
+            vec![],
+            ["frequency_ratio", "beta"],
+        ),
+        ("[damping]\nfriction = \"exact\"", vec![], ["friction", "alpha"]),
+        ("[contact]\nmu = 1\nlambda = 1", vec![], ["mu", "lambda"]),
+        (
+            "[contact]\ngamma = 1e5",
+            vec!["--sweep", "modulus=1e8:1e9:3"],
+            ["modulus", "gamma"],
+        ),
+        (
+            "[contact]\ngamma = 1e5",
+            vec!["--sweep", "gravity=1:10:3"],
+            ["gravity", "gamma"],
+        ),
+        (
+            "",
+            vec!["--sweep", "gamma=1e5:1e6:3", "--sweep", "mass=0.1:0.2:3"],
+            ["mass", "gamma"],
+        ),
+        (
+            "[pendulum]\nstart = 0.1",
+            vec!["--sweep", "amplitude=0.5:1:3"],
+            ["amplitude", "start"],
+        ),
+        (
+            "[pendulum]\namplitude = 1",
+            vec!["--sweep", "start=0.1:0.2:3"],
+            ["amplitude", "start"],
+        ),
+        (
+            "",
+            vec!["--sweep", "frequency_ratio=0.5:1:3"],
+            ["frequency_ratio", "beta"],
+        ),
+        ("[contact]\nmu = 1", vec!["--sweep", "lambda=0:1:3"], ["mu", "lambda"]),
+    ] {
+        let answer = of_file("both", text, &[&["simulate"], arguments.as_slice()].concat());
+        assert!(
+            words.iter().all(|word| is_refused(&answer, word)),
+            "{text}, {arguments:?}: {answer:?}"
+        );
+    }
+    // With lambda, length and gravity have a say: mu = gamma*lambda*sqrt(g*L).
+    let swept = of_file(
+        "lambda",
+        "[contact]\ngamma = 1e5\nlambda = 0.1\n[run]\nduration = 9",
+        &["simulate", "--format", "csv", "--sweep", "length=0.1:0.4:2"],
+    );
+    assert_eq!(swept.0, Some(0), "{swept:?}");
+    let rows: Vec<&str> = swept
+        .1
+        .lines()
+        .skip(1)
+        .filter_map(|row| row.split_once(','))
+        .map(|row| row.1)
+        .collect();
+    assert_ne!(rows[0], rows[1]);
+    // A gamma that is given wins over the design, and says so.
+    for command in ["impact", "simulate"] {
+        let answer = of_file("wins", "[contact]\ngamma = 1e5\n[design]\nmodulus = 1e8", &[command]);
+        assert!(answer.1.contains("given: [design] has no say in it"), "{answer:?}");
+    }
+}
+
+#[test]
+fn a_file_for_another_command_is_sent_there() {
+    for (command, file, words) in [
+        ("derive", "examples/impact-soft.toml", "use `lindstedt impact`"),
+        ("compare", "examples/impact-soft.toml", "use `lindstedt impact`"),
+        ("derive", "examples/simulate/damper.toml", "`lindstedt simulate`"),
+        ("impact", "examples/simulate/damper.toml", "`lindstedt simulate`"),
+        ("impact", "examples/simulate/stick-slip.toml", "`lindstedt simulate`"),
+        ("impact", "examples/duffing.toml", "`lindstedt derive`"),
+        ("simulate", "examples/duffing.toml", "`lindstedt derive`"),
+        ("simulate", "examples/impact-soft.toml", "`lindstedt impact`"),
+    ] {
+        let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
+        let answer = run(&[command, &path]);
+        assert!(is_refused(&answer, words), "{command} {file}: {answer:?}");
+    }
+}
+
+/// The long options that the help of a command lists.
+fn options_of(command: &str) -> Vec<String> {
+    let help = run(&[command, "--help"]).1;
+    let lines = help.lines().map(str::trim);
+    let names = lines.filter_map(|line| {
+        let at = line.strip_prefix("-h, ").unwrap_or(line).strip_prefix("--")?;
+        at.split([' ', '=']).next().map(str::to_owned)
+    });
+    names.filter(|name| name != "help").collect()
+}
+
+#[test]
+fn every_option_changes_the_answer_or_is_refused_by_name() {
+    let cubic = "x'' + x + eps*x^3 + eps*x^5 = 0";
+    let well = "x'' - x + x^3 = 0";
+    let cycles = "x'' + x - eps*(1 - x^2 + x^4/20)*x' = 0";
+    let file = path("output").with_extension("svg");
+    let file = file.to_str().expect("a path in text");
+    let simulated = ["simulate"];
+    let swept = [
+        "simulate",
+        "--format",
+        "csv",
+        "--sweep",
+        "zeta=0.1:0.2:2",
+        "--sweep",
+        "alpha=0.1:0.2:2",
+    ];
+    let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
+    // Command, what stands beside the option, the option.
+    let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
+        ("derive", vec![cubic], vec!["--method", "energy-balance"]),
+        ("derive", vec![cubic], vec!["--order", "1"]),
+        ("derive", vec![cubic], vec!["--amplitude", "first-harmonic"]),
+        ("derive", vec![cubic], vec!["--small", "A"]),
+        (
+            "derive",
+            vec![cubic, "--method", "energy-balance"],
+            vec!["--small", "nu"],
+        ),
+        ("derive", vec![well], vec!["--about", "x=1"]),
+        ("derive", vec![cubic], vec!["--taylor", "5"]),
+        ("derive", vec![cubic, "--method", "max-min"], vec!["--taylor", "5"]),
+        (
+            "derive",
+            vec!["pendulum", "--method", "parameter-expansion"],
+            vec!["--taylor", "5"],
+        ),
+        ("derive", vec![cubic], vec!["--hbar", "-1/2"]),
+        ("derive", vec![cycles], vec!["--cycle", "2"]),
+        ("derive", vec!["pendulum"], vec!["--cycle", "1"]),
+        (
+            "derive",
+            vec!["pendulum", "--method", "energy-balance"],
+            vec!["--cycle", "1"],
+        ),
+        ("derive", vec!["pendulum", "--method", "exact"], vec!["--order", "3"]),
+        ("derive", vec!["pendulum"], vec!["--at", "A=1"]),
+        ("derive", vec!["pendulum"], vec!["--steps"]),
+        ("derive", vec!["pendulum"], vec!["--format", "csv"]),
+        ("derive", vec!["pendulum"], vec!["--format", "json"]),
+        ("derive", vec!["pendulum"], vec!["--output", file]),
+        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
+        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
+        ("derive", vec!["pendulum"], vec!["--timeout", "1e-9"]),
+        ("derive", vec!["pendulum"], vec!["--quiet"]),
+        ("compare", vec![cubic, "--at", "eps=1"], vec!["--at", "A=1"]),
+        (
+            "compare",
+            vec![cubic, "--at", "eps=1", "--at", "A=1", "--format", "json"],
+            vec!["--small", "A"],
+        ),
+        (
+            "compare",
+            vec![cubic, "--at", "eps=1", "--at", "A=1"],
+            vec!["--small", "nu"],
+        ),
+        ("compare", vec![well, "--at", "A=1/10"], vec!["--about", "x=1"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "csv"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "latex"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--output", file]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--timeout", "1e-9"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--quiet"]),
+        ("impact", vec![], vec!["--format", "csv"]),
+        ("impact", vec![], vec!["--format", "latex"]),
+        ("impact", vec![], vec!["--output", file]),
+        ("impact", vec![], vec!["--plot", "-"]),
+        ("impact", vec![], vec!["--tolerance", "1e-9"]),
+        ("impact", vec![], vec!["--timeout", "1e-9"]),
+        ("impact", vec![], vec!["--quiet"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--sample", "1"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--jobs", "1"]),
+        ("simulate", swept[1..].to_vec(), vec!["--sample", "1"]),
+        ("simulate", swept[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--format", "latex"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--format", "csv"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--output", file]),
+        ("simulate", simulated[1..].to_vec(), vec!["--plot", "-"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--tolerance", "1e-15"]),
+        ("simulate", long[1..].to_vec(), vec!["--timeout", "1e-9"]),
+        (
+            "simulate",
+            [&long[1..], &["--timeout", "1e-9"]].concat(),
+            vec!["--quiet"],
+        ),
+        ("catalog", vec![], vec!["--format", "csv"]),
+        ("catalog", vec![], vec!["--format", "json"]),
+        ("catalog", vec![], vec!["--output", file]),
+        ("catalog", vec![], vec!["--plot", "-"]),
+        ("catalog", vec![], vec!["--tolerance", "0.1"]),
+        ("catalog", vec![], vec!["--timeout", "1e-9"]),
+        ("catalog", vec![], vec!["--quiet"]),
+    ];
+    for command in ["derive", "compare", "impact", "simulate", "catalog"] {
+        for name in options_of(command) {
+            let option = format!("--{name}");
+            assert!(
+                table
+                    .iter()
+                    .any(|(known, _, words)| *known == command && words[0] == option),
+                "{command} {option} is not tried"
+            );
+        }
+    }
+    for (command, beside, option) in table {
+        let base = run(&[&[command], beside.as_slice()].concat());
+        let answer = run(&[&[command], beside.as_slice(), option.as_slice()].concat());
+        let word = option[0].trim_start_matches('-');
+        let named = !matches!(answer.0, Some(1 | 2))
+            || answer.2.contains(word)
+            || answer.2.contains(option[option.len() - 1])
+            || word == "timeout" && answer.2.contains("stopped after")
+            || word == "plot" && answer.2.contains("picture");
+        assert!(named, "{command} {beside:?} {option:?}: {answer:?}");
+        assert!(
+            answer != base,
+            "{command} {beside:?}: {option:?} changes nothing: {answer:?}"
+        );
+    }
+    let _ = std::fs::remove_file(file);
+}

@@ -105,7 +105,8 @@ fn numbers_where(parts: &[Option<Expr>], holds: impl Fn(&Expr) -> bool) -> Vec<u
     numbers.map(|(number, _)| number).collect()
 }
 
-/// What each typed term adds to the force about the equilibrium; nothing for those with the acceleration in them.
+/// What each typed term adds to the force about the equilibrium; nothing for those with the acceleration in them, and for the
+/// zero of `= 0`.
 fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
     let (coordinate, acceleration) = (oscillator.coordinate, oscillator.velocity().derivative());
     let Ok(mass) = oscillator.residual.differentiate(acceleration) else {
@@ -119,7 +120,7 @@ fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
         }
     };
     let values = oscillator.typed.values();
-    let parts = values.map(|value| match value.contains(acceleration) {
+    let parts = values.map(|value| match value.is_zero() || value.contains(acceleration) {
         true => None,
         false => part(value).ok(),
     });

@@ -215,6 +215,38 @@ fn tiny_and_nearly_upright_swings_are_judged_as_closely_as_any_other() {
     }
 }
 
+#[test]
+fn a_barrier_just_before_the_turning_point_is_met_as_the_energy_says() {
+    let setup = |amplitude: f64, barrier: f64| Setup {
+        amplitude,
+        barrier,
+        stiffness: 1e6,
+        stiffness_source: String::new(),
+        order: 4,
+        rule: Rule::default(),
+        integrator_tolerance: 1e-10,
+        step_limit: 250_000,
+    };
+    for distance in [1e-4, 1e-6, 1e-8] {
+        let barrier = 1.5 - distance;
+        let found = impact::solve(setup(1.5, barrier)).unwrap_or_else(|error| panic!("{distance}: {error}"));
+        let speed = 2.0 * ((0.5 * (1.5 + barrier)).sin() * (0.5 * (1.5 - barrier)).sin()).sqrt();
+        assert!(
+            (found.truth.touch.v / speed - 1.0).abs() < 2e-6,
+            "{distance}: {}",
+            found.truth.touch.v / speed
+        );
+    }
+    let refused = impact::solve(setup(1e-200, 0.0)).unwrap_err();
+    assert!(refused.to_string().contains("scale it up"), "{refused}");
+    let refused = impact::solve(Setup {
+        step_limit: 3,
+        ..setup(1.5, 0.323)
+    })
+    .unwrap_err();
+    assert!(refused.to_string().contains("raise step_limit in [run]"), "{refused}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 

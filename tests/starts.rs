@@ -337,3 +337,43 @@ fn at_a_barrier_near_plumb_a_dying_motion_goes_on_to_the_end() {
         agrees("near plumb", &model, start, 25.0, 1e-6);
     }
 }
+
+#[test]
+fn a_tiny_motion_is_followed_as_closely_as_a_large_one() {
+    // Near plumb the swing is linear, and d^(3/2) takes another gamma to another size: the motion of size s with gamma is
+    // that of size 1 with gamma sqrt(s), for sin x = x.
+    let times = |size: f64, integrator: Integrator| {
+        let model = Model {
+            zeta: 0.02,
+            gamma: 1e2 / size.sqrt(),
+            mu: 1e2 / size.sqrt() / size,
+            right: Some(0.3 * size),
+            ..Model::default()
+        };
+        let start = Start {
+            x: -size,
+            velocity: 0.0,
+        };
+        let motion = followed(&model, start, 20.0, integrator);
+        assert!(motion.energy().residual < 1e-8, "{size}: {}", motion.energy().residual);
+        let spans = motion
+            .impacts
+            .iter()
+            .map(|impact| [impact.entry_time, impact.exit_time.unwrap_or(20.0)]);
+        spans.flatten().collect::<Vec<f64>>()
+    };
+    for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
+        let reference = times(1e-6, integrator);
+        assert!(reference.len() > 6);
+        for size in [1e-8, 1e-12, 1e-20, 1e-60] {
+            let found = times(size, integrator);
+            assert_eq!(found.len(), reference.len(), "{size}, {integrator:?}");
+            for (one, other) in found.iter().zip(&reference) {
+                assert!(
+                    (one - other).abs() < 1e-8,
+                    "{size}, {integrator:?}: {one} against {other}"
+                );
+            }
+        }
+    }
+}

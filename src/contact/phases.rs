@@ -136,6 +136,11 @@ pub enum PhasesError {
     /// The amplitude is not a positive number.
     #[error("the amplitude must be a positive number, not {0}: the release is at x = -amplitude")]
     Amplitude(f64),
+    /// A swing whose energy is no number.
+    #[error(
+        "the amplitude {0:e} is too small: its energy, A^2, underflows; below 1e-8 or so the swing is linear, scale it up"
+    )]
+    TooSmall(f64),
     /// The barrier is not a finite number.
     #[error("the position of the barrier must be a finite number, not {0}")]
     Barrier(f64),
@@ -309,6 +314,9 @@ pub fn contact_speed(amplitude: f64, barrier: f64, restoring_force: impl Fn(f64)
     Ok((2.0 * gained).sqrt())
 }
 
+/// The square of it, and the square of the depth that belongs to it, are numbers still.
+const SMALLEST_AMPLITUDE: f64 = 1e-120;
+
 fn check(swing: &Swing) -> Result<(), PhasesError> {
     let &Swing {
         amplitude,
@@ -320,6 +328,9 @@ fn check(swing: &Swing) -> Result<(), PhasesError> {
     } = swing;
     if !(amplitude.is_finite() && amplitude > 0.0) {
         return Err(PhasesError::Amplitude(amplitude));
+    }
+    if amplitude < SMALLEST_AMPLITUDE {
+        return Err(PhasesError::TooSmall(amplitude));
     }
     if !barrier.is_finite() {
         return Err(PhasesError::Barrier(barrier));

@@ -85,8 +85,9 @@ pub enum TrueMotionError {
     Stopped(StopReason),
     /// Closer steps give another motion, as close as doubles allow.
     #[error(
-        "the true motion is not known to six digits, closer steps change it by {change:.0e}: released too near the top of \
-         the swing, or stopped by too hard a barrier for double precision; lower the amplitude or the stiffness"
+        "the true motion is not known to six digits, closer steps change it by {change:.0e}: double precision cannot tell \
+         apart motions that start so near the top of the swing or turn so near the barrier; lower the amplitude, or move the \
+         barrier"
     )]
     NotSettled {
         /// By how much, relative to the quantity that changes most.
@@ -222,8 +223,9 @@ pub fn true_motion(
 /// A time no impact of interest takes; the number of steps is the real limit.
 const LONGEST_TIME: f64 = 1e9;
 
-/// To how much the quantities of an impact have to be known, relative to each: six digits are printed.
-const ACCURACY: f64 = 1e-6;
+/// The most that the quantities of an impact may change, relative to each, between a tolerance and one a hundred times
+/// closer: six digits are printed, and what is left is a small part of the change.
+const ACCURACY: f64 = 1e-5;
 
 /// The tightest tolerance worth trying in double precision.
 const TIGHTEST: f64 = 1e-14;

@@ -13,7 +13,7 @@
 
 use super::model::{Model, Side, Start};
 use super::path::{Path, State};
-use super::{Impact, Integrator, Options, Simulation, SimulationError, Stop, Turn, enter};
+use super::{Impact, Integrator, Options, Simulation, SimulationError, Stop, Turn, enter, scaled};
 use crate::ode::{self, Event, Occurrence, Phase, StopReason, Trajectory, integrate_phases};
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
@@ -259,6 +259,7 @@ fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, 
 
 /// The motion by Runge-Kutta.
 pub(super) fn follow(model: &Model, start: Start, options: &Options) -> Result<Simulation, SimulationError> {
+    let options = &scaled(options, model, start);
     let (phases, meanings): (Vec<_>, Vec<_>) = (0..REGIONS.len() * MOTIONS)
         .map(|number| phase(model, options, number))
         .unzip();

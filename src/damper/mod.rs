@@ -71,7 +71,7 @@ pub struct Options {
     pub duration: f64,
     /// Error allowed in one step, relative to the size of x and x'.
     pub relative_tolerance: f64,
-    /// Error allowed in one step beside it, in rad.
+    /// Error allowed in one step beside it, in rad, for a motion of size 1 or more; for smaller ones less in proportion.
     pub absolute_tolerance: f64,
     /// Steps after which the run gives up.
     pub maximum_steps: usize,
@@ -106,6 +106,12 @@ pub enum SimulationError {
     /// A duration that is no positive number.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
+    /// A motion so small that the force of a barrier cannot be told from zero.
+    #[error(
+        "the motion is of size {0:e}, at which the force of a barrier, d^(3/2), underflows: scale it up, below 1e-8 or so \
+         the swing is linear"
+    )]
+    TooSmall(f64),
     /// A tolerance no double-precision run can keep.
     #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
     Tolerance(f64),
@@ -242,6 +248,34 @@ impl Impact {
             _ => 0.0,
         };
         self.energy_lost = Some(held + 0.5 * (self.speed_in - speed) * (self.speed_in + speed));
+    }
+}
+
+/// How far or how fast a motion goes, about; zero for one that hangs at rest.
+fn size(model: &Model, start: Start) -> f64 {
+    let stored = model
+        .depth(start.x)
+        .map_or(0.0, |(_, depth)| model.elastic_energy(depth));
+    let released = (2.0 * stored).sqrt();
+    start
+        .x
+        .abs()
+        .max(start.velocity.abs())
+        .max(released)
+        .max(model.beta.abs())
+}
+
+/// The smallest motion that can be followed: its depths to the power 5/2 are numbers still.
+const SMALLEST: f64 = 1e-100;
+
+/// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size 1, and a tiny one would
+/// be lost in it.
+fn scaled(options: &Options, model: &Model, start: Start) -> Options {
+    let size = size(model, start);
+    let scale = if size > 0.0 { size.min(1.0) } else { 1.0 };
+    Options {
+        absolute_tolerance: (scale * options.absolute_tolerance).max(f64::MIN_POSITIVE),
+        ..*options
     }
 }
 
@@ -420,6 +454,10 @@ pub fn simulate_many(
 
 fn check(model: &Model, start: Start, options: &Options) -> Result<(), SimulationError> {
     model.check(start)?;
+    let size = size(model, start);
+    if size > 0.0 && size < SMALLEST {
+        return Err(SimulationError::TooSmall(size));
+    }
     if !(options.duration.is_finite() && options.duration > 0.0) {
         return Err(SimulationError::Duration(options.duration));
     }

@@ -22,7 +22,7 @@ use super::polynomial::{
     Roots, bracketed, crossing_of, level_crossing, near_sign_changes, sign_changes, value, variation,
 };
 use super::taylor::{Coefficients, End, HIGHEST_ORDER, INVERSE, LAST, Moment, Terms, contact, flight};
-use super::{Impact, Integrator, Options, Simulation, Stop, Turn, enter};
+use super::{Impact, Integrator, Options, Simulation, Stop, Turn, enter, scaled};
 
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
@@ -127,6 +127,7 @@ pub(super) fn order_for(tolerance: f64) -> usize {
 impl Runner {
     /// A run from this start, which has been checked.
     pub(super) fn new(model: Model, start: Start, options: Options) -> Self {
+        let options = scaled(&options, &model, start);
         let mut runner = Self {
             model,
             options,

@@ -344,7 +344,7 @@ fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, 
     layout.show_colorbar = true;
     let mut scene = render_multiple(vec![Plot::Heatmap(map)], layout.with_width(700.0).with_height(480.0));
     scene.width += 26.0;
-    let (x, y) = (scene.width - 10.0, 0.5 * scene.height);
+    let (x, y) = (scene.width - 10.0, 0.5 * scene.height - 4.0);
     scene.add(Primitive::Text {
         x,
         y,
@@ -355,6 +355,8 @@ fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, 
         bold: false,
         color: None,
     });
+    // Room between the label of the axis and the caption.
+    scene.height += 8.0;
     written(scene, caption)
 }
 

@@ -224,8 +224,8 @@ pub fn true_motion(
 const LONGEST_TIME: f64 = 1e9;
 
 /// The most that the quantities of an impact may change, relative to each, between a tolerance and one a hundred times
-/// closer: six digits are printed, and what is left is a small part of the change.
-const ACCURACY: f64 = 1e-5;
+/// closer. Errors go with the tolerance: what is left is about a hundredth of the change, and six digits are printed.
+const ACCURACY: f64 = 5e-5;
 
 /// The tightest tolerance worth trying in double precision.
 const TIGHTEST: f64 = 1e-14;

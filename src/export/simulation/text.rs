@@ -168,11 +168,8 @@ fn impacts(text: &mut String, motion: &Simulation) {
         let duration = impact.exit_time.map(|exit| exit - impact.entry_time);
         // What is lost in an elastic contact is rounding.
         let lost = impact.energy_lost.map(|lost| {
-            if lost.abs() < 1e-9 * impact.speed_in * impact.speed_in {
-                0.0
-            } else {
-                lost
-            }
+            let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
+            if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
         });
         let restitution = impact.restitution.map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
         let _ = writeln!(

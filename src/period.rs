@@ -55,13 +55,19 @@ pub enum PeriodError {
     },
     /// No second turning point.
     #[error(
-        "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched}"
+        "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}"
     )]
     Escapes {
         /// The release point.
         start: f64,
         /// How far the search went.
         searched: f64,
+    },
+    /// A place in the way that no motion passes.
+    #[error("the motion runs into x = {place}, where the force has no finite value")]
+    Pole {
+        /// Where.
+        place: f64,
     },
     /// The motion did not come back within the time allowed.
     #[error("no return to a turning point within t = {0}")]
@@ -75,6 +81,29 @@ pub enum PeriodError {
     /// The integration failed.
     #[error(transparent)]
     Integration(#[from] IntegrationError),
+}
+
+impl PeriodError {
+    /// The same where positions were distances from `origin`.
+    #[must_use]
+    pub fn moved(self, origin: f64) -> Self {
+        match self {
+            Self::PushedAway { start, equilibrium } => Self::PushedAway {
+                start: start + origin,
+                equilibrium: equilibrium + origin,
+            },
+            Self::OtherWell { start, equilibrium } => Self::OtherWell {
+                start: start + origin,
+                equilibrium: equilibrium + origin,
+            },
+            Self::Escapes { start, searched } => Self::Escapes {
+                start: start + origin,
+                searched: searched + origin,
+            },
+            Self::Pole { place } => Self::Pole { place: place + origin },
+            Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => self,
+        }
+    }
 }
 
 /// A force of the position alone, and where it may turn fast.
@@ -123,7 +152,14 @@ impl<'a> Force<'a> {
 /// # Errors
 /// See [`PeriodError`].
 pub fn conservative_period(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
-    let end = turning_point(force, equilibrium, start)?;
+    period_between(force, start, turning_point(force, equilibrium, start)?)
+}
+
+/// The period of the motion between two turning points.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn period_between(force: &Force, start: f64, end: f64) -> Result<f64, PeriodError> {
     period_of_rates(&Rates::new(force, &|_| 1.0, start, end)?)
 }
 
@@ -187,7 +223,7 @@ impl<'a> Rates<'a> {
         let knots = force.knots(end, start);
         // A single piece needs no sums.
         let pieces = knots.windows(2).filter(|_| knots.len() > 2);
-        let pieces = pieces.map(|pair| integral(force.value, pair[0], pair[1]));
+        let pieces = pieces.map(|pair| integral(force.value, pair[0], pair[1], 0.0));
         let works = pieces.collect::<Result<Vec<f64>, _>>()?;
         let (mut below_end, mut below_start) = (vec![0.0], vec![0.0]);
         for work in &works {
@@ -227,8 +263,12 @@ impl<'a> Rates<'a> {
     fn time_per_angle(&self, piece: usize, phi: f64) -> Result<f64, QuadratureError> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
-        let mean_force = |from: f64, to: f64| integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0);
-        let x = 0.5 * (start + end) + 0.5 * (start - end) * phi.sin();
+        let mean_force = |from: f64, to: f64| integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0);
+        // From the nearer end: beside a pole the distance from it counts, not the position.
+        let x = match phi >= 0.0 {
+            true => start - (start - end) * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2),
+            false => end + (start - end) * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2),
+        };
         let single = self.knots.len() == 2;
         let x = if single {
             x
@@ -253,20 +293,8 @@ impl<'a> Rates<'a> {
     }
 }
 
-/// The period of a conservative motion released at rest from `start`, and the coefficients of `cos(k theta)` of the motion.
-///
-/// With `psi = pi/2 - phi` the rate `h = dt/dpsi` is an even, periodic function: its cosine series gives `omega t(psi)`, and
-/// sums over equal steps in `psi` give the coefficients, both to spectral accuracy for a smooth force. Where the force has
-/// corners or narrow places the same integrals are taken piece by piece.
-///
-/// # Errors
-/// See [`PeriodError`].
-pub fn conservative_motion(force: &Force, equilibrium: f64, start: f64) -> Result<(f64, Vec<f64>), PeriodError> {
-    weighted_motion(force, &|_| 1.0, equilibrium, start)
-}
-
-/// As [`conservative_motion`] where the energy is `M x'^2/2 + U`: `force` is `U'` and `weight` the root of `M`, by which
-/// every instant takes longer.
+/// The period of a motion where the energy is `M x'^2/2 + U`, released at rest from `start`, and the coefficients of
+/// `cos(k theta)`: `force` is `U'` and `weight` the root of `M`, by which every instant takes longer.
 ///
 /// # Errors
 /// See [`PeriodError`].
@@ -276,9 +304,25 @@ pub fn weighted_motion(
     equilibrium: f64,
     start: f64,
 ) -> Result<(f64, Vec<f64>), PeriodError> {
+    motion_between(force, weight, start, turning_point(force, equilibrium, start)?)
+}
+
+/// The period and the coefficients of `cos(k theta)` of the motion between two turning points, the first at `theta = 0`.
+///
+/// With `psi = pi/2 - phi` the rate `h = dt/dpsi` is an even, periodic function: its cosine series gives `omega t(psi)`, and
+/// sums over equal steps in `psi` give the coefficients, both to spectral accuracy for a smooth force. Where the force has
+/// corners or narrow places the same integrals are taken piece by piece.
+///
+/// # Errors
+/// See [`PeriodError`].
+pub fn motion_between(
+    force: &Force,
+    weight: &dyn Fn(f64) -> f64,
+    start: f64,
+    end: f64,
+) -> Result<(f64, Vec<f64>), PeriodError> {
     const FEWEST: usize = 64;
     const MOST: usize = 1024;
-    let end = turning_point(force, equilibrium, start)?;
     let rates = Rates::new(force, weight, start, end)?;
     if rates.knots.len() > 2 {
         return motion_by_pieces(&rates, period_of_rates(&rates)?);
@@ -405,8 +449,8 @@ fn running_integral(nodes: &[(f64, f64)], values: &[f64], from: f64, to: f64) ->
 }
 
 /// The integral of a force: panels are doubled until the value settles, or until doubling no longer brings it closer,
-/// which is where the rounding of the force itself begins.
-fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Result<f64, QuadratureError> {
+/// which is where the rounding of the force itself begins. Errors below `negligible` do not count.
+fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) -> Result<f64, QuadratureError> {
     const MOST_PANELS: i32 = 64;
     let with_panels = |panels: i32| {
         let place = |k: i32| from + (to - from) * f64::from(k) / f64::from(panels);
@@ -418,7 +462,8 @@ fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Result<f64, Qu
     while panels <= MOST_PANELS {
         let finer = with_panels(panels);
         let next = (finer - value).abs();
-        if next <= TOLERANCE * finer.abs() || (next >= 0.5 * change && next <= 1e-9 * finer.abs()) {
+        if next <= f64::max(TOLERANCE * finer.abs(), negligible) || (next >= 0.5 * change && next <= 1e-9 * finer.abs())
+        {
             return Ok(finer);
         }
         (value, change) = (finer, next);
@@ -428,7 +473,7 @@ fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Result<f64, Qu
         // Where pull and push cancel, the integral is as good as the forces in it allow.
         Err(QuadratureError::NotConverged {
             value, error_estimate, ..
-        }) if error_estimate <= 1e-11 * size(function, from, to) => Ok(value),
+        }) if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) => Ok(value),
         result => result.map(|(value, _)| value),
     }
 }
@@ -446,7 +491,9 @@ fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
-    const FARTHEST: f64 = 1e4;
+    const FARTHEST: f64 = 1e10;
+    /// How often a stretch on which the force has no integral is halved.
+    const HALVINGS: u32 = 60;
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
     if force.at(start) * side <= 0.0 || amplitude == 0.0 {
@@ -455,7 +502,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     if is_symmetric(force, equilibrium, amplitude) {
         return Ok(equilibrium - amplitude);
     }
-    let gained = |from: f64, to: f64| integral(force.value, to, from);
+    let gained = |from: f64, to: f64, before: f64| integral(force.value, to, from, 1e-17 * before);
     // Windows of growing length: to the mirror image of the start, as far again, twice as far, ...
     let (mut x, mut energy, mut window) = (start, 0.0, 2.0 * amplitude.abs());
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
@@ -465,12 +512,25 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
         places.sort_by(|one, other| (side * other).total_cmp(&(side * one)));
         places.dedup();
         for pair in places.windows(2) {
-            for (here, next) in where_it_turns(force, side, pair[0], pair[1]) {
-                let after = energy + gained(here, next)?;
+            let mut stretches = where_it_turns(force, side, pair[0], pair[1]);
+            stretches.reverse();
+            let mut halvings = 0;
+            while let Some((here, next)) = stretches.pop() {
+                let gain = match gained(here, next, energy) {
+                    // Towards a pole, by half of the way at a time.
+                    Err(_) if halvings < HALVINGS => {
+                        halvings += 1;
+                        let middle = 0.5 * (here + next);
+                        stretches.extend([(middle, next), (here, middle)]);
+                        continue;
+                    }
+                    gain => gain?,
+                };
+                let after = energy + gain;
                 if after <= 0.0 {
                     let mut failure = None;
                     let root = find_root(
-                        |candidate| match gained(here, candidate) {
+                        |candidate| match gained(here, candidate, energy) {
                             Ok(gain) => energy + gain,
                             Err(error) => {
                                 failure = Some(error);
@@ -535,6 +595,13 @@ pub struct Swing {
 }
 
 impl Swing {
+    /// The same where positions were distances from `origin`.
+    #[must_use]
+    pub fn moved(mut self, origin: f64) -> Self {
+        self.equilibrium += origin;
+        self
+    }
+
     /// The time of the swing.
     pub fn period(&self) -> f64 {
         self.path.end().t * self.time

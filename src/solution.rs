@@ -15,6 +15,7 @@ use crate::derivation::{Line, Step};
 use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::{Rational, to_f64};
+use crate::exact::scaled::Scaled;
 use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::symbol::{Symbol, fresh};
@@ -565,15 +566,15 @@ impl Solution {
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
         let relation = self.relation.as_ref()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
-        let mut sizes: Vec<(Symbol, branch::Scaled)> = Vec::new();
+        let mut sizes: Vec<(Symbol, Scaled)> = Vec::new();
         for symbol in relation.symbols() {
             if symbol != omega && symbol != amplitude {
                 let value = self.evaluate(&Polynomial::symbol(symbol), value_of).ok()?;
-                sizes.push((symbol, branch::Scaled::new(value)));
+                sizes.push((symbol, Scaled::new(value)));
             }
         }
         let term = |(monomial, number): (&Monomial, &Rational)| {
-            let mut coefficient = branch::Scaled::new(to_f64(number));
+            let mut coefficient = Scaled::of_fraction(number);
             for (symbol, size) in &sizes {
                 coefficient = coefficient.product(size.power(monomial.exponent(*symbol)));
             }

@@ -1,6 +1,7 @@
 //! The judge and its ranges on forces that break what looks at points alone, compared with independent truth.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
@@ -53,7 +54,7 @@ fn by_small_steps(force: impl Fn(f64) -> f64, start: f64, step: f64) -> f64 {
         }
     };
     let (coarse, fine) = (half_period(step), half_period(0.5 * step));
-    std::f64::consts::PI / (fine + (fine - coarse) / 3.0)
+    PI / (fine + (fine - coarse) / 3.0)
 }
 
 #[test]
@@ -124,7 +125,8 @@ fn a_barrier_is_judged_by_quadrature_between_its_corners() {
         "x'' + sin(x) + 30406700*(x - 0.323)^(3/2)*H(x - 0.323) = 0",
         &[("A", "-3/2")],
     );
-    assert!((hertz.true_frequency - 1.52).abs() < 2e-3, "{}", hertz.true_frequency);
+    let frequency = hertz.true_frequency.expect("a true frequency");
+    assert!((frequency - 1.52).abs() < 2e-3, "{frequency}");
     for row in &hertz.rows {
         let everywhere = matches!(row.reach, Some(Reach::Everywhere(_)));
         assert!(row.frequency.is_some() || !everywhere, "{}", row.solution.title());
@@ -305,6 +307,194 @@ fn coefficients_of_many_digits_cost_no_more_than_short_ones() {
         match radius {
             Some(radius) => assert!(found.contains(radius), "{found}"),
             None => assert!(!found.contains("converges"), "{found}"),
+        }
+    }
+}
+
+/// The period against a pole, `V(u) = k (log u + d/u)` with `u = d - x`, by the double exponential rule in `log u`
+/// (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), with the distances from both turning points exact.
+fn against_a_pole(k: f64, d: f64, amplitude: f64) -> f64 {
+    let far = d - amplitude;
+    let level = |u: f64| u.ln() + d / u;
+    // The near turning point: level(u) = level(far) below the equilibrium u = d.
+    let (mut low, mut high) = (1e-9 * d, d);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if level(middle) > level(far) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let length = (far / low).ln();
+    let rule = |step: f64| -> f64 {
+        let point = |j: i32| {
+            let t = f64::from(j) * step;
+            let (left, right) = (
+                1.0 / (1.0 + (-PI * t.sinh()).exp()),
+                1.0 / (1.0 + (PI * t.sinh()).exp()),
+            );
+            // From the nearer turning point.
+            let (u, fallen) = if t < 0.0 {
+                let growth = (length * left).exp_m1();
+                (
+                    low * (1.0 + growth),
+                    growth * d / (low * (1.0 + growth)) - length * left,
+                )
+            } else {
+                let loss = -(-length * right).exp_m1();
+                (far * (1.0 - loss), length * right - loss * d / (far * (1.0 - loss)))
+            };
+            length * PI * t.cosh() * left * right * u / (2.0 * k * fallen).sqrt()
+        };
+        step * (-(3.3 / step) as i32..=(3.3 / step) as i32).map(point).sum::<f64>()
+    };
+    let (coarse, fine) = (rule(0.02), rule(0.01));
+    assert!((coarse / fine - 1.0).abs() < 1e-9, "{amplitude}: {coarse} {fine}");
+    2.0 * fine
+}
+
+#[test]
+fn a_motion_that_turns_close_to_a_pole_is_timed() {
+    for amplitude in ["-3", "-40", "-3000", "-1110000", "-9e8", "9/10"] {
+        let table = compared("x'' + 0.468*x/(0.962 - x)^2 = 0", &[("A", amplitude)]);
+        let value: f64 = if amplitude == "9/10" {
+            0.9
+        } else {
+            amplitude.parse().unwrap()
+        };
+        let start = if value < 0.0 {
+            value
+        } else {
+            // The other turning point of the same motion is farther from the pole.
+            let level = |u: f64| u.ln() + 0.962 / u;
+            let (mut low, mut high) = (0.962, 1e9);
+            for _ in 0..200 {
+                let middle = 0.5 * (low + high);
+                if level(middle) > level(0.962 - value) {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            0.962 - low
+        };
+        let expected = std::f64::consts::TAU / against_a_pole(0.468, 0.962, start);
+        let found = table.true_frequency.expect("a true frequency");
+        assert!((found / expected - 1.0).abs() < 1e-8, "{amplitude}: {found} {expected}");
+        let exact = table
+            .rows
+            .iter()
+            .find(|row| row.solution.method == Method::Exact)
+            .unwrap();
+        let error = exact.relative_error.expect("a frequency");
+        assert!(error.abs() < 1e-10, "{amplitude}: {error}");
+    }
+}
+
+/// Whatever keeps the true motion from being known, every method has its row, and the reason is said.
+#[test]
+fn a_table_without_a_true_motion_has_all_its_rows() {
+    let table = compared("x'' - mu*(1 - x^2)*x' + x = 0", &[("mu", "1000")]);
+    assert_eq!(table.true_frequency, None);
+    let reason = table.reason.expect("a reason");
+    assert!(reason.contains("too stiff"), "{reason}");
+    assert_eq!(table.rows.len() + table.refused.len(), Method::ALL.len());
+    assert!(
+        table
+            .rows
+            .iter()
+            .all(|row| row.verdict.is_none() && row.relative_error.is_none())
+    );
+    let known = compared("x'' - mu*(1 - x^2)*x' + x = 0", &[("mu", "1/10")]);
+    assert!(known.true_frequency.is_some() && known.reason.is_none());
+    assert!(known.rows.iter().all(|row| row.verdict.is_some()));
+}
+
+/// The motion of one term does not pass a pole, however weak it is beside the rest of the force; and it passes what only looks
+/// like one.
+#[test]
+fn a_weak_pole_is_still_a_pole() {
+    for (equation, amplitude, pole) in [
+        ("x'' + 0.386*(1/(91.7 - x) - 1/91.7) + x = 0", "43900000", true),
+        ("x'' + x + 1/1000/(1 - x)^2 - 1/1000 = 0", "1e9", true),
+        (
+            "x'' + x + 1/(1e-8 + (x - 1)^2)/1000 - 1/1000/(1 + 1e-8) = 0",
+            "1000",
+            false,
+        ),
+        ("x'' + x + abs(x - 1)^(-1/2) - 1 = 0", "3", false),
+    ] {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let options = Options {
+            method: Some(Method::Hamiltonian),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).unwrap();
+        let given = BTreeMap::from([(Symbol::new("A"), amplitude.parse().unwrap())]);
+        let found = lindstedt::method::numbers::evaluate(&oscillator, &solution, &given);
+        assert_eq!(found.is_err(), pole, "{equation}: {found:?}");
+    }
+}
+
+/// A law in closed form has values where there is no motion, and terms beyond the range of doubles where there is one.
+#[test]
+fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
+    let at = |equation: &str, method: Method, order: Option<u32>, amplitude: f64| {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let options = Options {
+            method: Some(method),
+            order,
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).unwrap();
+        let given = BTreeMap::from([(Symbol::new("A"), amplitude)]);
+        lindstedt::method::numbers::evaluate(&oscillator, &solution, &given).map(|found| found.frequency_squared)
+    };
+    // The potential falls for good beyond its last maximum.
+    for (equation, amplitude) in [
+        ("x'' + x + 1.31*x^3 - 0.575*x^5 = 0", 2.68),
+        ("x'' + x - x^5 = 0", 1.5),
+        ("x'' + 0.008*x - 0.0221*x^5 = 0", -3.86),
+        ("x'' + x + x^2 = 0", 0.51),
+    ] {
+        let found = at(equation, Method::Exact, None, amplitude);
+        assert!(
+            matches!(&found, Err(reason) if reason.to_string().contains("no periodic motion")),
+            "{equation}: {found:?}"
+        );
+        assert!(at(equation, Method::Exact, None, 0.1 * amplitude).is_ok(), "{equation}");
+    }
+    // omega^2 = f'(A/2) = 6/cosh(3 A/2)^2.
+    for amplitude in [1.0, 20.0, 100.0] {
+        let found = at("x'' + 2*tanh(3*x) = 0", Method::FrequencyFormula, None, amplitude).unwrap();
+        let expected = 24.0 * (-3.0 * amplitude).exp() / (1.0 + (-3.0 * amplitude).exp()).powi(2);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-13,
+            "{amplitude}: {found} {expected}"
+        );
+    }
+    // With e = exp(-c A) the period is 4 K(1 - m) sech, 1 - m = 4 e/(1 + e)^2 and K(m) = ln 4 - ln(1 - m)/2 for tiny 1 - m.
+    for amplitude in [20.0, 60.0, 150.0] {
+        let found = at("x'' + 2*sinh(3*x) = 0", Method::Exact, None, amplitude).unwrap();
+        let complete = 4.0_f64.ln() + 0.5 * (3.0 * amplitude - 4.0_f64.ln());
+        let logarithm = (6.0_f64.sqrt() * PI / 2.0).ln() + 1.5 * amplitude - 2.0_f64.ln() - complete.ln();
+        assert!(
+            (0.5 * found.ln() / logarithm - 1.0).abs() < 1e-13,
+            "{amplitude}: {found}"
+        );
+    }
+    // A law does not depend on the unit of length: with x = 1e-12 u the coefficients overflow in its higher powers.
+    let small = "x'' + 0.00678*x - 217e19*x^3 + 123e68*x^7 = 0";
+    let plain = "x'' + 0.00678*x - 0.00217*x^3 + 0.0123*x^7 = 0";
+    for method in [Method::IterationPerturbation, Method::HomotopyPerturbation] {
+        for amplitude in [0.1, 0.615, 2.0] {
+            let expected = at(plain, method, Some(2), amplitude).unwrap();
+            let found = at(small, method, Some(2), 1e-12 * amplitude).unwrap();
+            assert!(
+                (found / expected - 1.0).abs() < 1e-11,
+                "{amplitude}: {found} {expected}"
+            );
         }
     }
 }

@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(path) => Some((path.clone(), picture(&oscillator, &comparison)?)),
         None => None,
     };
-    let failed = comparison.rows.iter().any(|row| row.verdict == Verdict::Fail);
+    let failed = comparison.rows.iter().any(|row| row.verdict != Some(Verdict::Pass));
     Ok(Outcome {
         result: whole(text),
         picture,

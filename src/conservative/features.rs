@@ -31,6 +31,8 @@ pub struct Feature {
     pub place: f64,
     /// Over what distance the force may turn; zero at a corner, a jump or a pole.
     pub width: f64,
+    /// Whether it is a pole, a root or a logarithm: the force turns fast beside it as well, the faster the closer.
+    pub singular: bool,
 }
 
 /// The arguments inside a force at whose zeros and stationary points it may turn fast.
@@ -134,6 +136,7 @@ impl Features {
             let same = (second.place - first.place).abs() <= 1e-14 * length;
             if same {
                 first.width = first.width.min(second.width);
+                first.singular |= second.singular;
             }
             same
         });
@@ -156,13 +159,16 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
     let length = high - low;
     let mut points = Vec::new();
     for feature in features {
+        // Beside a singular place the force is as narrow as that is far.
+        let outside = f64::max(low - feature.place, feature.place - high).max(0.0);
+        let width = if feature.singular { 0.5 * outside } else { feature.width };
         // What is as wide as the interval is no feature of it.
-        if feature.width > length / 16.0 {
+        if width > length / 16.0 {
             continue;
         }
         points.push(feature.place);
-        if feature.width > 0.0 && points.len() < MOST_POINTS {
-            let mut distance = 2.0 * feature.width.max(1e-13 * length);
+        if width > 0.0 && points.len() < MOST_POINTS {
+            let mut distance = 2.0 * width.max(1e-13 * length);
             while distance < length {
                 points.extend([feature.place - distance, feature.place + distance]);
                 distance *= GROWTH;
@@ -269,9 +275,13 @@ impl Part {
         for &level in levels {
             places.extend(zeros(&|x| self.argument.call(&[x]) - level, &separated));
         }
-        let feature = |place: f64| Feature {
-            place,
-            width: self.width(place),
+        let feature = |place: f64| {
+            let width = self.width(place);
+            Feature {
+                place,
+                width,
+                singular: width == 0.0 && self.kind != Kind::Corner,
+            }
         };
         places
             .into_iter()

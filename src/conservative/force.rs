@@ -53,18 +53,25 @@ impl Force {
         let names: Vec<Symbol> = std::iter::once(coordinate).chain(numbers.keys().copied()).collect();
         let place = equilibrium.evaluate(numbers).ok()?;
         let slope = force.differentiate(coordinate).ok();
-        Some(Self {
+        let mut found = Self {
             value: CompiledFunction::new(force, &names).ok()?,
             slope: slope.and_then(|slope| CompiledFunction::new(&slope, &names).ok()),
             // One row of arguments for all calls: only its first entry, the position, changes.
             arguments: RefCell::new(std::iter::once(0.0).chain(numbers.values().copied()).collect()),
-            near: near(force, coordinate, equilibrium, numbers, amplitude),
+            near: None,
             equilibrium: place,
             force: force.clone(),
             coordinate,
             numbers: numbers.clone(),
             features: OnceCell::new(),
-        })
+        };
+        found.near = found.near_rest(equilibrium, amplitude);
+        Some(found)
+    }
+
+    /// The position of the equilibrium.
+    pub fn equilibrium(&self) -> f64 {
+        self.equilibrium
     }
 
     /// The force at the distance `y` from the equilibrium.
@@ -133,6 +140,65 @@ impl Force {
         cuts.into_iter().map(|place| place - at).collect()
     }
 
+    /// The polynomial near rest, where rounding of the force itself would show at this amplitude.
+    fn near_rest(&self, equilibrium: &Expr, amplitude: f64) -> Option<Near> {
+        /// Relative errors below this are no loss.
+        const HARMLESS: f64 = 2e-14;
+        /// How far the polynomial may reach, in amplitudes and as a length: a search for the edge of the well goes far.
+        const FARTHEST: (f64, f64) = (1e60, 1e300);
+        let (coordinate, numbers, place) = (self.coordinate, &self.numbers, self.equilibrium);
+        let cancels = [0.31 * amplitude, -0.7 * amplitude].into_iter().any(|y| {
+            let there = |symbol: Symbol| match symbol == coordinate {
+                // The sum of equilibrium and distance is rounded itself.
+                true if place == 0.0 => Some((y, 0.0)),
+                true => Some((place + y, 0.5 * f64::EPSILON * place.abs())),
+                false => numbers.get(&symbol).map(|&value| (value, 0.0)),
+            };
+            let value = self.force.evaluate_rounded(&there);
+            value.is_some_and(|(value, error)| error > HARMLESS * value.abs())
+        });
+        // At a removable singularity the force has no value of its own, and towards it no digits.
+        let at_rest = value_at(&self.force, coordinate, place, numbers);
+        if !cancels && at_rest.is_some() {
+            return None;
+        }
+        let moved = Expr::from(coordinate) + equilibrium.clone();
+        let about = self.force.substitute(coordinate, &moved).ok()?;
+        let parts = taylor(&about, &[(coordinate, Rational::zero())], DEGREE).ok()?;
+        let mut at_one = numbers.clone();
+        at_one.insert(coordinate, 1.0);
+        let mut coefficients: Vec<f64> = parts
+            .iter()
+            .map(|part| part.evaluate(&at_one).ok())
+            .collect::<Option<_>>()?;
+        // At the equilibrium the force is zero, whatever rounding says.
+        *coefficients.first_mut()? = 0.0;
+        let size = |k: usize, radius: f64| coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32));
+        let good = |radius: f64| {
+            let leading = (1..=3).map(|k| size(k, radius)).fold(0.0, f64::max);
+            let last = coefficients.len() - 1;
+            leading.is_finite() && (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
+        };
+        let farthest = f64::min(FARTHEST.0 * amplitude.abs(), FARTHEST.1);
+        let radii = std::iter::successors(Some(farthest), |radius| Some(0.5 * radius));
+        let radius = radii.take(400).find(|&radius| good(radius) && self.is_clear(radius))?;
+        Some(Near { coefficients, radius })
+    }
+
+    /// Whether no corner lies as close to the equilibrium as this, and no narrow place within four times the distance: of what
+    /// happens there the Taylor coefficients at rest may know nothing.
+    fn is_clear(&self, radius: f64) -> bool {
+        let narrow = self
+            .features()
+            .between(self.equilibrium - 4.0 * radius, self.equilibrium + 4.0 * radius);
+        narrow.into_iter().all(|feature| {
+            let distance = (feature.place - self.equilibrium).abs();
+            let reach = if feature.width == 0.0 { radius } else { 4.0 * radius };
+            let rounding = f64::max(1e-9 * radius, 4.0 * f64::EPSILON * self.equilibrium.abs());
+            distance <= rounding || distance > reach || feature.width > radius / 16.0
+        })
+    }
+
     /// The position (not the distance) of a place between these distances at which the force has no value, or grows so fast
     /// towards a pole that no motion passes it; the pole of an odd force at the equilibrium itself is none.
     pub fn gap(&self, from: f64, to: f64) -> Option<f64> {
@@ -166,77 +232,42 @@ impl Force {
         if self.features().is_empty() {
             return None;
         }
-        let grows = |y: f64| {
-            let near = |distance: f64| {
-                let sides = [-distance, distance].map(|d| self.at(y + d * size).abs());
-                distance * sides.into_iter().fold(0.0, f64::max)
-            };
-            let (far, close) = (near(1e-4), near(1e-7));
-            close > 0.3 * far && close > 0.0
-        };
         let places = self.features().between(self.equilibrium + from, self.equilibrium + to);
         places
             .into_iter()
             .map(|feature| feature.place)
             .filter(|place| (from..=to).contains(&(place - self.equilibrium)))
-            .filter(|place| (place - self.equilibrium).abs() > 1e-9 * size)
-            .find(|place| grows(place - self.equilibrium))
+            .filter(|place| (place - self.equilibrium).abs() > 8.0 * f64::EPSILON * self.equilibrium.abs())
+            .find(|&place| self.is_pole(place, size))
     }
-}
 
-/// The polynomial near rest, where rounding of the force itself would show at this amplitude.
-fn near(
-    force: &Expr,
-    coordinate: Symbol,
-    equilibrium: &Expr,
-    numbers: &BTreeMap<Symbol, f64>,
-    amplitude: f64,
-) -> Option<Near> {
-    /// Relative errors below this are no loss.
-    const HARMLESS: f64 = 2e-14;
-    let place = equilibrium.evaluate(numbers).ok()?;
-    let cancels = [0.31 * amplitude, -0.7 * amplitude].into_iter().any(|y| {
-        let there = |symbol: Symbol| match symbol == coordinate {
-            // The sum of equilibrium and distance is rounded itself.
-            true if place == 0.0 => Some((y, 0.0)),
-            true => Some((place + y, 0.5 * f64::EPSILON * place.abs())),
-            false => numbers.get(&symbol).map(|&value| (value, 0.0)),
+    /// Whether the force grows towards a place so fast that its potential is infinite there: as close to it as rounding lets
+    /// the force be known, like a power of the distance no weaker than its inverse, or nearly.
+    pub fn is_pole(&self, place: f64, size: f64) -> bool {
+        const DECADES: i32 = 13;
+        const FASTER_THAN: f64 = 0.83;
+        let scale = if place == 0.0 { size } else { place.abs() };
+        let strength = |distance: f64| {
+            let sides = [-distance, distance].map(|side| {
+                let there = |symbol: Symbol| match symbol == self.coordinate {
+                    true => Some((place + side, 0.0)),
+                    false => self.numbers.get(&symbol).map(|&value| (value, 0.0)),
+                };
+                let found = self.force.evaluate_rounded(&there);
+                found.filter(|(value, error)| value.is_finite() && *error <= 0.1 * value.abs())
+            });
+            let known = sides.into_iter().flatten().map(|(value, _)| value.abs());
+            known.fold(None, |most: Option<f64>, value| {
+                Some(most.map_or(value, |most| most.max(value)))
+            })
         };
-        force
-            .evaluate_rounded(&there)
-            .is_some_and(|(value, error)| error > HARMLESS * value.abs())
-    });
-    // At a removable singularity the force has no value of its own, and towards it no digits.
-    let at_rest = value_at(force, coordinate, place, numbers);
-    if !cancels && at_rest.is_some() {
-        return None;
+        let near = (0..DECADES).map(|k| scale * 10.0_f64.powi(k - DECADES));
+        let pair = near.filter_map(|distance| Some((strength(distance)?, strength(100.0 * distance)?)));
+        let mut pairs = pair.take(1);
+        pairs
+            .next()
+            .is_some_and(|(close, far)| close > far * 100.0_f64.powf(FASTER_THAN))
     }
-    let moved = Expr::from(coordinate) + equilibrium.clone();
-    let about = force.substitute(coordinate, &moved).ok()?;
-    let parts = taylor(&about, &[(coordinate, Rational::zero())], DEGREE).ok()?;
-    let mut at_one = numbers.clone();
-    at_one.insert(coordinate, 1.0);
-    let mut coefficients: Vec<f64> = parts
-        .iter()
-        .map(|part| part.evaluate(&at_one).ok())
-        .collect::<Option<_>>()?;
-    // At the equilibrium the force is zero, whatever rounding says.
-    *coefficients.first_mut()? = 0.0;
-    let size = |k: usize, radius: f64| coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32));
-    let good = |radius: f64| {
-        let leading = (1..=3).map(|k| size(k, radius)).fold(0.0, f64::max);
-        let last = coefficients.len() - 1;
-        (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
-    };
-    let mut radius = amplitude.abs();
-    let halvings = (0..200).find(|_| {
-        let found = good(radius);
-        if !found {
-            radius *= 0.5;
-        }
-        found
-    });
-    halvings.map(|_| Near { coefficients, radius })
 }
 
 /// The force at a place; `None` where it has no finite value there.

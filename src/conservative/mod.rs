@@ -11,6 +11,7 @@
 
 pub mod features;
 pub mod force;
+mod motion;
 pub mod parity;
 pub mod potential;
 pub mod projection;

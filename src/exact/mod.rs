@@ -7,6 +7,7 @@ pub mod polynomial;
 pub mod rational;
 pub mod real_roots;
 pub mod ring;
+pub mod scaled;
 
 pub use polynomial::Polynomial;
 pub use rational::{Integer, Rational};

@@ -11,6 +11,7 @@ use num_traits::{One, Zero};
 
 use super::rational::{Integer, Rational, to_f64};
 use super::ring::{Ring, common_content};
+use super::scaled::Scaled;
 use crate::symbol::Symbol;
 
 /// A product of powers of symbols, `A^2*eps`. The exponents are never zero; they may be negative.
@@ -288,15 +289,33 @@ impl Polynomial<Rational> {
 
     /// The value with every symbol replaced by its number; the first symbol without one is the error.
     pub fn evaluate(&self, value_of: impl Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
-        let mut sum = 0.0;
+        let (mut sum, mut in_range) = (0.0, true);
         for (monomial, coefficient) in &self.terms {
             let mut product = to_f64(coefficient);
+            in_range &= product.is_normal();
             for &(symbol, exponent) in &monomial.0 {
-                product *= value_of(symbol).ok_or(symbol)?.powi(exponent);
+                let power = value_of(symbol).ok_or(symbol)?.powi(exponent);
+                product *= power;
+                in_range &= power.is_normal() && product.is_normal();
             }
             sum += product;
         }
-        Ok(sum)
+        if in_range {
+            return Ok(sum);
+        }
+        // A factor or a product on the way is beyond the range of doubles, or zero.
+        let term = |(monomial, coefficient): (&Monomial, &Rational)| {
+            let factors = monomial.0.iter().map(|&(symbol, exponent)| {
+                let value = value_of(symbol).ok_or(symbol)?;
+                Ok(Scaled::new(value).power(exponent))
+            });
+            let start = Scaled::of_fraction(coefficient);
+            factors.fold(Ok(start), |product, factor: Result<Scaled, Symbol>| {
+                Ok(product?.product(factor?))
+            })
+        };
+        let terms: Vec<Scaled> = self.terms.iter().map(term).collect::<Result<_, Symbol>>()?;
+        Ok(Scaled::sum(&terms))
     }
 
     /// The number, where no symbol occurs.

@@ -173,7 +173,7 @@ pub fn comparison(comparison: &Comparison) -> Value {
             "relative_error": row.relative_error,
             "max_deviation": row.max_deviation,
             "reach": row.reach.map(reach),
-            "verdict": verdict(row.verdict),
+            "verdict": row.verdict.map(verdict),
         })
     };
     let refused = |refused: &Refused| {
@@ -196,6 +196,7 @@ pub fn comparison(comparison: &Comparison) -> Value {
         "equation": comparison.equation,
         "at": values(&comparison.at),
         "true_frequency": comparison.true_frequency,
+        "reason": comparison.reason,
         "tolerance": comparison.tolerance,
         "methods": rows.chain(comparison.refused.iter().map(refused)).collect::<Vec<_>>(),
         "validity": comparison.validity,

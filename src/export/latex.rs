@@ -277,7 +277,10 @@ pub fn comparison(comparison: &Comparison) -> String {
     let mut text = format!(
         "% {}; true omega = {}\n\\begin{{tabular}}{{lrrrl}}\n\\hline\n",
         comparison.equation,
-        decimal(comparison.true_frequency)
+        comparison.true_frequency.map_or_else(
+            || format!("not known: {}", comparison.reason.as_deref().unwrap_or_default()),
+            decimal
+        )
     );
     let place = if at.is_empty() {
         String::new()

@@ -9,7 +9,7 @@
 //! T = 2 int_(x_1)^A dx/sqrt(2 (V(A) - V(x)))
 //! c sgn(x)|x|^n:        omega = sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))
 //! k sin(c x):           omega = pi sqrt(k c)/(2 K(sin^2(c A/2)))
-//! k sinh(c x):          omega = pi sqrt(k c) cosh(c A/2)/(2 K(tanh^2(c A/2)))
+//! k sinh(c x):          omega = pi sqrt(k c)/(2 K(-sinh^2(c A/2)))
 //! a x + b x^3 + l x^5:  with x = A cos phi, t = tan phi, p = a + b A^2 + l A^4, r = a + b A^2/2 + l A^4/3, q = 2 r + (b/2 + l A^2/3) A^2:
 //!   T = 4 int_0^inf dt/sqrt(r t^4 + q t^2 + p),   omega = pi (p r)^(1/4)/(2 K(1/2 - q/(4 sqrt(p r))))
 //! a x + b x^3:          omega = pi sqrt(a + b A^2)/(2 K(b A^2/(2 (a + b A^2))))
@@ -219,13 +219,9 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Law>, Ref
     {
         let scale = (&outside * &slope).expand()?.sqrt()?;
         let angle = Expr::divide(&(slope * Expr::symbol("A")), &Expr::from(2))?;
-        let law = if *function == Function::Sin {
-            by_elliptic(&scale, angle.sin()?.integer_power(2)?)?
-        } else {
-            let of = |function| Expr::function(function, vec![angle.clone()]);
-            by_elliptic(&(scale * of(Function::Cosh)?), of(Function::Tanh)?.integer_power(2)?)?
-        };
-        return Ok(Some(Law::Form(law)));
+        let squared = Expr::function(*function, vec![angle])?.integer_power(2)?;
+        let parameter = if *function == Function::Sin { squared } else { -squared };
+        return Ok(Some(Law::Form(by_elliptic(&scale, parameter)?)));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {

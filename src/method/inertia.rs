@@ -28,6 +28,7 @@ use super::energy_balance::positive_amplitude;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
+use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
@@ -521,8 +522,8 @@ pub(super) fn at_numbers(
     let moving = VariableMass::of(oscillator).ok()??;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers)?;
-    let force = compiled(oscillator, &moving.force, numbers)?;
-    let weighted = |x: f64| mass(x) * force(x);
+    let force = Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
+    let weighted = |x: f64| mass(x) * force.at(x);
     let one_term = |squared: f64| {
         let motion = FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one());
         squared.is_finite().then_some((squared, motion))

@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 use num_traits::One;
 
 use super::{balance, energy_balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
-use crate::conservative::features::Features;
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
@@ -16,7 +15,7 @@ use crate::exact::{Integer, Polynomial};
 use crate::expr::Rounded;
 use crate::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
-use crate::period;
+use crate::period::PeriodError;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Branch, Method, Solution};
 use crate::symbol::Symbol;
@@ -55,9 +54,18 @@ pub enum NoNumbers {
         /// Where.
         place: f64,
     },
+    /// A symbol that the law is written with has no real value.
+    #[error("not real: {name} has no real value at these numbers")]
+    Undefined {
+        /// The symbol.
+        name: Symbol,
+    },
     /// The branch of a balance does not reach the amplitude asked for.
-    #[error("{0}")]
+    #[error(transparent)]
     Balance(#[from] balance::Lost),
+    /// There is no motion whose frequency it could be.
+    #[error(transparent)]
+    Motion(#[from] PeriodError),
     /// A quadrature, the exact motion or a search for hbar failed.
     #[error("no finite value at these numbers")]
     NoValue,
@@ -89,7 +97,7 @@ pub fn evaluate(
     }
     let squared = frequency_squared(oscillator, solution, &numbers)?;
     let motion = match solution.method {
-        Method::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).map(|found| found.1),
+        Method::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).ok().map(|found| found.1),
         Method::Exact => None,
         _ => formula_motion(oscillator, solution, &numbers, squared),
     };
@@ -178,16 +186,20 @@ fn of_one_term(solution: &Solution) -> bool {
     by_size(solution) && solution.method != Method::Exact && solution.system.is_none()
 }
 
-/// The force about the equilibrium of an answer.
-fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
-    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+/// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+pub(crate) fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
     Force::new(
         &oscillator.force,
         oscillator.coordinate,
         &solution.equilibrium,
         numbers,
-        amplitude,
+        amplitude_of(solution, numbers),
     )
+}
+
+/// The amplitude; one where the law is free of it and none is given.
+fn amplitude_of(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> f64 {
+    numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0)
 }
 
 fn frequency_squared(
@@ -198,6 +210,11 @@ fn frequency_squared(
     let symbol = solution.amplitude.symbol();
     if of_one_term(solution) {
         stays_defined(oscillator, solution, numbers)?;
+    }
+    if solution.method == Method::Exact {
+        // The law itself says nothing of whether the motion comes back.
+        let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+        force.turning_point(amplitude_of(solution, numbers))?;
     }
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
     let sized = by_size(solution) && (solution.method != Method::Exact || odd_equation(solution));
@@ -223,7 +240,17 @@ fn frequency_squared(
             return Ok(better);
         }
     }
-    value.filter(|value| value.is_finite()).ok_or(NoNumbers::NoValue)
+    let undefined = || {
+        let value = |name| solution.evaluate(&Polynomial::symbol(name), &value_of);
+        let mut names = solution.definitions.iter().map(|definition| definition.symbol);
+        names.find(|&name| value(name).is_err())
+    };
+    value
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| match undefined() {
+            Some(name) => NoNumbers::Undefined { name },
+            None => NoNumbers::NoValue,
+        })
 }
 
 /// The value of a symbol or of a definition, with its rounding error.
@@ -265,7 +292,7 @@ fn stays_defined(
 fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
     if solution.method == Method::Exact {
-        return exact_motion(oscillator, solution, numbers).map(|found| found.0);
+        return exact_motion(oscillator, solution, numbers).ok().map(|found| found.0);
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
@@ -393,7 +420,7 @@ fn solve(
         return found().ok_or(NoNumbers::NoValue);
     }
     if solution.method == Method::Exact {
-        return exact_motion(oscillator, solution, numbers).ok_or(NoNumbers::NoValue);
+        return exact_motion(oscillator, solution, numbers);
     }
     let given = || {
         let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
@@ -420,16 +447,11 @@ fn exact_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Option<(f64, FourierSeries<f64>)> {
-    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
-    let amplitude = *numbers.get(&solution.amplitude.symbol()).unwrap_or(&1.0);
-    let force = one_term::compiled(oscillator, &oscillator.force, numbers)?;
-    let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
-    let cuts = |from, to| features.cuts(from, to);
-    let force = period::Force::with_cuts(&force, &cuts);
-    let (period, cosine) = period::conservative_motion(&force, equilibrium, equilibrium + amplitude).ok()?;
+) -> Result<(f64, FourierSeries<f64>), NoNumbers> {
+    let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    let (period, cosine) = force.motion(amplitude_of(solution, numbers))?;
     let frequency = std::f64::consts::TAU / period;
-    Some((
+    Ok((
         frequency * frequency,
         FourierSeries::from_parts(cosine, vec![], Integer::one()),
     ))
@@ -444,7 +466,7 @@ fn best_hbar(
 ) -> Option<f64> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
-    let force = one_term::compiled(oscillator, &oscillator.force, numbers)?;
+    let force = force_of(oscillator, solution, numbers)?;
     // What does not depend on hbar is computed once.
     let mut numbers = numbers.clone();
     let fixed = solution
@@ -469,7 +491,8 @@ fn best_hbar(
         };
         let acceleration = motion.derivative().derivative();
         let defect = |(cosine, sine): &(f64, f64)| {
-            squared * acceleration.evaluate_at(*cosine, *sine) + force(motion.evaluate_at(*cosine, *sine))
+            let distance = motion.evaluate_at(*cosine, *sine) - force.equilibrium();
+            squared * acceleration.evaluate_at(*cosine, *sine) + force.at(distance)
         };
         let sum: f64 = circle.iter().map(|point| defect(point).powi(2)).sum();
         if sum.is_finite() { sum } else { f64::INFINITY }

@@ -44,7 +44,7 @@ pub enum QuadratureError {
     },
     /// The tolerance was not reached.
     #[error(
-        "the integral did not settle: {value} with an estimated error of {error_estimate}; the integrand is not smooth \
+        "the integral did not settle: {value:.6e} with an estimated error of {error_estimate:.1e}; the integrand is not smooth \
          near {worst_at}: split the interval there or substitute the singularity away"
     )]
     NotConverged {

@@ -12,82 +12,15 @@
 //! ```
 //!
 //! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots.
-//! Mantissa and binary exponent are kept apart: at order 20 the terms span far more than the range of doubles.
+//! Mantissa and binary exponent are kept apart ([`Scaled`]): at order 20 the terms span far more than the range of doubles.
+
+use crate::exact::scaled::Scaled;
 
 /// A term `coefficient A^amplitude z^frequency`.
 pub(super) struct Term {
     pub(super) coefficient: Scaled,
     pub(super) amplitude: i32,
     pub(super) frequency: i32,
-}
-
-/// `mantissa * 2^exponent`, the mantissa zero or of a size between 1 and 2.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scaled {
-    mantissa: f64,
-    exponent: i64,
-}
-
-impl Scaled {
-    pub(super) fn new(value: f64) -> Self {
-        // Subnormal numbers have no exponent of their own.
-        let (value, shift) = if value.abs() < f64::MIN_POSITIVE {
-            (value * 2.0_f64.powi(100), 100)
-        } else {
-            (value, 0)
-        };
-        if value == 0.0 || !value.is_finite() {
-            return Self {
-                mantissa: value,
-                exponent: 0,
-            };
-        }
-        let exponent = ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
-        Self {
-            mantissa: value / 2.0_f64.powi(exponent as i32),
-            exponent: exponent - shift,
-        }
-    }
-
-    pub(super) fn product(self, other: Self) -> Self {
-        let product = Self::new(self.mantissa * other.mantissa);
-        Self {
-            exponent: product.exponent + self.exponent + other.exponent,
-            ..product
-        }
-    }
-
-    pub(super) fn power(self, exponent: i32) -> Self {
-        let base = if exponent < 0 { self.inverse() } else { self };
-        let (mut result, mut square, mut left) = (Self::new(1.0), base, exponent.unsigned_abs());
-        while left > 0 {
-            if left % 2 == 1 {
-                result = result.product(square);
-            }
-            square = square.product(square);
-            left /= 2;
-        }
-        result
-    }
-
-    fn inverse(self) -> Self {
-        let inverse = Self::new(1.0 / self.mantissa);
-        Self {
-            exponent: inverse.exponent - self.exponent,
-            ..inverse
-        }
-    }
-
-    /// The number in units of `2^unit`.
-    fn in_units(self, unit: i64) -> f64 {
-        let exponent = (self.exponent - unit).clamp(-2200, 2200) as i32;
-        // In two steps: the first power alone may underflow where the product does not.
-        self.mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
-    }
-
-    fn logarithm(self) -> f64 {
-        self.mantissa.abs().ln() + self.exponent as f64 * std::f64::consts::LN_2
-    }
 }
 
 /// The branch at an amplitude.
@@ -373,15 +306,5 @@ mod tests {
         );
         assert!(matches!(follow(&circle, 3.0), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8));
         assert!(matches!(follow(&circle, -3.0), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8));
-    }
-
-    #[test]
-    fn numbers_beyond_the_range_of_doubles_keep_their_digits() {
-        let huge = Scaled::new(1.7e300).power(40).product(Scaled::new(3.1e-310));
-        let expected = 40.0 * 1.7e300_f64.ln() + (3.1_f64.ln() - 310.0 * 10.0_f64.ln());
-        assert!((huge.logarithm() / expected - 1.0).abs() < 1e-14);
-        assert_eq!(Scaled::new(-0.75).power(3).in_units(0), -0.421875);
-        assert_eq!(Scaled::new(0.0).in_units(5), 0.0);
-        assert_eq!(Scaled::new(8.0).power(-2).in_units(0), 1.0 / 64.0);
     }
 }

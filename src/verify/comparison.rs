@@ -27,8 +27,8 @@ pub struct Row {
     pub max_deviation: Option<f64>,
     /// The range in which the frequency is within the tolerance.
     pub reach: Option<Reach>,
-    /// The verdict on the frequency.
-    pub verdict: Verdict,
+    /// The verdict on the frequency; `None` where the true one is not known.
+    pub verdict: Option<Verdict>,
 }
 
 /// A method that does not apply.
@@ -47,8 +47,10 @@ pub struct Comparison {
     pub equation: String,
     /// The values at which the methods were judged.
     pub at: Values,
-    /// omega of the true motion.
-    pub true_frequency: f64,
+    /// omega of the true motion; `None` where it cannot be computed.
+    pub true_frequency: Option<f64>,
+    /// Why it cannot.
+    pub reason: Option<String>,
     /// The tolerance of verdicts and ranges.
     pub tolerance: f64,
     /// The methods that apply, in the order of [`Method::ALL`].
@@ -118,17 +120,31 @@ pub fn compare(
         return Err(ComparisonError::NoMethod(Box::new(reason)));
     };
     let numbers = checked_numbers(first, at)?;
-    let true_motion = TrueMotion::of(oscillator, first, &numbers)?;
+    let (true_motion, reason) = match TrueMotion::of(oscillator, first, &numbers) {
+        Ok(motion) => (Some(motion), None),
+        Err(error) if error.leaves_the_truth_open() => (None, Some(error.to_string())),
+        Err(error) => return Err(error.into()),
+    };
     let at_amplitude = Truth::new(oscillator, first, &numbers);
     let rows = solutions
         .iter()
-        .map(|solution| row(oscillator, solution, &numbers, &true_motion, &at_amplitude, tolerance))
+        .map(|solution| {
+            row(
+                oscillator,
+                solution,
+                &numbers,
+                true_motion.as_ref(),
+                &at_amplitude,
+                tolerance,
+            )
+        })
         .collect();
     let validity = validity::of_equation(oscillator, first, &numbers);
     Ok(Comparison {
         equation: first.equation.clone(),
         at: at.clone(),
-        true_frequency: true_motion.frequency,
+        true_frequency: true_motion.map(|motion| motion.frequency),
+        reason,
         tolerance,
         rows,
         refused,
@@ -140,17 +156,19 @@ fn row(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    true_motion: &TrueMotion,
+    true_motion: Option<&TrueMotion>,
     truth: &Truth,
     tolerance: f64,
 ) -> Row {
-    let true_frequency = true_motion.frequency;
     let (found, reason) = numbers_or_reason(oscillator, solution, numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
-    let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
+    let relative_error = frequency
+        .zip(true_motion)
+        .map(|(frequency, truth)| frequency / truth.frequency - 1.0);
     let max_deviation = frequency
         .zip(found.as_ref().and_then(|found| found.motion.as_ref()))
-        .and_then(|(frequency, motion)| true_motion.largest_deviation(frequency, motion));
+        .zip(true_motion)
+        .and_then(|((frequency, motion), truth)| truth.largest_deviation(frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
     Row {
@@ -164,7 +182,7 @@ fn row(
             true => reach(oscillator, solution, truth, tolerance),
             false => None,
         },
-        verdict: if pass { Verdict::Pass } else { Verdict::Fail },
+        verdict: true_motion.map(|_| if pass { Verdict::Pass } else { Verdict::Fail }),
     }
 }
 

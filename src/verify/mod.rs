@@ -22,13 +22,14 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::conservative::features::Features;
+use crate::conservative::force::Force as RestForce;
 use crate::decimal::decimal;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::numbers::{Numbers, evaluate, frequency_squared_of};
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
-use crate::period::{self, Force, PeriodError, Swing};
+use crate::period::{self, PeriodError, Swing};
 use crate::return_map::{Equation, LimitCycle, NoLimitCycle, nearest_limit_cycle};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -203,6 +204,24 @@ pub enum VerificationError {
     AtRest,
 }
 
+impl VerificationError {
+    /// Whether there may be a true motion all the same: it was not found, or could not be followed.
+    fn leaves_the_truth_open(&self) -> bool {
+        match self {
+            Self::Period(error) => matches!(
+                error,
+                PeriodError::NoReturn(_)
+                    | PeriodError::Pole { .. }
+                    | PeriodError::Quadrature(_)
+                    | PeriodError::Root(_)
+                    | PeriodError::Integration(_)
+            ),
+            Self::LimitCycle(_) => true,
+            _ => false,
+        }
+    }
+}
+
 /// The symbols that need a value before `solution` can be judged.
 pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     let mut needed = solution.parameters.clone();
@@ -236,10 +255,10 @@ pub fn judge(
     let max_deviation = motion
         .as_ref()
         .and_then(|(frequency, motion)| truth.largest_deviation(*frequency, motion));
-    let residual = match &motion {
-        Some((frequency, motion)) => Some(residual(oscillator, &numbers, *frequency, motion)?),
-        None => None,
-    };
+    let physics = Physics::new(oscillator, solution, &numbers)?;
+    let residual = motion
+        .as_ref()
+        .map(|(frequency, motion)| residual(&physics, *frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     Ok(Verification {
         at: at.clone(),
@@ -421,38 +440,35 @@ impl TrueMotion {
         if solution.limit_cycle.is_some() {
             let cycle = physics.limit_cycle(solution, numbers)?;
             let frequency = TAU / cycle.period();
-            return Ok(Self::from_orbit(
-                solution,
-                numbers,
-                Orbit::LimitCycle(cycle),
-                frequency,
-                physics.equilibrium,
-            ));
+            let orbit = Orbit::LimitCycle(cycle);
+            let equilibrium = physics.rest.equilibrium();
+            return Ok(Self::from_orbit(solution, numbers, orbit, frequency, equilibrium));
         }
         let start = physics.start(solution, numbers)?;
-        if physics.by_energy && solution.amplitude == AmplitudeConvention::Initial {
+        if physics.by_energy() && solution.amplitude == AmplitudeConvention::Initial {
             // The energy knows first whether there is an orbit at all, and says why not.
-            let period = physics.period(start)?;
+            let period = physics.rest.period(start)?;
             let path = physics.swing(start, 2.0 * period).ok();
             let path = path.filter(|path| (path.period() / period - 1.0).abs() < AGREEMENT);
             return Ok(Self {
                 frequency: TAU / period,
                 orbit: path.map(Orbit::Swing),
                 shift: 0.0,
-                amplitude: (start - physics.equilibrium).abs(),
+                amplitude: start.abs(),
             });
         }
         let path = physics.swing(start, physics.longest)?;
-        let frequency = match physics.by_energy {
-            true => TAU / physics.period(start)?,
+        let frequency = match physics.by_energy() {
+            true => TAU / physics.rest.period(start)?,
             false => TAU / path.period(),
         };
+        let equilibrium = physics.rest.equilibrium();
         Ok(Self::from_orbit(
             solution,
             numbers,
             Orbit::Swing(path),
             frequency,
-            physics.equilibrium,
+            equilibrium,
         ))
     }
 
@@ -523,13 +539,12 @@ impl TrueMotion {
     }
 }
 
-/// The equation with numbers for its parameters.
+/// The equation with numbers for its parameters, seen from its equilibrium.
 struct Physics {
-    force: CompiledFunction,
-    features: Features,
-    equilibrium: f64,
-    /// Whether the period follows from the energy.
-    by_energy: bool,
+    /// The force at rest.
+    rest: RestForce,
+    /// What velocities add to it, as a function of position and velocity; `None` where the period follows from the energy.
+    moving: Option<CompiledFunction>,
     longest: f64,
 }
 
@@ -540,29 +555,33 @@ impl Physics {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let parts = oscillator.parts()?;
-        let by_energy = [&parts.inertia, &parts.damping, &parts.forcing]
-            .iter()
-            .all(|part| part.is_zero());
-        let force = compiled_force(oscillator, numbers)?;
-        let equilibrium = solution.equilibrium.evaluate(numbers)?;
+        let velocities = [parts.inertia, parts.damping, parts.forcing];
+        let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+        let (x, v) = (oscillator.coordinate, oscillator.velocity());
+        let (at_rest, moving) = match velocities.iter().all(Expr::is_zero) {
+            true => (oscillator.force.clone(), None),
+            false => {
+                let moving = with_numbers(oscillator, &Expr::sum(velocities), numbers)?;
+                (parts.restoring, Some(CompiledFunction::new(&moving, &[x, v])?))
+            }
+        };
+        solution.equilibrium.evaluate(numbers)?;
+        let rest = RestForce::new(&at_rest, x, &solution.equilibrium, numbers, amplitude);
         let mut physics = Self {
-            force,
-            features: Features::new(&oscillator.force, oscillator.coordinate, numbers),
-            equilibrium,
-            by_energy,
+            rest: rest.ok_or_else(|| VerificationError::Missing(needed_values(solution)))?,
+            moving,
             longest: f64::INFINITY,
         };
         // A thousand periods of the formula, or of a linear force as strong at the start: a motion that has not turned by
         // then is not swinging.
-        let by_formula = match by_energy {
+        let by_formula = match physics.by_energy() {
             true => None,
             false => formula_frequency(oscillator, solution, numbers),
         };
         let slowest = match by_formula {
             Some(frequency) => frequency,
             None => {
-                let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
-                let rate = (physics.force_at(equilibrium + amplitude) / amplitude).abs().sqrt();
+                let rate = (physics.force_at(amplitude, 0.0) / amplitude).abs().sqrt();
                 if rate.is_normal() { rate } else { 1.0 }
             }
         };
@@ -570,36 +589,29 @@ impl Physics {
         Ok(physics)
     }
 
-    fn force_at(&self, x: f64) -> f64 {
-        self.force.call(&[x, 0.0])
+    /// Whether the period follows from the energy.
+    fn by_energy(&self) -> bool {
+        self.moving.is_none()
     }
 
-    /// What `run` makes of the force and its cuts.
-    fn with_force<T>(&self, run: impl FnOnce(&Force) -> T) -> T {
-        let (value, cuts) = (|x| self.force_at(x), |from, to| self.features.cuts(from, to));
-        run(&match self.features.is_empty() {
-            true => Force::smooth(&value),
-            false => Force::with_cuts(&value, &cuts),
-        })
+    /// The force at a distance from the equilibrium and a velocity.
+    fn force_at(&self, y: f64, v: f64) -> f64 {
+        let position = self.rest.equilibrium() + y;
+        let moving = self.moving.as_ref().map_or(0.0, |moving| moving.call(&[position, v]));
+        self.rest.at(y) + moving
     }
 
-    /// The period of a conservative motion released from rest.
-    fn period(&self, start: f64) -> Result<f64, PeriodError> {
-        self.with_force(|force| period::conservative_period(force, self.equilibrium, start))
-    }
-
-    /// One swing by Runge-Kutta.
+    /// One swing by Runge-Kutta, in positions.
     fn swing(&self, start: f64, longest: f64) -> Result<Swing, PeriodError> {
-        let end = match self.by_energy {
-            true => self.with_force(|force| period::turning_point(force, self.equilibrium, start))?,
-            false => 2.0 * self.equilibrium - start,
+        let end = match self.by_energy() {
+            true => self.rest.turning_point(start)?,
+            false => -start,
         };
-        let cuts = self.features.cuts(start, end);
-        period::swing_with_cuts(&self.acceleration(), &cuts, self.equilibrium, start, longest)
-    }
-
-    fn acceleration(&self) -> impl Fn(f64, f64, f64) -> f64 + '_ {
-        |_, x, v| -self.force.call(&[x, v])
+        let acceleration = |_: f64, y: f64, v: f64| -self.force_at(y, v);
+        let origin = self.rest.equilibrium();
+        let cuts = self.rest.cuts(start, end);
+        let swing = period::swing_with_cuts(&acceleration, &cuts, 0.0, start, longest)?;
+        Ok(swing.moved(origin))
     }
 
     /// The true limit cycle nearest to the amplitude that the formula has where the small parameter vanishes.
@@ -614,12 +626,12 @@ impl Physics {
             .map(|cycle| solution.leading(&cycle.amplitude));
         let amplitude = at_rest.and_then(|law| solution.evaluate(&law, &|symbol| numbers.get(&symbol).copied()).ok());
         let amplitude = amplitude.map(f64::abs).filter(|size| size.is_normal()).unwrap_or(1.0);
-        let force = |x: f64| self.force.call(&[self.equilibrium + x, 0.0]);
+        let equilibrium = self.rest.equilibrium();
         let step = 1e-3 * amplitude;
-        let slope = (force(step) - force(-step)) / (2.0 * step);
+        let slope = (self.rest.at(step) - self.rest.at(-step)) / (2.0 * step);
         let equation = Equation {
-            acceleration: &|x, v| -self.force.call(&[x, v]),
-            equilibrium: self.equilibrium,
+            acceleration: &|x, v| -self.force_at(x - equilibrium, v),
+            equilibrium,
             amplitude,
             frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
         };
@@ -630,18 +642,18 @@ impl Physics {
         Ok(nearest_limit_cycle(&equation, attracts)?)
     }
 
-    /// The turning point to start from: given, or found so that the first harmonic of the
+    /// The distance from the equilibrium to start from: given, or found so that the first harmonic of the
     /// true motion has the amplitude asked for.
     fn start(&self, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Result<f64, VerificationError> {
         let amplitude = numbers[&solution.amplitude.symbol()];
         if solution.amplitude == AmplitudeConvention::Initial {
-            return Ok(self.equilibrium + amplitude);
+            return Ok(amplitude);
         }
         let excess = |start: f64| {
             let path = self.swing(start, self.longest);
             path.map_or(f64::NAN, |path| first_harmonic(&Orbit::Swing(path)).0 - amplitude)
         };
-        let at = |factor: f64| self.equilibrium + factor * amplitude;
+        let at = |factor: f64| factor * amplitude;
         for spread in [0.05, 0.2, 0.5] {
             if let Ok(start) = find_root(excess, at(1.0 - spread), at(1.0 + spread)) {
                 return Ok(start);
@@ -661,18 +673,15 @@ fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f6
     own.attracts_where.as_ref()?.evaluate(&numbers).ok()
 }
 
-/// The force as a function of position and velocity, with exact numbers in place of the parameters.
-fn compiled_force(
+/// An expression with exact numbers in place of the parameters.
+fn with_numbers(
     oscillator: &Oscillator,
+    expression: &Expr,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<CompiledFunction, VerificationError> {
+) -> Result<Expr, ExprError> {
     let exact = |name: &Symbol| Rational::from_float(numbers[name]).map(|value| (*name, Expr::number(value)));
     let values = oscillator.parameters.iter().filter_map(exact).collect();
-    let force = oscillator.force.substitute_all(&values)?;
-    Ok(CompiledFunction::new(
-        &force,
-        &[oscillator.coordinate, oscillator.velocity()],
-    )?)
+    expression.substitute_all(&values)
 }
 
 /// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to rounding here.
@@ -689,24 +698,19 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
     (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
 }
 
-fn residual(
-    oscillator: &Oscillator,
-    numbers: &BTreeMap<Symbol, f64>,
-    frequency: f64,
-    motion: &FourierSeries<f64>,
-) -> Result<f64, VerificationError> {
-    let force = compiled_force(oscillator, numbers)?;
+fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<f64>) -> f64 {
     let velocity = motion.derivative();
     let acceleration = velocity.derivative();
     let (mut defects, mut forces) = (0.0, 0.0);
     for k in 0..SAMPLES {
         let theta = TAU * k as f64 / SAMPLES as f64;
-        let force = force.call(&[motion.evaluate(theta), frequency * velocity.evaluate(theta)]);
+        let distance = motion.evaluate(theta) - physics.rest.equilibrium();
+        let force = physics.force_at(distance, frequency * velocity.evaluate(theta));
         let defect = frequency * frequency * acceleration.evaluate(theta) + force;
         defects += defect * defect;
         forces += force * force;
     }
-    Ok((defects / forces).sqrt())
+    (defects / forces).sqrt()
 }
 
 /// The exponent with which the error of the frequency vanishes: the small parameter is halved until rounding begins to
@@ -802,8 +806,8 @@ fn true_frequency(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, VerificationError> {
     let physics = Physics::new(oscillator, solution, numbers)?;
-    if physics.by_energy && solution.amplitude == AmplitudeConvention::Initial {
-        return Ok(TAU / physics.period(physics.start(solution, numbers)?)?);
+    if physics.by_energy() && solution.amplitude == AmplitudeConvention::Initial {
+        return Ok(TAU / physics.rest.period(physics.start(solution, numbers)?)?);
     }
     TrueMotion::of(oscillator, solution, numbers).map(|truth| truth.frequency)
 }

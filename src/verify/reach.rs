@@ -78,7 +78,11 @@ impl<'a> Truth<'a> {
         }
         let found = self.physics.as_ref().and_then(|physics| {
             let start = physics.start(self.solution, &self.numbers_at(size)).ok()?;
-            physics.period(start).ok().map(|period| std::f64::consts::TAU / period)
+            physics
+                .rest
+                .period(start)
+                .ok()
+                .map(|period| std::f64::consts::TAU / period)
         });
         self.known.borrow_mut().insert(size.to_bits(), found);
         found
@@ -88,11 +92,9 @@ impl<'a> Truth<'a> {
     fn reached_places(&self) -> Option<Vec<f64>> {
         let physics = self.physics.as_ref()?;
         let (side, farthest) = (self.asked().signum(), self.farthest());
-        let centre = physics.equilibrium;
         let mut sizes: Vec<f64> = Vec::new();
-        let cuts = physics.features.cuts(centre - farthest, centre + farthest);
-        for place in cuts {
-            let distance = side * (place - centre);
+        for place in physics.rest.cuts(-farthest, farthest) {
+            let distance = side * place;
             if distance > 0.0 {
                 sizes.push(distance);
                 continue;
@@ -100,8 +102,7 @@ impl<'a> Truth<'a> {
             // The far turning point: by symmetry, or where the energies are equal.
             sizes.push(-distance);
             let turns = |size: f64| {
-                let start = centre + side * size;
-                let end = physics.with_force(|force| crate::period::turning_point(force, centre, start));
+                let end = physics.rest.turning_point(side * size);
                 end.map_or(f64::NAN, |end| side * (place - end))
             };
             sizes.extend(find_root(turns, 1e-3 * farthest, 0.999 * farthest).ok());

@@ -6,10 +6,9 @@ use std::collections::BTreeMap;
 use super::convergence::convergence;
 use super::reach::{self, Truth};
 use super::well::Well;
-use crate::conservative::features::Features;
 use crate::decimal::significant;
-use crate::method::numbers::frequency_squared_of;
-use crate::method::one_term::{coefficient_by_quadrature, compiled};
+use crate::method::numbers::{force_of, frequency_squared_of};
+use crate::method::one_term::coefficient_by_quadrature;
 use crate::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -86,9 +85,8 @@ fn integral_error(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeM
             Method::Exact | Method::HarmonicBalance | Method::EnergyBalance
         );
     let amplitude = numbers.get(&solution.amplitude.symbol()).filter(|_| one_term)?.abs();
-    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
-    let force = compiled(oscillator, &oscillator.force, numbers)?;
-    let (value, change) = coefficient_by_quadrature(&|y| force(equilibrium + y), amplitude, 1);
+    let force = force_of(oscillator, solution, numbers)?;
+    let (value, change) = coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
     let error = (change / value).abs().max(1e-15);
     Some(Range {
         text: format!("the integral of the law is good to {error:.0e}"),
@@ -108,11 +106,8 @@ pub(super) fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BT
     if !is_conservative(oscillator) || solution.amplitude != AmplitudeConvention::Initial {
         return None;
     }
-    let force = compiled(oscillator, &oscillator.force, numbers)?;
-    let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
-    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-    Well::new(&force, &features, equilibrium, amplitude)
+    Well::new(&force_of(oscillator, solution, numbers)?, amplitude)
 }
 
 /// The first amplitude, on the side asked for, at which the law's omega^2 reaches zero or has a pole.
@@ -147,8 +142,13 @@ fn vanishing(
         .collect();
     places.sort_by(f64::total_cmp);
     let (mut before, mut value_before) = (1e-9 * amplitude.abs(), squared(1e-9 * amplitude.abs()));
+    let reference = squared(1e-3 * amplitude.abs()).abs();
     for place in places {
         let value = squared(place);
+        // A law that has died away to nothing has no zero there.
+        if value == 0.0 && value_before < 1e-100 * reference {
+            return None;
+        }
         if value_before > 0.0 && value <= 0.0 {
             let Ok(zero) = find_root(squared, before, place) else {
                 return None;

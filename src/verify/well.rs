@@ -9,7 +9,7 @@
 //!
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
-use crate::conservative::features::Features;
+use crate::conservative::force::Force;
 use crate::decimal::significant;
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::ode::root::find_root;
@@ -49,22 +49,21 @@ const STEPS: f64 = 64.0;
 const GROWTH: f64 = 1.02;
 
 impl Well {
-    /// The well of `x'' + force(x) = 0` about `equilibrium`, where it has an end; `amplitude` gives the scale of the search.
-    pub fn new(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, amplitude: f64) -> Option<Self> {
-        let unit = amplitude.abs();
-        let rim = |side: f64| rim(force, features, equilibrium, side, unit);
+    /// The well of a force about its equilibrium, where it has an end; `amplitude` gives the scale of the search.
+    pub fn new(force: &Force, amplitude: f64) -> Option<Self> {
+        let (equilibrium, unit) = (force.equilibrium(), amplitude.abs());
+        let rim = |side: f64| rim(force, side, unit);
         let (left, right) = (rim(-1.0), rim(1.0));
-        let rise = |to: f64| rise(force, features, equilibrium, to);
         let end = |side: f64, own: Option<Rim>, other: Option<Rim>| {
             let own_end = own.map(|rim| End {
                 amplitude: rim.place - equilibrium,
                 rim,
             });
             // Released on this side, the motion may also leave over the other rim.
-            let Some(height) = other.and_then(|rim| rise(rim.place)) else {
+            let Some(height) = other.and_then(|rim| rise(force, rim.place - equilibrium)) else {
                 return own_end;
             };
-            let excess = |size: f64| rise(equilibrium + side * size).map_or(f64::NAN, |energy| energy / height - 1.0);
+            let excess = |size: f64| rise(force, side * size).map_or(f64::NAN, |energy| energy / height - 1.0);
             let (mut low, mut high) = (0.0, own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)));
             while own_end.is_none() && excess(high) <= 1e-9 && high < FARTHEST * unit {
                 // An amplitude whose energy is the height to the last digit brackets nothing.
@@ -125,14 +124,14 @@ impl Well {
     }
 }
 
-/// The potential above the bottom of the well; `None` where it is infinite.
-fn rise(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, to: f64) -> Option<f64> {
-    let mut knots = vec![equilibrium.min(to)];
-    knots.extend(features.cuts(equilibrium, to));
-    knots.push(equilibrium.max(to));
+/// The potential above the bottom of the well at a distance; `None` where it is infinite.
+fn rise(force: &Force, to: f64) -> Option<f64> {
+    let mut knots = vec![to.min(0.0)];
+    knots.extend(force.cuts(0.0, to));
+    knots.push(to.max(0.0));
     let mut sum = 0.0;
     for pair in knots.windows(2) {
-        sum += match integrate_smooth(force, pair[0], pair[1], 1e-10) {
+        sum += match integrate_smooth(|y| force.at(y), pair[0], pair[1], 1e-10) {
             Ok((value, _)) => value,
             Err(QuadratureError::NotConverged {
                 value, error_estimate, ..
@@ -140,12 +139,13 @@ fn rise(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, to: f
             Err(_) => return None,
         };
     }
-    Some(if to < equilibrium { -sum } else { sum })
+    Some(if to < 0.0 { -sum } else { sum })
 }
 
 /// The first place on one side where the force turns its sign or ends.
-fn rim(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, side: f64, unit: f64) -> Option<Rim> {
-    let pull = |distance: f64| side * force(equilibrium + side * distance);
+fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
+    let equilibrium = force.equilibrium();
+    let pull = |distance: f64| side * force.at(side * distance);
     let mut strongest = 0.0_f64;
     let (mut distance, mut step) = (unit / STEPS, unit / STEPS);
     let mut window = distance;
@@ -154,11 +154,8 @@ fn rim(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, side: 
         if distance >= window {
             // Corners and narrow places of the next stretch, nearest last.
             let ahead = 4.0 * window.max(unit);
-            places = features
-                .cuts(equilibrium + side * window, equilibrium + side * ahead)
-                .into_iter()
-                .map(|place| side * (place - equilibrium))
-                .collect();
+            let cuts = force.cuts(side * window, side * ahead);
+            places = cuts.into_iter().map(|place| side * place).collect();
             places.sort_by(|one, other| other.total_cmp(one));
             window = ahead;
         }
@@ -171,6 +168,13 @@ fn rim(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, side: 
             (next, at_place) = (place, true);
         }
         let there = pull(next);
+        // Rounding may leave a finite value at the pole itself.
+        if at_place && force.is_pole(equilibrium + side * next, unit) {
+            return Some(Rim {
+                place: equilibrium + side * next,
+                separatrix: false,
+            });
+        }
         if !there.is_finite() && at_place {
             // A corner at which the expression has no value, but the force goes on; a pole goes on as well, but is no corner.
             let [just_before, just_behind] = [next * (1.0 - 1e-12), next * (1.0 + 1e-12)];
@@ -230,14 +234,13 @@ fn rim(force: &dyn Fn(f64) -> f64, features: &Features, equilibrium: f64, side: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expr::{CompiledFunction, parse_expression};
+    use crate::expr::{Expr, parse_expression};
     use std::collections::BTreeMap;
 
     fn ends(text: &str, amplitude: f64) -> (Option<f64>, Option<f64>, String) {
         let expression = parse_expression(text).unwrap();
-        let force = CompiledFunction::new(&expression, &["x".into()]).unwrap();
-        let features = Features::new(&expression, "x".into(), &BTreeMap::new());
-        let well = Well::new(&|x| force.call(&[x]), &features, 0.0, amplitude);
+        let force = Force::new(&expression, "x".into(), &Expr::zero(), &BTreeMap::new(), amplitude).unwrap();
+        let well = Well::new(&force, amplitude);
         let Some(well) = well else {
             return (None, None, String::new());
         };

@@ -32,7 +32,13 @@ pub fn judgement(question: &Question, oscillator: &Oscillator, at: &Values, unit
             return vec![report("judge", Some(format!("compare fails: {text}")))];
         }
     };
-    let found = (table.true_frequency / units.1).powi(2);
+    let Some(true_frequency) = table.true_frequency else {
+        return vec![report(
+            "judge",
+            table.reason.map(|reason| format!("no true motion: {reason}")),
+        )];
+    };
+    let found = (true_frequency / units.1).powi(2);
     let wrong = (found / squared - 1.0).abs() > 1e-8 + noise;
     let complaint = wrong.then(|| format!("true omega^2 = {found}, not {squared} (good to {noise:.0e})"));
     let mut list = vec![report("judge", complaint), report("verdicts", verdicts(&table))];
@@ -52,9 +58,12 @@ pub fn judgement(question: &Question, oscillator: &Oscillator, at: &Values, unit
 /// Errors and verdicts that do not follow from the frequencies beside them.
 fn verdicts(table: &Table) -> Option<String> {
     let wrong = |row: &&Row| {
-        let error = row.frequency.map(|frequency| frequency / table.true_frequency - 1.0);
+        let error = row
+            .frequency
+            .zip(table.true_frequency)
+            .map(|(frequency, truth)| frequency / truth - 1.0);
         let pass = error.is_some_and(|error| error.abs() <= TOLERANCE);
-        row.relative_error != error || (row.verdict == Verdict::Pass) != pass
+        row.relative_error != error || (row.verdict == Some(Verdict::Pass)) != pass
     };
     table
         .rows
@@ -85,7 +94,7 @@ fn motion(question: &Question, frequency: f64) -> Option<Vec<f64>> {
 
 /// The largest deviation of `A cos(omega t)`.
 fn deviations(question: &Question, table: &Table, path: &[f64], units: (f64, f64)) -> Option<String> {
-    let truth = table.true_frequency / units.1;
+    let truth = table.true_frequency? / units.1;
     let one_term = table.rows.iter().filter(|row| {
         matches!(
             row.solution.method,

@@ -23,9 +23,14 @@ impl Question<'_> {
         let (middle, radius) = (0.5 * (left + right), 0.5 * (right - left));
         // y = m + r sin(phi): dt = dphi/sqrt(2 g), U = (right - y)(y - left) g.
         let time = |phi: f64| {
-            let y = middle + radius * phi.sin();
             let near = 2.0 * (0.25 * PI - 0.5 * phi).sin().powi(2);
             let far = 2.0 * (0.25 * PI + 0.5 * phi).sin().powi(2);
+            // From the nearer end: beside a steep wall the distance from it counts.
+            let y = if phi >= 0.0 {
+                right - radius * near
+            } else {
+                left + radius * far
+            };
             let rise = if phi >= 0.0 { work.beyond(y) } else { -work.up_to(y) };
             (near * far * radius * radius / (2.0 * rise)).sqrt()
         };

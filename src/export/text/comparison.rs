@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::{percent, size_in_percent};
 use crate::decimal::{decimal, significant};
+use crate::export::json::verdict;
 use crate::method::homotopy_analysis::HBAR;
 use crate::symbol::Symbol;
-use crate::verify::Verdict;
 use crate::verify::comparison::{Comparison, Row};
 use crate::verify::validity::Reach;
 
@@ -24,7 +24,11 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
     } else {
         format!(" at {}", at.join(", "))
     };
-    let _ = writeln!(text, "True omega{place}: {}\n", decimal(comparison.true_frequency));
+    let reason = comparison.reason.as_deref().unwrap_or_default();
+    let truth = comparison
+        .true_frequency
+        .map_or_else(|| format!("not known: {reason}"), decimal);
+    let _ = writeln!(text, "True omega{place}: {truth}\n");
     text.push_str(&table(comparison, width));
     let titles = comparison.rows.iter().map(|row| row.solution.title());
     let titles = titles.chain(
@@ -80,7 +84,7 @@ fn cells(comparison: &Comparison) -> Vec<[String; 6]> {
             row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
             row.relative_error.map_or("-".to_owned(), percent),
             row.max_deviation.map_or("-".to_owned(), size_in_percent),
-            if row.verdict == Verdict::Pass { "pass" } else { "fail" }.to_owned(),
+            row.verdict.map_or("-", verdict).to_owned(),
             reach(row.reach, row.solution.amplitude.symbol()),
         ]
     };

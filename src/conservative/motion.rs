@@ -1,0 +1,61 @@
+//! The true motion of a force about its equilibrium, released at rest: turning point, period and harmonics by quadrature of
+//! the energy ([`crate::period`]), in distances from the equilibrium, so that nothing is lost near rest.
+
+use super::force::Force;
+use crate::period::{self, PeriodError};
+
+impl Force {
+    /// The distance from the equilibrium of the other turning point of a motion released at the distance `start`.
+    ///
+    /// # Errors
+    /// See [`PeriodError`].
+    pub fn turning_point(&self, start: f64) -> Result<f64, PeriodError> {
+        self.between_turning_points(start, |_, end| Ok(end))
+    }
+
+    /// The period of a motion released at the distance `start`.
+    ///
+    /// # Errors
+    /// See [`PeriodError`].
+    pub fn period(&self, start: f64) -> Result<f64, PeriodError> {
+        self.between_turning_points(start, |force, end| period::period_between(force, start, end))
+    }
+
+    /// The period of that motion, and the coefficients of `cos(k theta)` of its position.
+    ///
+    /// # Errors
+    /// See [`PeriodError`].
+    pub fn motion(&self, start: f64) -> Result<(f64, Vec<f64>), PeriodError> {
+        let (period, mut cosine) =
+            self.between_turning_points(start, |force, end| period::motion_between(force, &|_| 1.0, start, end))?;
+        if let Some(mean) = cosine.first_mut() {
+            *mean += self.equilibrium();
+        }
+        Ok((period, cosine))
+    }
+
+    /// What `run` makes of the force and the other turning point, where no pole stands in the way: one so weak that rounding
+    /// hides its energy would be passed unseen.
+    fn between_turning_points<T>(
+        &self,
+        start: f64,
+        run: impl FnOnce(&period::Force, f64) -> Result<T, PeriodError>,
+    ) -> Result<T, PeriodError> {
+        let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
+        let force = period::Force::with_cuts(&value, &cuts);
+        let pole = |end: f64| {
+            self.gap(start, end).map(|place| PeriodError::Pole {
+                place: place - self.equilibrium(),
+            })
+        };
+        let found = match period::turning_point(&force, 0.0, start) {
+            Ok(end) => match pole(end) {
+                Some(error) => Err(error),
+                None => run(&force, end),
+            },
+            Err(error @ (PeriodError::Quadrature(_) | PeriodError::Root(_))) => Err(pole(-start).unwrap_or(error)),
+            Err(error) => Err(error),
+        };
+        found.map_err(|error| error.moved(self.equilibrium()))
+    }
+}

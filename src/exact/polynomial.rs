@@ -305,13 +305,13 @@ impl Polynomial<Rational> {
         }
         // A factor or a product on the way is beyond the range of doubles, or zero.
         let term = |(monomial, coefficient): (&Monomial, &Rational)| {
-            let factors = monomial.0.iter().map(|&(symbol, exponent)| {
+            let mut factors = monomial.0.iter().map(|&(symbol, exponent)| {
                 let value = value_of(symbol).ok_or(symbol)?;
                 Ok(Scaled::new(value).power(exponent))
             });
             let start = Scaled::of_fraction(coefficient);
-            factors.fold(Ok(start), |product, factor: Result<Scaled, Symbol>| {
-                Ok(product?.product(factor?))
+            factors.try_fold(start, |product, factor: Result<Scaled, Symbol>| {
+                Ok(product.product(factor?))
             })
         };
         let terms: Vec<Scaled> = self.terms.iter().map(term).collect::<Result<_, Symbol>>()?;

@@ -102,6 +102,9 @@ impl Scaled {
 
     /// The number in units of `2^unit`.
     pub fn in_units(self, unit: i64) -> f64 {
+        if self.mantissa == 0.0 {
+            return 0.0;
+        }
         let exponent = (self.exponent - unit).clamp(-2200, 2200) as i32;
         // In two steps: the first power alone may underflow where the product does not.
         self.mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
@@ -116,7 +119,7 @@ impl Scaled {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::rational::ratio;
+    use crate::exact::rational::{ratio, to_f64};
 
     #[test]
     fn numbers_beyond_the_range_of_doubles_keep_their_digits() {
@@ -131,7 +134,7 @@ mod tests {
     #[test]
     fn fractions_of_any_size_are_rounded_once() {
         for (p, q) in [(1, 3), (-22, 7), (1, 1), (i64::MAX, 3), (-1, i64::MAX), (0, 1)] {
-            assert_eq!(Scaled::of_fraction(&ratio(p, q)).in_units(0), p as f64 / q as f64);
+            assert_eq!(Scaled::of_fraction(&ratio(p, q)).in_units(0), to_f64(&ratio(p, q)));
         }
         let huge = Rational::from_integer(Integer::from(10).pow(900)) / ratio(7, 1);
         let expected = 900.0 * 10.0_f64.ln() - 7.0_f64.ln();

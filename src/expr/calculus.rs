@@ -219,7 +219,7 @@ mod tests {
             ("x^(1/3)", "1/(3*x^(2/3))"),
             ("tan(x)", "1 + tan(x)^2"),
             ("sinh(x) + cosh(x)", "sinh(x) + cosh(x)"),
-            ("tanh(x)", "1 - tanh(x)^2"),
+            ("tanh(x)", "1/cosh(x)^2"),
             ("asin(x) + acos(x)", "0"),
             ("atan(x/k)", "1/(k*(1 + x^2/k^2))"),
             ("exp(-k*x)", "-k*exp(-k*x)"),

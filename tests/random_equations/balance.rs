@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::definitions::{Answer, Question};
 use crate::force::{Shape, Term};
-use crate::quadrature::solve;
+use crate::quadrature::{integrate, solve};
 
 impl Question<'_> {
     /// How many waves of sines and exponents of exponentials the motion runs through: beyond a few, sums over points say
@@ -25,11 +25,11 @@ impl Question<'_> {
         if order == 1 && self.is_odd() {
             return self.shared_integral();
         }
-        let harmonics: Vec<usize> = if self.is_odd() {
-            (0..order).map(|k| 2 * k + 1).collect()
-        } else {
-            (0..=order).collect()
-        };
+        // Past another equilibrium the branch from rest may turn back, and what the steps below jump onto is another one.
+        if self.meets_equilibria() {
+            return Answer::Unknown;
+        }
+        let harmonics = self.balanced(order);
         let mut points = 16 * harmonics.last().expect("a harmonic") + 48;
         if let Some(degree) = self.force.degree() {
             points = (degree + 1) * (harmonics.last().expect("a harmonic") + 1) + 4;
@@ -55,6 +55,43 @@ impl Question<'_> {
             current = Some(found);
             points *= 2;
         }
+    }
+
+    /// The harmonics that are balanced.
+    pub fn balanced(&self, order: usize) -> Vec<usize> {
+        if self.is_odd() {
+            (0..order).map(|k| 2 * k + 1).collect()
+        } else {
+            (0..=order).collect()
+        }
+    }
+
+    /// Whether the force vanishes between rest and half as much again as the amplitude, on either side.
+    fn meets_equilibria(&self) -> bool {
+        const SAMPLES: u32 = 2000;
+        let even = (1..=SAMPLES).map(|k| 1.5 * self.size() * f64::from(k) / f64::from(SAMPLES));
+        let places = self.force.places().into_iter().map(|place| (place - self.origin).abs());
+        let mut sizes = even.chain(places.filter(|size| *size > 0.0 && *size < 1.5 * self.size()));
+        sizes.any(|y| self.f(y) <= 0.0 || self.f(-y) >= 0.0)
+    }
+
+    /// How far a motion of these coefficients is from a balance of its harmonics, beside the inertia of a motion of one term;
+    /// `None` where the integrals do not settle.
+    pub fn defect_of_balance(&self, squared: f64, coefficients: &[f64], order: usize) -> Option<f64> {
+        const PANELS: i32 = 64;
+        let panels: Vec<f64> = (0..=PANELS).map(|k| PI * f64::from(k) / f64::from(PANELS)).collect();
+        let distance = |theta: f64| -> f64 {
+            let wave = |(k, a): (usize, &f64)| a * (k as f64 * theta).cos();
+            coefficients.iter().enumerate().map(wave).sum()
+        };
+        let mut largest = (coefficients.iter().sum::<f64>() / self.amplitude - 1.0).abs();
+        for k in self.balanced(order) {
+            let integrand = |theta: f64| self.f(distance(theta)) * (k as f64 * theta).cos();
+            let force = 2.0 / PI * integrate(&integrand, &panels, 1e-10)?;
+            let inertia = (k * k) as f64 * squared * coefficients.get(k).copied().unwrap_or(0.0);
+            largest = largest.max((force - inertia).abs() / (squared * self.size()));
+        }
+        Some(largest)
     }
 
     /// omega^2 and the coefficients in units of the amplitude: from rest, or from a solution with fewer points.

@@ -25,25 +25,9 @@ pub const FAMILIES: [(&str, Family); 15] = [
     ("parameters", parameters),
 ];
 
-/// The families that run unless others are asked for by name, and the methods that are compared on them by hand alone:
-/// there some answers are still wrong.
-const HELD: [(&str, &[&str]); 5] = [
-    ("power alone", &[]),
-    ("parameters", &["exact"]),
-    ("fractional power", &["exact"]),
-    ("exponential", &["exact", "homotopy-analysis"]),
-    ("several wells", &["harmonic-balance", "iteration-perturbation"]),
-];
-
 /// What `LINDSTEDT_RANDOM_FAMILY` asks for.
 pub fn asked_for() -> Option<String> {
     std::env::var("LINDSTEDT_RANDOM_FAMILY").ok()
-}
-
-/// Whether a comparison counts in this run.
-pub fn counts(family: &str, method: &str) -> bool {
-    let by_hand = |held: &(&str, &[&str])| held.0 == family && held.1.contains(&method);
-    asked_for().is_some() || !HELD.iter().any(by_hand)
 }
 
 /// One question: a family, a force and an amplitude, both without dimensions.
@@ -55,10 +39,7 @@ pub struct Case {
 
 pub fn case(random: &mut Random) -> Case {
     let chosen = asked_for();
-    let asked = |name: &str| match &chosen {
-        Some(part) => name.contains(part),
-        None => HELD.iter().any(|held| held.0 == name),
-    };
+    let asked = |name: &str| chosen.as_ref().is_none_or(|part| name.contains(part));
     let asked: Vec<_> = FAMILIES.iter().copied().filter(|(name, _)| asked(name)).collect();
     let (family, terms) = random.choose(&asked);
     let terms = terms(random);

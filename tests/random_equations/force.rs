@@ -473,7 +473,9 @@ impl Shape {
             Self::Barrier(d) | Self::Step(d) => vec![d.value()],
             Self::Walls(d) => vec![-d.value(), d.value()],
             Self::Bump(d, s) => around(d.value(), s.value().sqrt().recip()),
-            Self::Tanh(b) | Self::Arctangent(b) => around(0.0, b.value().recip()),
+            Self::Tanh(b) | Self::Arctangent(b) | Self::Exponential(b) | Self::Sinh(b) => {
+                around(0.0, b.value().recip())
+            }
             Self::Saturating(b) | Self::Stiffening(b) => around(0.0, b.value().sqrt().recip()),
             Self::Gap(d) | Self::Pole(d) => {
                 let side = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5];

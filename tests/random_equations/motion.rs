@@ -46,8 +46,10 @@ impl Question<'_> {
                 let omega = TAU / (2.0 * half);
                 let rounding =
                     self.noise(start).max(self.noise(end)) + start.abs().max(end.abs()) / (start - end).abs();
+                // Pushed away at first, or turned back before the equilibrium: a motion of another well.
+                let elsewhere = start * self.f(start) < 0.0 || start * end > 0.0;
                 match self.given(omega * omega, 1e4 + 10.0 * rounding) {
-                    Answer::Value(squared, noise) if start * self.f(start) < 0.0 => Answer::Elsewhere(squared, noise),
+                    Answer::Value(squared, noise) if elsewhere => Answer::Elsewhere(squared, noise),
                     answer => answer,
                 }
             }

@@ -146,3 +146,32 @@ fn the_edge_of_the_well_does_not_depend_on_the_amplitude_asked_for() {
         );
     }
 }
+
+/// A barrier beyond the part of the motion in which rounding shows is not lost with it: two halves of linear motions, joined
+/// where the barrier begins.
+#[test]
+fn a_barrier_far_from_rest_stays_in_the_force() {
+    for (length, stiffness) in [(378_000.0_f64, 566e18_f64), (0.378, 566e18), (1e-7, 1e9)] {
+        let equation = format!("x'' + 241e13*x + {stiffness}*max(x - {length}, 0) = 0");
+        let oscillator = Oscillator::parse(&equation).unwrap();
+        let options = Options {
+            method: Some(Method::Exact),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).unwrap();
+        let amplitude = -10.0 / 3.0 * length;
+        let given = BTreeMap::from([(Symbol::new("A"), amplitude)]);
+        let found = numbers::evaluate(&oscillator, &solution, &given)
+            .unwrap()
+            .frequency_squared
+            .sqrt();
+        // Behind the barrier: a linear motion about another centre, entered at the speed of the first.
+        let (outer, inner) = (241e13_f64.sqrt(), (241e13 + stiffness).sqrt());
+        let centre = stiffness * length / (241e13 + stiffness);
+        let speed = outer * (amplitude * amplitude - length * length).sqrt();
+        let behind = 2.0 * (speed / inner).atan2(length - centre) / inner;
+        let before = 2.0 * (std::f64::consts::PI - (length / amplitude.abs()).acos()) / outer;
+        let expected = std::f64::consts::TAU / (behind + before);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{equation}: {found} {expected}");
+    }
+}

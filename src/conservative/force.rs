@@ -144,8 +144,8 @@ impl Force {
     fn near_rest(&self, equilibrium: &Expr, amplitude: f64) -> Option<Near> {
         /// Relative errors below this are no loss.
         const HARMLESS: f64 = 2e-14;
-        /// How far the polynomial may reach, in amplitudes and as a length: a search for the edge of the well goes far.
-        const FARTHEST: (f64, f64) = (1e60, 1e300);
+        /// How many amplitudes the polynomial may reach: farther than the search for the edge of a well.
+        const FARTHEST: f64 = 1e12;
         let (coordinate, numbers, place) = (self.coordinate, &self.numbers, self.equilibrium);
         let cancels = [0.31 * amplitude, -0.7 * amplitude].into_iter().any(|y| {
             let there = |symbol: Symbol| match symbol == coordinate {
@@ -179,22 +179,27 @@ impl Force {
             let last = coefficients.len() - 1;
             leading.is_finite() && (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
         };
-        let farthest = f64::min(FARTHEST.0 * amplitude.abs(), FARTHEST.1);
-        let radii = std::iter::successors(Some(farthest), |radius| Some(0.5 * radius));
-        let radius = radii.take(400).find(|&radius| good(radius) && self.is_clear(radius))?;
+        let radii = |from: f64, factor: f64| std::iter::successors(Some(from), move |radius| Some(factor * radius));
+        // A narrow place close to rest is not seen on an interval far wider: every scale is looked at.
+        let clear = |radius: f64| {
+            let mut scales = radii(radius, 1.0 / 64.0).take_while(|&scale| scale >= 1e-2 * amplitude.abs().min(radius));
+            scales.all(|scale| self.is_clear(scale, 1e-12 * amplitude.abs()))
+        };
+        let mut radii = radii(FARTHEST * amplitude.abs(), 0.5).take(240);
+        let radius = radii.find(|&radius| good(radius) && clear(radius))?;
         Some(Near { coefficients, radius })
     }
 
-    /// Whether no corner lies as close to the equilibrium as this, and no narrow place within four times the distance: of what
+    /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and no narrow place within four times the distance: of what
     /// happens there the Taylor coefficients at rest may know nothing.
-    fn is_clear(&self, radius: f64) -> bool {
+    fn is_clear(&self, radius: f64, at_rest: f64) -> bool {
         let narrow = self
             .features()
             .between(self.equilibrium - 4.0 * radius, self.equilibrium + 4.0 * radius);
         narrow.into_iter().all(|feature| {
             let distance = (feature.place - self.equilibrium).abs();
             let reach = if feature.width == 0.0 { radius } else { 4.0 * radius };
-            let rounding = f64::max(1e-9 * radius, 4.0 * f64::EPSILON * self.equilibrium.abs());
+            let rounding = f64::max(at_rest, 4.0 * f64::EPSILON * self.equilibrium.abs());
             distance <= rounding || distance > reach || feature.width > radius / 16.0
         })
     }

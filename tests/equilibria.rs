@@ -273,6 +273,19 @@ fn a_formula_is_judged_by_a_motion_about_its_own_equilibrium() {
 }
 
 #[test]
+fn two_equilibria_close_together_are_seen_on_either_side() {
+    // Between x = 2.999 and 3.001 the force changes its sign and back; not a polynomial, so that nothing but a search sees it.
+    for (equation, places) in [
+        ("x'' + x*((x - 3)^2 - 1/1000000)*exp(x/100) = 0", "x = 0, 3001/1000"),
+        ("x'' + x*((x + 3)^2 - 1/1000000)*exp(x/100) = 0", "x = -3001/1000, 0"),
+    ] {
+        let about = oscillator(equation).about("1".parse().expect("a number"));
+        let refusal = solve(&about, &Options::default()).expect_err("a refusal").to_string();
+        assert!(refusal.ends_with(&format!("stable ones are at {places}")), "{refusal}");
+    }
+}
+
+#[test]
 fn what_is_no_equilibrium_has_no_formula() {
     for method in Method::ALL {
         for equation in [

@@ -3,7 +3,7 @@
 
 use lindstedt::method::{Options, solve};
 use lindstedt::ode::quadrature::integrate_smooth;
-use lindstedt::solution::Method;
+use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::{Values, Verification, judge};
 use lindstedt::{Oscillator, Solution, Symbol};
 
@@ -173,6 +173,38 @@ fn harmonic_balance_converges_and_its_equations_hold() {
             }
         }
         assert!(last < 1e-6, "{equation}: {last:e}");
+    }
+}
+
+/// The derivation of a law leads to it, from the factor that gives the equation an energy.
+#[test]
+fn derivations_lead_from_the_mass_to_the_law() {
+    for (equation, mass) in [
+        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "M = 1 + x^2"),
+        ("(2 + x^2)*x'' + x*x'^2 + x^3 = 0", "M = 2 + x^2"),
+    ] {
+        for method in [Method::EnergyBalance, Method::Hamiltonian] {
+            let (_, solution) = derived(equation, method, None);
+            let law = solution.formula();
+            let lines: Vec<String> = solution.derivation.iter().map(ToString::to_string).collect();
+            assert!(lines[0].ends_with(mass), "{lines:?}");
+            assert_eq!(lines.last(), Some(&law), "{}", method.name());
+        }
+    }
+    for method in [
+        Method::Exact,
+        Method::Hamiltonian,
+        Method::EnergyBalance,
+        Method::HarmonicBalance,
+    ] {
+        let oscillator = Oscillator::parse("(1 + x^2)*x'' + x*x'^2 + x = 0").expect("an equation");
+        let options = Options {
+            method: Some(method),
+            amplitude: Some(AmplitudeConvention::FirstHarmonic),
+            ..Options::default()
+        };
+        let refusal = solve(&oscillator, &options).expect_err("a refusal").to_string();
+        assert!(refusal.contains("measures the amplitude as A = x(0)"), "{refusal}");
     }
 }
 

@@ -49,6 +49,25 @@ fn cycles_are_judged_at_any_strength() {
     }
 }
 
+/// A cycle in microseconds, or in years, is the cycle in seconds.
+#[test]
+fn the_unit_of_time_does_not_matter() {
+    let cycle = |square: &str, rate: &str, at: &[(&str, &str)]| {
+        let equation = format!("x'' + {square}*x - mu*{rate}*(1 - x^2)*x' = 0");
+        judged(&derive(&equation, &Options::default()), at)
+    };
+    for mu in ["1/2", "-3", "8"] {
+        let reference = cycle("1", "1", &[("mu", mu)]);
+        for (square, rate, size) in [("1e18", "1e9", 1e9), ("1e-18", "1e-9", 1e-9), ("1e8", "1e4", 1e4)] {
+            let found = cycle(square, rate, &[("mu", mu)]);
+            let ratio = found.true_frequency / size / reference.true_frequency;
+            assert!((ratio - 1.0).abs() < 1e-8, "mu = {mu}, {rate}: {ratio}");
+            assert_eq!(found.relative_error.is_some(), reference.relative_error.is_some());
+            assert_eq!(found.ranges, reference.ranges);
+        }
+    }
+}
+
 /// `int x' f_d(x, x') dtheta` over a harmonic motion of amplitude `a`: what the damping terms take in one period, by quadrature.
 fn work(damping: &dyn Fn(f64, f64) -> f64, a: f64, omega: f64) -> f64 {
     const POINTS: i32 = 64;

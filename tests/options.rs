@@ -89,6 +89,66 @@ fn a_replaced_file_keeps_its_permissions_and_its_links() {
     std::fs::remove_dir_all(folder).expect("the folder goes");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_written_and_not_replaced() {
+    use std::io::Read as _;
+    use std::os::unix::fs::FileTypeExt as _;
+    let folder = folder("pipe");
+    let path = folder.join("pipe");
+    let made = Command::new("mkfifo").arg(&path).status().expect("mkfifo starts");
+    assert!(made.success());
+    // Open at both ends, so that neither side waits for the other.
+    let open = std::fs::OpenOptions::new().read(true).write(true).open(&path);
+    let mut pipe = open.expect("the pipe opens");
+    let expected = run(&["derive", "duffing"]).stdout;
+    assert!(run(&["derive", "duffing", "--output", text(&path)]).status.success());
+    assert!(path.metadata().expect("the pipe").file_type().is_fifo());
+    let mut found = vec![0; expected.len()];
+    pipe.read_exact(&mut found).expect("what was written");
+    assert_eq!(found, expected);
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn a_hyphen_is_standard_input() {
+    use std::io::Write as _;
+    let from_input = |arguments: &[&str], input: &str| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+            .args(arguments)
+            .stdin(std::process::Stdio::piped())
+            .stdout(std::process::Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let mut pipe = child.stdin.take().expect("a pipe");
+        pipe.write_all(input.as_bytes()).expect("the program reads");
+        drop(pipe);
+        child.wait_with_output().expect("the program ends").stdout
+    };
+    let folder = folder("input");
+    let path = folder.join("problem.toml");
+    let input = "[pendulum]\namplitude = 1.2\nbarrier = 0.1\n[run]\nduration = 8.0\n";
+    std::fs::write(&path, input).expect("a file");
+    for command in ["simulate", "impact"] {
+        let found = from_input(&[command, "-"], input);
+        assert!(
+            !found.is_empty() && found == run(&[command, text(&path)]).stdout,
+            "{command}"
+        );
+    }
+    let input = "equation = \"x'' + 4*sin(x) = 0\"\n";
+    std::fs::write(&path, input).expect("a file");
+    assert_eq!(
+        from_input(&["derive", "-"], input),
+        run(&["derive", text(&path)]).stdout
+    );
+    assert_eq!(
+        from_input(&["derive", "-"], "x'' + 4*sin(x) = 0"),
+        run(&["derive", text(&path)]).stdout
+    );
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
 #[test]
 fn a_time_limit_ends_what_takes_longer() {
     let long = ["derive", "pendulum", "--method", "homotopy-analysis", "--order", "20"];

@@ -238,6 +238,45 @@ fn a_formula_fails_first_where_the_far_turning_point_meets_a_narrow_place() {
 }
 
 #[test]
+fn a_range_that_ends_before_the_first_amplitude_looked_at() {
+    const WORDS: &str = "within 1 % up to A = ";
+    let good = |amplitude| judged("x'' + x + x^3 = 0", Method::LindstedtPoincare, Some(2), amplitude);
+    // omega^2 = 1 + 3 A^2/4 against the exact frequency.
+    let end = number_behind(&good("1/2"), WORDS);
+    for amplitude in ["1000", "-1000", "20"] {
+        let found = good(amplitude);
+        assert!(
+            (number_behind(&found, WORDS).abs() / end - 1.0).abs() < 2e-3,
+            "{amplitude}"
+        );
+        assert!(range(&found, WORDS).unwrap().outside);
+    }
+    // Off by 2.2 % at every amplitude, however small.
+    let nowhere = judged("x'' + x^3 = 0", Method::EnergyBalance, None, "1");
+    assert!(range(&nowhere, "within 1 % at no amplitude").unwrap().outside);
+}
+
+#[test]
+fn a_mirrored_force_has_the_mirrored_ranges() {
+    let words = |equation: &str, amplitude: &str| {
+        let found = judged(equation, Method::LindstedtPoincare, None, amplitude);
+        let place = number_behind(&found, "singularity is at A = ");
+        let ends = ["|A| < about ", "reaches zero at A = ", "within 1 % up to A = "];
+        let [radius, zero, end] = ends.map(|words| number_behind(&found, words));
+        (radius, [place, zero, end])
+    };
+    for quadratic in ["", "3*", "10*"] {
+        let plus = words(&format!("x'' + x + {quadratic}x^2 = 0"), "-1/50");
+        let minus = words(&format!("x'' + x - {quadratic}x^2 = 0"), "1/50");
+        assert_eq!(plus.0, minus.0);
+        assert_eq!(plus.1, minus.1.map(|value| -value));
+        // The well ends at A = 1/2 of the one-unit force, and the series with it.
+        let unit: f64 = quadratic.trim_end_matches('*').parse().unwrap_or(1.0);
+        assert!((plus.0 * unit - 0.5).abs() < 5e-3, "{}", plus.0);
+    }
+}
+
+#[test]
 fn an_integral_by_quadrature_says_how_good_it_is() {
     let found = judged("x'' + x + x^3/(1 + x^4) = 0", Method::Hamiltonian, None, "1");
     let range = range(&found, "the integral of the law is good to").unwrap();

@@ -721,6 +721,23 @@ fn a_sweep_is_the_same_on_any_number_of_threads() {
     assert_eq!(counted.into_inner(), motions.len());
 }
 
+/// Over the top there is no swing: the amplitude is half a turn, or the start where that lies farther out.
+#[test]
+fn the_amplitude_of_a_motion_that_turns_over() {
+    let model = Model {
+        right: None,
+        ..Model::default()
+    };
+    for (x, amplitude) in [(-10.0, 10.0), (10.0, 10.0), (0.5, std::f64::consts::PI)] {
+        let motion = taylor(&model, Start { x, velocity: 3.0 }, 1e-9, 5.0);
+        assert!(
+            (motion.rest().amplitude - amplitude).abs() < 1e-12,
+            "{x}: {}",
+            motion.rest().amplitude
+        );
+    }
+}
+
 #[test]
 fn what_is_no_motion_is_refused() {
     let refuse = |model: Model, start: Start, options: Options| {

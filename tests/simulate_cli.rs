@@ -151,6 +151,10 @@ fn wrong_arguments_get_theirs() {
             vec!["--sweep", "zeta=0:1:2000", "--sweep", "mu=0:1:2000"],
             "more than 1000000 motions",
         ),
+        (
+            vec!["--sweep", "zeta=0:1:3", "--sweep", "mu=0:1:3", "--sweep", "alpha=0:1:3"],
+            "one or two parameters",
+        ),
         (vec!["--sweep", "zeta=0:1:3", "--sample", "1"], "leave out"),
         (vec!["--sample", "1e9"], "lies beyond the duration"),
         (vec!["--sample", "-1"], "sample"),

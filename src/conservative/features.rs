@@ -420,6 +420,33 @@ mod tests {
     }
 
     #[test]
+    fn a_zero_on_the_grid_is_one_zero() {
+        let grid: Vec<f64> = (-4..=4).map(f64::from).collect();
+        for (name, function, expected) in [
+            ("falling", (|x: f64| 1.0 - x) as fn(f64) -> f64, vec![1.0]),
+            ("rising", |x: f64| x + 2.0, vec![-2.0]),
+            ("touching", |x: f64| x * x, vec![0.0]),
+            ("resting", |x: f64| x.abs().max(1.0) - 1.0, vec![-1.0]),
+            ("between", |x: f64| x - 0.5, vec![0.5]),
+            ("broken", |x: f64| 1.0 / x, vec![]),
+        ] {
+            assert_eq!(zeros(&function, &grid), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn of_two_features_in_one_place_the_narrower_counts() {
+        for text in [
+            "abs(x - 1) + exp(-10000*(x - 1)^2)",
+            "exp(-10000*(x - 1)^2) - exp(-1e8*(x - 1)^2)",
+        ] {
+            let found = features(text).between(-2.0, 3.0);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].width < 2e-4, "{text}: {found:?}");
+        }
+    }
+
+    #[test]
     fn numbers_stand_for_parameters() {
         let force = parse_expression("x + k*(x - xc)*H(x - xc) + x'").unwrap();
         let numbers = BTreeMap::from([("k".into(), 2.0), ("xc".into(), 1e-9)]);

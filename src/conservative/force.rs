@@ -352,6 +352,10 @@ mod tests {
         assert!(near(gap("x + log(1 + x)", -1.5, 1.5), -1.0));
         assert!(near(gap("x/sqrt(1 - x^2)", -1.5, 1.5).map(f64::abs), 1.0));
         assert!(near(gap("asin(x)", -1.5, 1.5).map(f64::abs), 1.0));
+        // Seen from another equilibrium the place is still a place, not a distance.
+        assert!(near(force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-4.0, 4.0), 5.0));
+        assert!(near(force("log(x/2)", "2", 1.0).gap(-3.0, 3.0), 0.0));
+        assert_eq!(force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-2.9, 2.9), None);
         for (text, reach) in [
             ("x/(1 - x)^2", 0.999),
             ("tan(x)", 1.57),

@@ -440,6 +440,18 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_in_letters_may_lie_anywhere() {
+        let force: Expr = "(x - c + d)*H(x - c + d)".parse().unwrap();
+        let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();
+        for edge in [-2.5, -0.7, 0.2, 3.0] {
+            let numbers = [("A".into(), 1.3), ("c".into(), edge + 1.0), ("d".into(), 1.0)];
+            let value = first.evaluate(&numbers.into()).unwrap();
+            let expected = by_quadrature(&format!("(x - ({edge}))*H(x - ({edge}))"), 1.3, 1, &[edge]);
+            assert!((value - expected).abs() < 1e-11, "{edge}: {value} {expected}");
+        }
+    }
+
+    #[test]
     fn printed_the_way_people_write_them() {
         let first = |text: &str| {
             let force: Expr = text.parse().unwrap();

@@ -118,32 +118,37 @@ fn a_hyphen_is_standard_input() {
             .args(arguments)
             .stdin(std::process::Stdio::piped())
             .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
             .spawn()
             .expect("the program starts");
         let mut pipe = child.stdin.take().expect("a pipe");
         pipe.write_all(input.as_bytes()).expect("the program reads");
         drop(pipe);
-        child.wait_with_output().expect("the program ends").stdout
+        let output = child.wait_with_output().expect("the program ends");
+        (output.stdout, String::from_utf8_lossy(&output.stderr).into_owned())
     };
     let folder = folder("input");
     let path = folder.join("problem.toml");
-    let input = "[pendulum]\namplitude = 1.2\nbarrier = 0.1\n[run]\nduration = 8.0\n";
+    let input = "[pendulum]\namplitude = 1.2\nbarrier = 0.1\n";
     std::fs::write(&path, input).expect("a file");
     for command in ["simulate", "impact"] {
-        let found = from_input(&[command, "-"], input);
+        let (found, _) = from_input(&[command, "-"], input);
         assert!(
             !found.is_empty() && found == run(&[command, text(&path)]).stdout,
             "{command}"
         );
     }
+    // A mistake in it is one in standard input.
+    let wrong = from_input(&["simulate", "-"], "[pendulum]\namplitud = 1.2\n");
+    assert!(wrong.1.starts_with("error: standard input: "), "{}", wrong.1);
     let input = "equation = \"x'' + 4*sin(x) = 0\"\n";
     std::fs::write(&path, input).expect("a file");
     assert_eq!(
-        from_input(&["derive", "-"], input),
+        from_input(&["derive", "-"], input).0,
         run(&["derive", text(&path)]).stdout
     );
     assert_eq!(
-        from_input(&["derive", "-"], "x'' + 4*sin(x) = 0"),
+        from_input(&["derive", "-"], "x'' + 4*sin(x) = 0").0,
         run(&["derive", text(&path)]).stdout
     );
     std::fs::remove_dir_all(folder).expect("the folder goes");

@@ -117,6 +117,11 @@ fn panel(group: &str) -> Panel {
 
 /// The picture and the document of one command.
 fn drawn(name: &str, arguments: &[&str]) -> (Vec<Panel>, Value) {
+    let (svg, document) = picture(name, arguments);
+    (panels(&svg), document)
+}
+
+fn picture(name: &str, arguments: &[&str]) -> (String, Value) {
     let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}.svg", std::process::id()));
     let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(arguments)
@@ -127,7 +132,7 @@ fn drawn(name: &str, arguments: &[&str]) -> (Vec<Panel>, Value) {
     assert!(output.status.success(), "{arguments:?}: {message}");
     let svg = std::fs::read_to_string(&path).expect("the picture");
     std::fs::remove_file(path).expect("the picture goes");
-    (panels(&svg), serde_json::from_slice(&output.stdout).expect("JSON"))
+    (svg, serde_json::from_slice(&output.stdout).expect("JSON"))
 }
 
 fn float(value: &Value) -> f64 {
@@ -366,4 +371,56 @@ fn the_energy_is_drawn_as_closely_as_the_motion() {
         );
     }
     std::fs::remove_file(path).expect("the file goes");
+}
+
+#[test]
+fn the_cells_of_a_map_stand_at_their_parameters() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate/damper.toml");
+    let axes = ["--sweep", "zeta=0.01:0.03:3", "--sweep", "barrier=0.2:0.5:4"];
+    let (svg, document) = picture("map", &[&["simulate", file], &axes[..]].concat());
+    let inside = svg
+        .split_once("clip-path=")
+        .expect("cells")
+        .1
+        .split_once("</g>")
+        .expect("cells")
+        .0;
+    let cells: Vec<&str> = inside.lines().filter(|line| line.contains("<rect")).collect();
+    let rows = document["rows"].as_array().expect("rows");
+    assert_eq!(cells.len(), rows.len());
+    // Every tick stands at the middle of a cell that has its value, or between two.
+    let ticks = |anchor: &str, place: &str| -> Vec<(f64, f64)> {
+        let texts = svg.lines().map(str::trim).filter(|line| line.starts_with("<text"));
+        let own = texts.filter(|line| {
+            attribute(line, "text-anchor") == Some(anchor) && attribute(line, "font-size") == Some("12")
+        });
+        own.map(|line| {
+            let text = line.split_once('>').expect("a text").1.trim_end_matches("</text>");
+            (number(line, place), text.parse().expect("a number"))
+        })
+        .collect()
+    };
+    let (across, down) = (scale(&ticks("middle", "x")), scale(&ticks("end", "y")));
+    let half = |cell: &str, size: &str| 0.5 * number(cell, size);
+    // The greatest value has the brightest colour, the smallest the darkest, wherever they stand.
+    let place = |cell: &&str| {
+        let zeta = down(number(cell, "y") + half(cell, "height"));
+        (zeta, across(number(cell, "x") + half(cell, "width")))
+    };
+    let values: Vec<f64> = rows.iter().map(|row| float(&row["rest_time"])).collect();
+    for (colour, value) in [
+        ("#fde725", values.iter().copied().fold(f64::MIN, f64::max)),
+        ("#440154", values.iter().copied().fold(f64::MAX, f64::min)),
+    ] {
+        let cell = cells
+            .iter()
+            .find(|cell| attribute(cell, "fill") == Some(colour))
+            .expect("a cell");
+        let row = values.iter().position(|known| *known == value).expect("a row");
+        let expected = &rows[row]["values"];
+        let (zeta, barrier) = place(cell);
+        // The text of a tick stands a little below it.
+        assert!((zeta - float(&expected[0])).abs() < 1e-3, "{zeta} {expected}");
+        assert!((barrier - float(&expected[1])).abs() < 2e-3, "{barrier} {expected}");
+    }
 }

@@ -82,10 +82,14 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
         };
         for k in indices {
             numbers.insert("k".into(), k);
-            let values: Option<Vec<f64>> = line.equal.iter().map(|part| value(part, numbers, context)).collect();
-            let Some(values) = values else {
+            let values: Vec<f64> = line
+                .equal
+                .iter()
+                .filter_map(|part| value(part, numbers, context))
+                .collect();
+            if values.len() < 2 || !line.equal.iter().any(|part| matches!(part, Formula::Integral { .. })) {
                 continue;
-            };
+            }
             for other in &values[1..] {
                 let size = values[0].abs().max(other.abs()).max(0.1);
                 assert!((values[0] - other).abs() < 5e-6 * size, "{name}: {line}: {values:?}");
@@ -175,5 +179,109 @@ fn every_printed_integral_is_the_number_given_with_it() {
             }
         }
         assert_eq!(methods, expected, "{equation}");
+    }
+}
+
+/// Where the integral is known, it stands beside its value in the derivation.
+#[test]
+fn integrals_on_the_way_to_a_closed_law_are_its_terms() {
+    let mut counts = Vec::new();
+    for (equation, small) in [
+        ("x'' + x + x^3 = 0", None),
+        ("x'' + sin(x) = 0", None),
+        ("x'' + x + x*abs(x) = 0", None),
+        ("x'' + x + eps*x*abs(x) = 0", Some("eps")),
+    ] {
+        let mut count = 0;
+        for method in Method::ALL {
+            let oscillator = Oscillator::parse(equation).expect("an equation");
+            let options = Options {
+                method: Some(method),
+                order: small.map(|_| 1),
+                small: small.map(str::to_owned),
+                ..Options::default()
+            };
+            let Ok(solution) = solve(&oscillator, &options) else {
+                continue;
+            };
+            let mut numbers = Numbers::from([("A".into(), 0.9), ("eps".into(), 0.3)]);
+            let Ok(found) = evaluate(&oscillator, &solution, &numbers) else {
+                continue;
+            };
+            numbers.insert("omega".into(), found.frequency_squared.sqrt());
+            let name = format!("{equation} by {}", method.name());
+            count += equations_hold(&solution.derivation, &mut numbers, &|_, _, _| (), &name);
+        }
+        counts.push(count);
+    }
+    assert_eq!(counts, [3, 5, 5, 7]);
+}
+
+/// Between corners, too, a balance leaves nothing of its harmonics in the equation: by the midpoint rule, as fine as it takes.
+#[test]
+fn balances_of_forces_with_corners_hold() {
+    const POINTS: usize = 40_000;
+    type Case = (&'static str, fn(f64) -> f64, &'static [usize]);
+    let cases: [Case; 4] = [
+        ("x'' + x + sgn(x) = 0", |x| x + x.signum(), &[1, 3]),
+        ("x'' + x + x*abs(x) = 0", |x| x + x * x.abs(), &[1, 3]),
+        (
+            "x'' + x + 3*(x - 1/2)*H(x - 1/2) - 3*(-x - 1/2)*H(-x - 1/2) = 0",
+            |x| x + 3.0 * ((x - 0.5).max(0.0) - (-x - 0.5).max(0.0)),
+            &[1, 3],
+        ),
+        (
+            "x'' + 2*x + 5*max(x, 1/3) - 5/3 = 0",
+            |x| 2.0 * x + 5.0 * (x - 1.0 / 3.0).max(0.0),
+            &[0, 1, 2],
+        ),
+    ];
+    for (equation, force, harmonics) in cases {
+        let (oscillator, solution) = derived(equation, Method::HarmonicBalance).expect("an answer");
+        for amplitude in [0.7, 1.3, 4.0] {
+            let numbers = Numbers::from([("A".into(), amplitude)]);
+            let found = evaluate(&oscillator, &solution, &numbers).expect("numbers");
+            let motion = found.motion.expect("a motion");
+            let acceleration = motion.derivative().derivative();
+            assert!((motion.evaluate(0.0) - amplitude).abs() < 1e-12);
+            for &k in harmonics {
+                let left = |i: usize| {
+                    let theta = PI * (i as f64 + 0.5) / POINTS as f64;
+                    let defect = found.frequency_squared * acceleration.evaluate(theta) + force(motion.evaluate(theta));
+                    defect * (k as f64 * theta).cos() / POINTS as f64
+                };
+                let rest: f64 = (0..POINTS).map(left).sum();
+                assert!(
+                    rest.abs() < 1e-7 * amplitude,
+                    "{equation} at {amplitude}, harmonic {k}: {rest}"
+                );
+            }
+        }
+    }
+}
+
+/// A branch that is followed from rest to an amplitude arrives there, wherever its last step would have ended.
+#[test]
+fn a_balance_is_found_at_every_amplitude() {
+    for equation in [
+        "x'' + x + sgn(x) = 0",
+        "x'' + x/10 + x*abs(x) = 0",
+        "x'' + sin(x) + 2*tanh(5*x) = 0",
+    ] {
+        let (oscillator, solution) = derived(equation, Method::HarmonicBalance).expect("an answer");
+        let mut last = f64::NAN;
+        for k in 1..=80 {
+            let numbers = Numbers::from([("A".into(), 0.03 * f64::from(k))]);
+            let found = evaluate(&oscillator, &solution, &numbers);
+            let squared = found
+                .unwrap_or_else(|error| panic!("{equation}, {k}: {error}"))
+                .frequency_squared;
+            // One branch: it moves by less and less.
+            assert!(
+                k == 1 || (squared / last).ln().abs() < 1.5 / f64::from(k),
+                "{equation}, {k}: {last} {squared}"
+            );
+            last = squared;
+        }
     }
 }

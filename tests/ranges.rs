@@ -168,6 +168,11 @@ fn a_force_without_end_has_no_well() {
             "periodic for |A| < 0.523599: the force ends at x = 0.523599",
         ),
         (
+            "x'' + x/((1 + x)*(2 - x)) = 0",
+            "1/2",
+            "periodic for -1 < A < 2: the force ends at x = -1, the force ends at x = 2",
+        ),
+        (
             "x'' + log(1 + x) = 0",
             "-1/2",
             "periodic for -1 < A < 1.71828: the force ends at x = -1",
@@ -273,6 +278,37 @@ fn a_mirrored_force_has_the_mirrored_ranges() {
         // The well ends at A = 1/2 of the one-unit force, and the series with it.
         let unit: f64 = quadratic.trim_end_matches('*').parse().unwrap_or(1.0);
         assert!((plus.0 * unit - 0.5).abs() < 5e-3, "{}", plus.0);
+    }
+}
+
+/// What sees of a force only its derivatives at rest says that corners lie farther out; what sees all of it need not.
+#[test]
+fn an_expansion_ends_at_the_first_corner() {
+    let equation = "x'' + x + x^3 + 3*(x - 1)*H(x - 1) - 3*(-x - 1)*H(-x - 1) = 0";
+    let oscillator = Oscillator::parse(equation).unwrap();
+    let smooth = Oscillator::parse("x'' + x + x^3 = 0").unwrap();
+    for (method, expands) in [
+        (Method::LindstedtPoincare, true),
+        (Method::HomotopyPerturbation, true),
+        (Method::HomotopyAnalysis, true),
+        (Method::Pade, true),
+        (Method::EnergyBalance, false),
+        (Method::HarmonicBalance, false),
+        (Method::MaxMin, false),
+    ] {
+        let options = Options {
+            method: Some(method),
+            ..Options::default()
+        };
+        let said = |oscillator: &Oscillator| {
+            let solution = solve(oscillator, &options).unwrap();
+            solution
+                .validity
+                .iter()
+                .any(|line| line.contains("the force has corners"))
+        };
+        assert_eq!(said(&oscillator), expands, "{}", method.name());
+        assert!(!said(&smooth), "{}", method.name());
     }
 }
 

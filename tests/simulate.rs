@@ -738,6 +738,103 @@ fn the_amplitude_of_a_motion_that_turns_over() {
     }
 }
 
+/// Where a rest energy is given the run ends as it is reached, with what a longer run had until then.
+#[test]
+fn a_run_ends_where_its_energy_has_died_away() {
+    let plain = Model {
+        zeta: 0.05,
+        right: None,
+        ..Model::default()
+    };
+    let bouncing = Model {
+        zeta: 0.02,
+        gamma: 1e5,
+        mu: 1e4,
+        ..Model::default()
+    };
+    for model in [plain, bouncing] {
+        let options = Options {
+            duration: 200.0,
+            ..Options::default()
+        };
+        let full = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
+        let mut last = 0.0;
+        for k in 1..14 {
+            let calm = 0.9 * 0.6_f64.powi(k);
+            let options = Options {
+                rest_energy: Some(calm),
+                ..options
+            };
+            let motion = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
+            assert_eq!(motion.stop, Stop::Calm);
+            let energy = model.energy(motion.end_x, motion.end_velocity);
+            assert!(
+                energy <= calm * (1.0 + 1e-9) && motion.end_time >= last,
+                "{energy} {calm}"
+            );
+            last = motion.end_time;
+            let before = full.turns.iter().filter(|turn| turn.t <= motion.end_time);
+            assert_eq!(motion.turns.iter().collect::<Vec<_>>(), before.collect::<Vec<_>>());
+            if model.right.is_none() {
+                assert!((energy / calm - 1.0).abs() < 1e-9, "{energy} {calm}");
+                let judge = simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
+                assert_eq!(judge.stop, Stop::Calm);
+                assert!((judge.end_time - motion.end_time).abs() < 1e-5);
+            }
+        }
+    }
+}
+
+/// A contact whose damping outweighs its stiffness at the speed of the touch: both integrators follow it alike.
+#[test]
+fn a_touch_faster_than_the_contact_relaxes() {
+    let model = Model {
+        gamma: 1e4,
+        mu: 4e4,
+        ..Model::default()
+    };
+    let [one, other] =
+        [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| run(&model, REST, 1e-11, 12.0, integrator));
+    assert_eq!(one.impacts.len(), other.impacts.len());
+    let first = one.impacts[0];
+    assert!(first.speed_in * model.mu > 4.0 * model.gamma, "{first:?}");
+    for (one, other) in one.impacts.iter().zip(&other.impacts) {
+        assert!(
+            (one.penetration / other.penetration - 1.0).abs() < 1e-6,
+            "{one:?} {other:?}"
+        );
+        let [out, judged] = [one, other].map(|impact| impact.speed_out.expect("an exit"));
+        assert!((out / judged - 1.0).abs() < 1e-5, "{one:?} {other:?}");
+    }
+}
+
+#[test]
+fn no_barrier_is_certain_only_where_the_energy_does_not_reach_it() {
+    let free = |barrier: f64, beta: f64| {
+        let model = Model {
+            right: Some(barrier),
+            beta,
+            frequency_ratio: 0.5,
+            ..Model::default()
+        };
+        let motion = taylor(&model, REST, 1e-9, 1.0);
+        assert!(!motion.touches());
+        motion.never_touches()
+    };
+    for (barrier, never) in [
+        (0.5, false),
+        (1.499, false),
+        (1.501, true),
+        (1.55, true),
+        (3.0, true),
+        (4.0, true),
+    ] {
+        assert_eq!(free(barrier, 0.0), never, "{barrier}");
+        // What is driven may get anywhere.
+        assert!(!free(barrier, 0.01));
+    }
+}
+
 #[test]
 fn what_is_no_motion_is_refused() {
     let refuse = |model: Model, start: Start, options: Options| {

@@ -453,6 +453,63 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
 }
 
 #[test]
+fn long_lists_are_cut_and_a_last_impact_may_be_open() {
+    let path = std::env::temp_dir().join(format!("lindstedt-lists-{}.toml", std::process::id()));
+    let file = path.to_str().expect("a path in text");
+    let lasting = |duration: f64| format!("[contact]\ngamma = 1e5\n[run]\nduration = {duration}\n");
+    std::fs::write(&path, lasting(150.0)).expect("a file");
+    let document = json(&[file]);
+    let impacts = document["impacts"].as_array().expect("a list");
+    let text = output(&[file]);
+    let sides = text.lines().filter(|line| line.contains(" right "));
+    let numbers: Vec<usize> = sides
+        .map(|line| {
+            line.split_whitespace()
+                .next()
+                .and_then(|word| word.parse().ok())
+                .expect("a number")
+        })
+        .collect();
+    // The first of them, and the last.
+    let last = numbers.len() - 1;
+    assert!(impacts.len() > numbers.len() && numbers[..last].iter().copied().eq(1..=last));
+    assert_eq!(numbers[last], impacts.len());
+    assert!(
+        text.contains(&format!("... {} more", impacts.len() - numbers.len())),
+        "{text}"
+    );
+    assert_eq!(document["notes"].as_array().map(Vec::len), Some(0));
+
+    let float = |value: &Value| value.as_f64().expect("a number");
+    let middle = 0.5 * (float(&impacts[2]["entry_time"]) + float(&impacts[2]["exit_time"]));
+    std::fs::write(&path, lasting(middle)).expect("a file");
+    let document = json(&[file]);
+    assert_eq!(document["impacts"].as_array().map(Vec::len), Some(3));
+    assert_eq!(document["impacts"][2]["exit_time"], Value::Null);
+    let note = document["notes"][0].as_str().expect("a note");
+    assert!(
+        note.contains("the run ends in contact") && output(&[file]).contains(note),
+        "{note}"
+    );
+
+    // A state beyond an early end is not known.
+    std::fs::write(&path, "[run]\nduration = 1e4\nstep_limit = 500\n").expect("a file");
+    let output = run(&[file, "--sample", "9000", "--sample", "1", "--format", "json"]);
+    let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(document["samples"][0]["x"], Value::Null);
+    assert!(document["samples"][1]["x"].is_f64());
+    let table = run(&[file, "--sample", "9000", "--sample", "1", "--format", "csv"]);
+    assert_eq!(
+        String::from_utf8_lossy(&table.stdout)
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .count(),
+        2
+    );
+    std::fs::remove_file(path).expect("the file goes");
+}
+
+#[test]
 fn samples_and_final_state_agree_whatever_the_format() {
     let file = example("everything");
     let document = json(&[&file, "--sample", "40", "--sample", "0"]);

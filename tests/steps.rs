@@ -307,6 +307,15 @@ fn homotopy_analysis_shows_its_residuals() {
             w.push(value);
         }
         let u: Vec<Expr> = (0..order).map(|m| value_of(&format!("u{m}"), &lines)).collect();
+        // u0 has the amplitude, so that the others begin at rest at zero, as printed.
+        for (m, u) in u.iter().enumerate().skip(1) {
+            let start = [at(u, &values, 0.0), at(&derivative(u), &values, 0.0)];
+            assert!(
+                start.iter().all(|value| value.abs() < 1e-14),
+                "{equation}, u{m}: {start:?}"
+            );
+            assert!(lines.iter().any(|line| *line == format!("u{m}(0) = u{m}'(0) = 0")));
+        }
         let accelerations: Vec<Expr> = u.iter().map(|u| derivative(&derivative(u))).collect();
         for theta in [0.2, 1.0, 2.5] {
             // N is a polynomial in q of degree 6 at most.
@@ -463,6 +472,45 @@ fn iteration_perturbation_shows_what_it_freezes() {
                     assert!((left - expected).abs() < 1e-12, "{left} {expected}");
                 }
             }
+        }
+    }
+}
+
+/// A derivation by one term leads to its law: the equation stands in it, beside what it follows from.
+#[test]
+fn derivations_by_one_term_end_in_their_law() {
+    for equation in [
+        "x'' + x + eps*x^3 = 0",
+        "x'' + sin(x) = 0",
+        "x'' + x + eps*x*abs(x) = 0",
+    ] {
+        for (method, order) in [
+            (Method::LindstedtPoincare, 1),
+            (Method::IterationPerturbation, 1),
+            (Method::HarmonicBalance, 1),
+            (Method::EnergyBalance, 1),
+            (Method::MaxMin, 1),
+            (Method::AmplitudeFrequency, 1),
+            (Method::Hamiltonian, 1),
+            (Method::VariationalIteration, 1),
+            (Method::FrequencyFormula, 1),
+        ] {
+            let options = Options {
+                small: equation.contains("eps").then(|| "eps".to_owned()),
+                ..by(method, order)
+            };
+            let solution = solution(equation, &options);
+            // The orders of a polynomial force are held one by one elsewhere.
+            if !solution.steps.is_empty() {
+                continue;
+            }
+            let formula = solution.formula();
+            let (name, law) = formula.split_once(" = ").expect("a law");
+            let lines = lines(&solution);
+            let found = lines
+                .iter()
+                .any(|line| line.contains(&format!("{name} = ")) && line.ends_with(&format!("= {law}")));
+            assert!(found, "{equation} by {}: {formula} in {lines:#?}", method.name());
         }
     }
 }

@@ -303,7 +303,7 @@ mod tests {
             "1/x",
             "exp(x)*sin(x)",
             "x*sqrt(1 + x^2 + x^4)",
-            "(x - 1/2)^2*H(x - 1/3)",
+            "(x - 1/2)^(3/2)*H(x - 1/3)",
         ] {
             assert_eq!(potential(&text.parse().unwrap(), "x".into()), None, "{text}");
         }

@@ -432,7 +432,8 @@ impl<'a> Problem<'a> {
                 break;
             };
             let left = (goal - before) / tangent[size - 1];
-            let last = left > 0.0 && left <= length;
+            // The correction of the step before may have carried the branch past the goal, by less than that step.
+            let last = left <= length;
             let step = if last { left } else { length };
             let mut predicted = State(&state.0 + step * &tangent);
             if last {
@@ -443,13 +444,14 @@ impl<'a> Problem<'a> {
             } else {
                 self.corrected(&predicted, &tangent, 1, 12)
             };
-            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * step;
+            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * step.abs();
             match found.filter(near) {
                 Some(found) if last => return Ok(found),
                 Some(found) => {
                     (state, direction) = (found, tangent);
                     length = f64::min(1.7 * length, LONGEST);
                 }
+                None if left < 0.0 => break,
                 None => length = 0.5 * step,
             }
             if length < SHORTEST {

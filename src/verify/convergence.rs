@@ -378,5 +378,21 @@ mod tests {
         assert_eq!(nearest_singularity(&factorials), None);
         let noise: Vec<f64> = (0..=24).map(|k| f64::from((k * k * 7919) % 31) - 15.5).collect();
         assert_eq!(nearest_singularity(&noise), None);
+        assert_eq!(pair(&noise), None);
+        // Three equal waves obey no recurrence of two terms.
+        let waves: Vec<f64> = (0..=24)
+            .map(|k| [0.6, 1.3, 2.2].map(|phi| (f64::from(k) * phi + phi).sin()).iter().sum())
+            .collect();
+        assert_eq!(pair(&waves), None);
+        // Ratios that change near the end leave it open where the singularity is.
+        for (kink, ratio) in [(22, 1.1), (21, 0.9), (20, 1.05)] {
+            let bent: Vec<f64> = (0..=24)
+                .scan(1.0, |c, k| {
+                    *c *= if k < kink { 1.0 } else { ratio };
+                    Some(*c)
+                })
+                .collect();
+            assert_eq!(nearest_singularity(&bent), None, "{kink}");
+        }
     }
 }

@@ -285,6 +285,7 @@ pub(super) fn follow(model: &Model, start: Start, options: &Options) -> Result<S
         absolute_tolerance: options.absolute_tolerance,
         maximum_steps: options.maximum_steps,
         maximum_step,
+        stiff: false,
         interrupt: options.interrupt,
     };
     let begin = ode::State {

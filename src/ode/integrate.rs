@@ -6,15 +6,13 @@
 
 use std::cell::Cell;
 
-use differential_equations::error::Error as StepError;
-use differential_equations::interpolate::Interpolation;
-use differential_equations::methods::{Adaptive, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
 use thiserror::Error;
 
 use super::State;
 use super::event::{Action, Event, Watch};
+use super::scheme::{Scheme, explicit, implicit};
 use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
 use crate::interrupt::Interrupt;
 
@@ -29,6 +27,8 @@ pub struct Options {
     pub maximum_steps: usize,
     /// Longest step: infinity, unless a right side or an event varies faster than the motion.
     pub maximum_step: f64,
+    /// Whether the motion has parts of very different speed: an implicit method of lower order then takes longer steps.
+    pub stiff: bool,
     /// Who may ask the run to stop where it is.
     pub interrupt: Interrupt,
 }
@@ -48,6 +48,7 @@ impl Options {
             absolute_tolerance: tolerance,
             maximum_steps: 200_000,
             maximum_step: f64::INFINITY,
+            stiff: false,
             interrupt: Interrupt::default(),
         }
     }
@@ -203,7 +204,11 @@ fn run(
             end_time,
             options,
         };
-        match leg.run(&mut trajectory, &mut attempts) {
+        let end = match options.stiff {
+            false => leg.run(&explicit(), &mut trajectory, &mut attempts),
+            true => leg.run(&implicit(), &mut trajectory, &mut attempts),
+        };
+        match end {
             LegEnd::Stopped(reason) => {
                 trajectory.stop_reason = reason;
                 break;
@@ -271,8 +276,6 @@ impl ODE<f64, [f64; 2]> for System<'_> {
     }
 }
 
-type Solver = ExplicitRungeKutta<Ordinary, Adaptive, f64, [f64; 2], 9, 16, 21>;
-
 /// The part of a run with one right side.
 struct Leg<'r, 'a> {
     system: System<'r>,
@@ -288,9 +291,14 @@ enum LegEnd {
 }
 
 impl Leg<'_, '_> {
-    fn run(&self, trajectory: &mut Trajectory, attempts: &mut usize) -> LegEnd {
+    fn run<M: OrdinaryNumericalMethod<f64, [f64; 2]>>(
+        &self,
+        scheme: &Scheme<M>,
+        trajectory: &mut Trajectory,
+        attempts: &mut usize,
+    ) -> LegEnd {
         let mut state = trajectory.end;
-        let Some(mut solver) = self.solver(state, 0.0) else {
+        let Some(mut solver) = self.solver(scheme, state, 0.0) else {
             return LegEnd::Stopped(self.failure(state.t));
         };
         let mut watches = vec![Watch::default(); self.events.len()];
@@ -318,7 +326,7 @@ impl Leg<'_, '_> {
                 if state.t + shorter <= state.t {
                     return LegEnd::Stopped(StopReason::NonFinite { time: state.t });
                 }
-                match self.solver(state, shorter) {
+                match self.solver(scheme, state, shorter) {
                     Some(smaller) => solver = smaller,
                     None => return LegEnd::Stopped(self.failure(state.t)),
                 }
@@ -333,7 +341,7 @@ impl Leg<'_, '_> {
                 }
                 continue;
             }
-            let Some((step, next)) = self.accepted(&mut solver, state) else {
+            let Some((step, next)) = self.accepted(scheme, &mut solver, state) else {
                 return LegEnd::Stopped(StopReason::NonFinite { time: state.t });
             };
             let Some(happenings) = self.happenings(&step, &mut watches, first) else {
@@ -369,12 +377,17 @@ impl Leg<'_, '_> {
     }
 
     /// A fresh solver at this state, with this first step (0: of its own choice).
-    fn solver(&self, state: State, first_step: f64) -> Option<Solver> {
+    fn solver<M: OrdinaryNumericalMethod<f64, [f64; 2]>>(
+        &self,
+        scheme: &Scheme<M>,
+        state: State,
+        first_step: f64,
+    ) -> Option<M> {
         let remaining = self.end_time - state.t;
         let longest = self.options.maximum_step.min(remaining);
         if longest <= 0.0 {
             // Nothing left to do: the solver will not be asked for a step.
-            return Some(Solver::default());
+            return Some((scheme.fresh)(self.options, 0.0, f64::INFINITY));
         }
         let mut derivative = [0.0; 2];
         self.system.non_finite.set(false);
@@ -383,12 +396,7 @@ impl Leg<'_, '_> {
             return None;
         }
         for step in [first_step, 1e-6 * longest] {
-            let mut solver = Solver::rkv988e()
-                .rtol(self.options.relative_tolerance)
-                .atol(self.options.absolute_tolerance)
-                .h0(step.min(longest))
-                .h_max(longest)
-                .max_steps(usize::MAX);
+            let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
             // The trial steps by which a first step is chosen may leave the domain: then a short one is prescribed.
             if solver
                 .init(&self.system, state.t, self.end_time, &[state.x, state.v])
@@ -410,14 +418,17 @@ impl Leg<'_, '_> {
     }
 
     /// The step just taken, as polynomials, and the state at its end.
-    fn accepted(&self, solver: &mut Solver, start: State) -> Option<(Step, State)> {
+    fn accepted<M: OrdinaryNumericalMethod<f64, [f64; 2]>>(
+        &self,
+        scheme: &Scheme<M>,
+        solver: &mut M,
+        start: State,
+    ) -> Option<(Step, State)> {
         let (from, to) = (solver.t_prev(), solver.t());
         let length = to - from;
         let mut values = [[0.0; 2]; TERMS];
         for (value, fraction) in values.iter_mut().zip(FRACTIONS.iter()) {
-            let inside: Result<[f64; 2], StepError<f64, [f64; 2]>> =
-                solver.interpolate((from + fraction * length).min(to));
-            *value = inside.ok()?;
+            *value = (scheme.inside)(solver, (from + fraction * length).min(to))?;
         }
         let [x, v] = *solver.y();
         let next = State { t: to, x, v };

@@ -26,13 +26,14 @@
 //! ```
 //!
 //! The method is Verner's most efficient 9(8) pair with its own 8th-order interpolant (J. H. Verner, *Numer.
-//! Algorithms* 53 (2010) 383), as in the crate `differential-equations`. The tolerance bounds the error of one step,
+//! Algorithms* 53 (2010) 383), as in the crate `differential-equations`; for stiff motions its Radau IIA of order 5. The tolerance bounds the error of one step,
 //! not of the run: on the pendulum the error after a hundred time units is some 60 times the tolerance.
 
 mod event;
 mod integrate;
 pub mod quadrature;
 pub mod root;
+mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};

@@ -60,10 +60,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::comparison(&comparison)),
     };
-    let picture = match &arguments.common.plot {
-        Some(path) => Some((path.clone(), picture(&oscillator, &comparison)?)),
-        None => None,
-    };
+    let picture = arguments
+        .common
+        .plot
+        .as_ref()
+        .map(|path| (path.clone(), picture(&oscillator, &comparison)));
     let failed = comparison.rows.iter().any(|row| row.verdict != Some(Verdict::Pass));
     Ok(Outcome {
         result: whole(text),

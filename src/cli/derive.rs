@@ -151,7 +151,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Json => json_text(&json::solution(&solution, verification.as_ref())),
     };
     let picture = match (&arguments.common.plot, &verification) {
-        (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at)?)),
+        (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at))),
         _ => None,
     };
     Ok(Outcome {
@@ -397,7 +397,7 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
     let motions = verify::motions(oscillator, solution, values).map_err(|error| Failure::refused(&error, None))?;
     let Some(motions) = motions else {
         return Err(Failure::Refused(
-            "the formula has no real frequency there: nothing to draw".to_owned(),
+            "the formula has no real frequency there, so it has no motion".to_owned(),
         ));
     };
     let at: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();

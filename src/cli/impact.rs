@@ -45,10 +45,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::impact(&impact, tolerance)),
     };
-    let picture = match &arguments.common.plot {
-        None => None,
-        Some(path) => Some((path.clone(), picture(&impact)?)),
-    };
+    let picture = arguments
+        .common
+        .plot
+        .as_ref()
+        .map(|path| (path.clone(), picture(&impact)));
     Ok(Outcome {
         result: whole(text),
         picture,

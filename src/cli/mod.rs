@@ -124,8 +124,8 @@ fn whole(text: String) -> Writer {
 struct Outcome {
     /// The result.
     result: Writer,
-    /// A picture and where it goes.
-    picture: Option<(PathBuf, String)>,
+    /// Where a picture goes, and the picture or why there is none: the result stands without it.
+    picture: Option<(PathBuf, Result<String, Failure>)>,
     /// Said on standard error.
     note: Option<String>,
     /// The verdict, where there is one.
@@ -255,18 +255,28 @@ fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Opt
 }
 
 fn finish(outcome: Outcome, common: &Common) -> ExitCode {
-    if let Some((path, picture)) = outcome.picture
-        && let Err(error) = files::write(Some(&path), whole(picture))
-    {
-        return fail(1, &error);
+    let mut no_picture = None;
+    match outcome.picture {
+        Some((path, Ok(picture))) => {
+            if let Err(error) = files::write(Some(&path), whole(picture)) {
+                return fail(1, &error);
+            }
+        }
+        Some((_, Err(Failure::Refused(reason) | Failure::Usage(reason)))) => no_picture = Some(reason),
+        None => {}
     }
     if let Some(note) = outcome.note {
         eprintln!("{note}");
     }
-    match files::write(common.output.as_deref(), outcome.result) {
+    let written = files::write(common.output.as_deref(), outcome.result);
+    if let (Ok(()), Some(reason)) = (&written, &no_picture) {
+        let _ = writeln!(std::io::stderr(), "error: no picture: {reason}");
+    }
+    match written {
         Err(error) => fail(1, &error),
         Ok(()) if outcome.partial => ExitCode::from(4),
         Ok(()) if common.tolerance.is_some() && outcome.verdict == Some(Verdict::Fail) => ExitCode::from(3),
+        Ok(()) if no_picture.is_some() => ExitCode::from(1),
         Ok(()) => ExitCode::SUCCESS,
     }
 }

@@ -121,10 +121,11 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Format::Json => json_text(&json(&report)),
         Format::Text | Format::Latex => text(&report),
     };
-    let picture = match &arguments.common.plot {
-        None => None,
-        Some(path) => Some((path.clone(), picture(&report)?)),
-    };
+    let picture = arguments
+        .common
+        .plot
+        .as_ref()
+        .map(|path| (path.clone(), picture(&report)));
     let broken = [Some(&motion), judge.as_ref()]
         .into_iter()
         .flatten()
@@ -237,10 +238,11 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         axes: &arguments.sweep,
         rows: &rows,
     };
-    let picture = match &arguments.common.plot {
-        None => None,
-        Some(path) => Some((path.clone(), sweep_picture(&report)?)),
-    };
+    let picture = arguments
+        .common
+        .plot
+        .as_ref()
+        .map(|path| (path.clone(), sweep_picture(&report)));
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
     let write = match arguments.common.format {

@@ -7,6 +7,8 @@
 //! is isolated by Sturm's chain: `V(a) - V(b)` roots lie in `(a, b]`, `V` the number of sign changes of the chain.
 //! A polynomial is the list of its coefficients, lowest first.
 
+use std::cmp::Ordering;
+
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
@@ -54,11 +56,6 @@ pub fn positive_roots(polynomial: &[Rational]) -> Vec<RealRoot> {
     }
     roots.sort_by(|a, b| a.value.total_cmp(&b.value));
     roots
-}
-
-/// The value of a polynomial.
-pub fn value(polynomial: &[Rational], x: &Rational) -> Rational {
-    polynomial.iter().rev().fold(Rational::zero(), |sum, c| sum * x + c)
 }
 
 /// The derivative of a polynomial.
@@ -147,18 +144,51 @@ fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
     polynomial
 }
 
+/// Whole numbers without common divisor in the ratio of the coefficients, with their signs.
+fn primitive(polynomial: &[Rational]) -> Vec<Integer> {
+    let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
+    without_content(polynomial.iter().map(|c| (c * &common).to_integer()).collect())
+}
+
+fn without_content(mut whole: Vec<Integer>) -> Vec<Integer> {
+    while whole.last().is_some_and(Zero::is_zero) {
+        whole.pop();
+    }
+    let content = whole.iter().fold(Integer::zero(), |gcd, c| gcd.gcd(c));
+    whole.iter().map(|c| c / &content).collect()
+}
+
+/// The sign of a polynomial at a fraction: of its value times a power of the denominator, so that no fraction is reduced.
+fn sign_at(whole: &[Integer], x: &Rational) -> Ordering {
+    let mut power = Integer::one();
+    let mut sum = Integer::zero();
+    for coefficient in whole.iter().rev() {
+        sum = sum * x.numer() + coefficient * &power;
+        power *= x.denom();
+    }
+    sum.cmp(&Integer::zero())
+}
+
 /// The positive fractions among the roots of a polynomial without multiple roots, as far as divisors are found by trial.
 fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
-    let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
-    let whole: Vec<Integer> = polynomial.iter().map(|c| (c * &common).to_integer()).collect();
+    let whole = primitive(polynomial);
     let (Some(lowest), Some(highest)) = (whole.iter().find(|c| !c.is_zero()), whole.last()) else {
         return vec![];
     };
+    let residues: Vec<u64> = whole.iter().map(modulo_prime).collect();
     let mut roots: Vec<Rational> = Vec::new();
-    for p in divisors(lowest) {
-        for q in divisors(highest) {
-            let candidate = Rational::new(p.clone(), q);
-            if !roots.contains(&candidate) && value(polynomial, &candidate).is_zero() {
+    let numerators = divisors(lowest);
+    for q in divisors(highest) {
+        let inverse = power_modulo_prime(q, PRIME - 2);
+        for &p in numerators.iter().filter(|p| p.gcd(&q).is_one()) {
+            // What is zero is zero modulo a prime as well, and that is soon seen.
+            let x = times_modulo_prime(p, inverse);
+            let vanishes = residues
+                .iter()
+                .rev()
+                .fold(0, |sum, &c| (times_modulo_prime(sum, x) + c) % PRIME);
+            let candidate = Rational::new(p.into(), q.into());
+            if vanishes == 0 && sign_at(&whole, &candidate).is_eq() {
                 roots.push(candidate);
             }
         }
@@ -166,13 +196,60 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     roots
 }
 
+/// Above all divisors that are tried, and small enough that two residues add up in 64 bits.
+const PRIME: u64 = (1 << 61) - 1;
+
+fn modulo_prime(number: &Integer) -> u64 {
+    number.mod_floor(&Integer::from(PRIME)).to_u64().unwrap_or(0)
+}
+
+fn times_modulo_prime(a: u64, b: u64) -> u64 {
+    let product = u128::from(a) * u128::from(b) % u128::from(PRIME);
+    u64::try_from(product).unwrap_or(0)
+}
+
+fn power_modulo_prime(base: u64, mut exponent: u64) -> u64 {
+    let (mut power, mut square) = (1, base % PRIME);
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            power = times_modulo_prime(power, square);
+        }
+        square = times_modulo_prime(square, square);
+        exponent /= 2;
+    }
+    power
+}
+
 /// All positive divisors of a number small enough for trial division; of any other, one alone.
-fn divisors(number: &Integer) -> Vec<Integer> {
+fn divisors(number: &Integer) -> Vec<u64> {
     let Some(number) = number.abs().to_u64().filter(|number| *number < 1 << 40) else {
-        return vec![One::one()];
+        return vec![1];
     };
     let small = (1..).take_while(|d| d * d <= number).filter(|d| number % d == 0);
-    small.flat_map(|d| [d, number / d]).map(Integer::from).collect()
+    let mut all: Vec<u64> = small.flat_map(|d| [d, number / d]).collect();
+    all.dedup();
+    all
+}
+
+/// A positive multiple of the remainder of a division, in whole numbers.
+fn pseudo_remainder(dividend: &[Integer], divisor: &[Integer]) -> Vec<Integer> {
+    let mut rest = dividend.to_vec();
+    let Some(leading) = divisor.last() else { return rest };
+    while rest.len() >= divisor.len() {
+        let shift = rest.len() - divisor.len();
+        let Some(first) = rest.pop() else { break };
+        if first.is_zero() {
+            continue;
+        }
+        let factor = if leading.is_negative() { -first } else { first };
+        for (k, value) in rest.iter_mut().enumerate() {
+            *value *= leading.abs();
+            if let Some(coefficient) = k.checked_sub(shift).and_then(|k| divisor.get(k)) {
+                *value -= &factor * coefficient;
+            }
+        }
+    }
+    without_content(rest)
 }
 
 /// The positive roots of a polynomial without multiple roots, rounded.
@@ -180,20 +257,20 @@ fn irrational(polynomial: &[Rational]) -> Vec<f64> {
     let Some((leading, rest)) = polynomial.split_last().filter(|(_, rest)| !rest.is_empty()) else {
         return vec![];
     };
-    let mut chain = vec![polynomial.to_vec(), derivative(polynomial)];
+    let whole = primitive(polynomial);
+    let mut chain = vec![whole.clone(), primitive(&derivative(polynomial))];
     while let [.., before, last] = chain.as_slice() {
-        let next: Vec<Rational> = remainder(before, last).iter().map(|c| -c).collect();
+        let next: Vec<Integer> = pseudo_remainder(before, last).iter().map(|c| -c).collect();
         if next.is_empty() {
             break;
         }
         chain.push(next);
     }
     let changes = |x: &Rational| {
-        let signs: Vec<bool> = chain
+        let signs: Vec<Ordering> = chain
             .iter()
-            .map(|entry| value(entry, x))
-            .filter(|value| !value.is_zero())
-            .map(|value| value.is_positive())
+            .map(|entry| sign_at(entry, x))
+            .filter(|sign| sign.is_ne())
             .collect();
         signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
     };
@@ -204,21 +281,41 @@ fn irrational(polynomial: &[Rational]) -> Vec<f64> {
         .max()
         .unwrap_or_else(Rational::zero)
         + Rational::one();
-    let mut intervals = vec![(Rational::zero(), bound)];
+    let ends = [Rational::zero(), bound].map(|end| (changes(&end), end));
+    let mut intervals = vec![ends];
     let mut roots = Vec::new();
-    while let Some((low, high)) = intervals.pop() {
-        let count = changes(&low).saturating_sub(changes(&high));
-        let middle = (&low + &high) * ratio(1, 2);
-        // A root between neighbouring doubles is known as well as it can be told.
-        let settled =
-            to_f64(&low) == to_f64(&high) || to_f64(&middle) == to_f64(&low) || to_f64(&middle) == to_f64(&high);
-        match count {
+    while let Some([low, high]) = intervals.pop() {
+        match low.0.saturating_sub(high.0) {
             0 => {}
-            1 if settled => roots.push(to_f64(&middle)),
-            _ => intervals.extend([(low, middle.clone()), (middle, high)]),
+            1 => roots.push(only_root(&whole, low.1, high.1)),
+            _ => {
+                let middle = (&low.1 + &high.1) * ratio(1, 2);
+                let middle = (changes(&middle), middle);
+                intervals.extend([[low, middle.clone()], [middle, high]]);
+            }
         }
     }
     roots
+}
+
+/// The only root in `(low, high]`, where the polynomial changes its sign, between neighbouring doubles.
+fn only_root(whole: &[Integer], mut low: Rational, mut high: Rational) -> f64 {
+    let beyond = sign_at(whole, &high);
+    if beyond.is_eq() {
+        return to_f64(&high);
+    }
+    loop {
+        let middle = (&low + &high) * ratio(1, 2);
+        let value = to_f64(&middle);
+        if to_f64(&low) == to_f64(&high) || value == to_f64(&low) || value == to_f64(&high) {
+            return value;
+        }
+        match sign_at(whole, &middle) {
+            Ordering::Equal => return value,
+            sign if sign == beyond => high = middle,
+            _ => low = middle,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -264,6 +361,26 @@ mod tests {
         );
         assert!(positive_roots(&polynomial(&[1, 1, 1])).is_empty());
         assert!(positive_roots(&polynomial(&[7])).is_empty());
+    }
+
+    #[test]
+    fn high_degrees_end_soon() {
+        // 1 - c z^100 with c as van der Pol's first order has it for x^200, and the product of (z - k/7) for k up to 30.
+        let c = (1..=100).fold(ratio(1, 101), |c, k| c * ratio(100 + k, 4 * k));
+        let mut power = vec![Rational::zero(); 101];
+        (power[0], power[100]) = (ratio(1, 1), -c.clone());
+        let [root] = positive_roots(&power).try_into().expect("one root");
+        assert!((root.value.ln() + to_f64(&c).ln() / 100.0).abs() < 1e-15);
+        let factors = (1..=30).map(|k| polynomial(&[-k, 7]));
+        let all = factors.fold(polynomial(&[1]), |all, factor| product(&all, &factor));
+        let roots = positive_roots(&all);
+        assert_eq!(roots.len(), 30);
+        for (k, root) in (1..).zip(&roots) {
+            assert!(
+                (root.value - f64::from(k) / 7.0).abs() < 1e-14 && root.simple,
+                "{root:?}"
+            );
+        }
     }
 
     #[test]

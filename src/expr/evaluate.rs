@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use num_bigint::BigInt;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive};
 
@@ -215,6 +216,9 @@ impl Compiler<'_> {
             }
             (Node::Sum(terms), _) => self.sum(terms, children),
             (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
+            (Node::Power(base, _), _) if has_long_numbers(base) => {
+                self.product(&Rational::one(), std::slice::from_ref(expr), children)
+            }
             (Node::Power(_, exponent), [base, exponent_slot]) => match exponent.as_number() {
                 Some(number) if number.is_negative() => {
                     let positive = self.power(*base, &-number);
@@ -261,17 +265,39 @@ impl Compiler<'_> {
 
     fn product(&mut self, coefficient: &Rational, factors: &[Expr], slots: &[Slot]) -> Slot {
         let (mut above, mut below, mut gate): (Option<Slot>, Option<Slot>, Option<Slot>) = (None, None, None);
-        if !coefficient.is_one() {
-            above = Some(self.constant(to_f64(coefficient)));
-        }
+        // Sums whose numbers are beyond double precision enter divided by a power of two, which is made up for at once.
+        let mut coefficient = coefficient.clone();
+        let mut places: Vec<(Slot, Option<Slot>)> = Vec::with_capacity(slots.len());
         for (factor, slot) in factors.iter().zip(slots) {
+            let (base, exponent) = match factor.node() {
+                Node::Power(base, exponent) => (base, exponent.as_number().cloned()),
+                _ => (factor, Some(Rational::one())),
+            };
+            let whole = exponent.filter(|number| number.is_integer() && has_long_numbers(base));
+            places.push(match whole.and_then(|number| number.to_integer().to_i32()) {
+                None => (*slot, self.known.get(base).copied()),
+                Some(exponent) => {
+                    let (sum, bits) = self.scaled_sum(base);
+                    coefficient *= Rational::from_integer(BigInt::one() << bits).pow(exponent);
+                    let slot = match exponent {
+                        1.. => self.power(sum, &Rational::from_integer(exponent.into())),
+                        _ => *slot,
+                    };
+                    (slot, Some(sum))
+                }
+            });
+        }
+        if !coefficient.is_one() {
+            above = Some(self.constant(to_f64(&coefficient)));
+        }
+        for (factor, (slot, base)) in factors.iter().zip(&places) {
             match factor.node() {
                 _ if is_gate(factor) => gate = Some(self.times(gate, *slot)),
-                Node::Power(base, exponent) => {
+                Node::Power(_, exponent) => {
                     let reciprocal = exponent.as_number().filter(|number| number.is_negative());
-                    match (reciprocal, self.known.get(base).copied()) {
+                    match (reciprocal, base) {
                         (Some(number), Some(base)) => {
-                            let positive = self.power(base, &-number);
+                            let positive = self.power(*base, &-number);
                             below = Some(self.times(below, positive));
                         }
                         _ => above = Some(self.times(above, *slot)),
@@ -289,6 +315,26 @@ impl Compiler<'_> {
             (Some(gate), Some(result)) => self.emit(Operation::Pair(Instruction::Gate, gate, result)),
             (gate, result) => gate.or(result).unwrap_or_else(|| self.constant(1.0)),
         }
+    }
+
+    /// A sum over `2^bits`, the size of its longest number.
+    fn scaled_sum(&mut self, sum: &Expr) -> (Slot, u64) {
+        let bits = longest_number(sum);
+        let unit = Rational::new(BigInt::one(), BigInt::one() << bits);
+        let mut total: Option<Slot> = None;
+        for term in sum.terms() {
+            let (coefficient, factors) = term.factors();
+            let slots: Vec<Slot> = factors
+                .iter()
+                .filter_map(|factor| self.known.get(factor).copied())
+                .collect();
+            let slot = self.product(&(coefficient * &unit), factors, &slots);
+            total = Some(match total {
+                None => slot,
+                Some(total) => self.emit(Operation::Pair(Instruction::Add, total, slot)),
+            });
+        }
+        (total.unwrap_or_else(|| self.constant(0.0)), bits)
     }
 
     fn times(&mut self, product: Option<Slot>, factor: Slot) -> Slot {
@@ -387,6 +433,21 @@ impl Compiler<'_> {
             result: place(result),
         }
     }
+}
+
+/// The bits of the longest number before a term of a sum.
+fn longest_number(sum: &Expr) -> u64 {
+    let bits = sum.terms().iter().map(|term| match term.node() {
+        Node::Number(number) | Node::Product(number, _) => number.numer().bits(),
+        _ => 1,
+    });
+    bits.max().unwrap_or(0)
+}
+
+/// Whether a sum has numbers near the end of double precision or beyond.
+fn has_long_numbers(expr: &Expr) -> bool {
+    const LONG: u64 = 900;
+    matches!(expr.node(), Node::Sum(_)) && longest_number(expr) > LONG
 }
 
 /// A factor whose zero covers a whole interval, on which the other factors need no value.

@@ -22,7 +22,7 @@ use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::solution::Definition;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 use search::{Zero as SignChange, polynomial_zeros, zeros};
 use shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved, value_at};
 
@@ -487,7 +487,7 @@ fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Res
     }
     // What stands for the equilibrium is positive wherever that is known, as edges of barriers are taken to be.
     let negative = number.is_some_and(|number| number < 0.0);
-    let symbol = fresh_name(oscillator);
+    let symbol = fresh(&format!("{coordinate}_e"), &oscillator.names());
     let (written, meaning) = match negative {
         false => (Expr::from(symbol), position),
         true => (-Expr::from(symbol), -position),
@@ -503,15 +503,6 @@ fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Res
     centred.written = written;
     centred.definition = Some(Definition { symbol, meaning });
     Ok(centred)
-}
-
-/// `x_e`, or the same with more underscores where the equation has that.
-fn fresh_name(oscillator: &Oscillator) -> Symbol {
-    let mut name = format!("{}_e", oscillator.coordinate);
-    while oscillator.parameters.contains(&Symbol::new(&name)) {
-        name.push('_');
-    }
-    Symbol::new(&name)
 }
 
 /// The force as a polynomial in coordinate and velocity with rounded coefficients: all of it where it is a polynomial, its

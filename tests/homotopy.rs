@@ -192,3 +192,38 @@ fn forces_without_a_linear_part_start_from_their_lowest_power() {
     let (below, above) = (omega(0.999), omega(1.001));
     assert!(below < above && above < 1.01 * below, "{below} {above}");
 }
+
+/// The hbar in use stands beside its formula in every format, whatever the parameters are called.
+#[test]
+fn a_table_says_which_hbar_was_used() {
+    use lindstedt::export::{json, latex, text};
+    use lindstedt::verify::Values;
+    use lindstedt::verify::comparison::compare;
+    for (parameter, own) in [("eps", "hbar"), ("hbar", "hbar_")] {
+        let oscillator = Oscillator::parse(&format!("x'' + x + {parameter}*x^3 = 0")).expect("an oscillator");
+        let mut at = Values::default();
+        at.insert("A".into(), "2".parse().expect("a number")).expect("a value");
+        at.insert(parameter.into(), "1".parse().expect("a number"))
+            .expect("a value");
+        let comparison = compare(&oscillator, &at, Some("A"), 0.01).expect("a table");
+        let row = comparison
+            .rows
+            .iter()
+            .find(|row| row.solution.method == Method::HomotopyAnalysis);
+        let (name, value) = row.and_then(|row| row.chosen_hbar()).expect("a chosen one");
+        assert_eq!(name.name(), own);
+        // That of homotopy perturbation is -1; the one of least residual is near.
+        assert!((-1.1..-0.5).contains(&value), "{value}");
+        let value = value.to_string();
+        let digits = &value[..6];
+        let table = latex::comparison(&comparison);
+        assert!(
+            table.contains(&format!("{} = {digits}", latex::symbol(name))),
+            "{digits} {table}"
+        );
+        let table = text::comparison(&comparison, usize::MAX);
+        assert!(table.contains(&format!("{own} = {digits}")), "{digits} {table}");
+        let table = json::comparison(&comparison).to_string();
+        assert!(table.contains(&format!("\"{own}\":{digits}")), "{digits} {table}");
+    }
+}

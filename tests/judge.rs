@@ -7,7 +7,7 @@ use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
 use lindstedt::verify::comparison::{Comparison, compare};
 use lindstedt::verify::validity::Reach;
-use lindstedt::verify::{Values, Verification, judge};
+use lindstedt::verify::{Values, Verdict, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn values(at: &[(&str, &str)]) -> Values {
@@ -495,6 +495,125 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
                 (found / expected - 1.0).abs() < 1e-11,
                 "{amplitude}: {found} {expected}"
             );
+        }
+    }
+}
+
+/// A pole of the quotient before the amplitude asked for is the first crossing, however good the quotient is beyond it: for
+/// x + b x^5 + x^7, omega^2 = 1 + 5 b A^4/8 + 35 A^6/64 + ..., and [2/1] has its pole where A^2 = 8 b/7.
+#[test]
+fn a_pole_before_the_amplitude_ends_the_range() {
+    for (b, amplitude) in [("0.0578", "2/5"), ("0.0578", "1/10"), ("0.05", "3/10")] {
+        let pole = (8.0 * b.parse::<f64>().unwrap() / 7.0).sqrt();
+        let table = compared(&format!("x'' + x + {b}*x^5 + x^7 = 0"), &[("A", amplitude)]);
+        let row = table
+            .rows
+            .iter()
+            .find(|row| row.solution.method == Method::Pade)
+            .expect("a quotient");
+        // 35 A^6/64 is a 6500th there: the error is 1 % within a hundredth of the pole.
+        let end = row.reach.and_then(|reach| reach.end()).expect("a crossing");
+        assert!((0.985 * pole..pole).contains(&end), "{end} {pole}");
+        assert_eq!(row.verdict, Some(Verdict::Pass));
+    }
+}
+
+/// x/(1 - x)^2 from -2: the true motion stays left of the pole, A cos(theta) runs through it.
+#[test]
+fn a_motion_of_one_term_through_a_pole_does_not_apply() {
+    let table = compared("x'' + x/(1 - x)^2 = 0", &[("A", "-2")]);
+    let expected = by_small_steps(|x| x / (1.0 - x).powi(2), -2.0, 1e-4);
+    let truth = table.true_frequency.expect("a true motion");
+    assert!((truth / expected - 1.0).abs() < 1e-6, "{truth} {expected}");
+    let mut through = 0;
+    for row in &table.rows {
+        let one_term = row.solution.displacement.harmonics().iter().all(|entry| entry.0 <= 1);
+        if one_term && row.solution.method != Method::Exact {
+            let reason = row.reason.as_deref().unwrap_or_default();
+            assert!(
+                reason.contains("runs through x = 1"),
+                "{}: {reason}",
+                row.solution.title()
+            );
+            assert!(row.frequency.is_none() && row.verdict != Some(Verdict::Pass));
+            through += 1;
+        }
+    }
+    assert!(through >= 3, "{through}");
+}
+
+/// Harmonic balance is on the branch that starts from rest: with more harmonics it comes to the true frequency, its first
+/// harmonic is never nothing, and the frequency has no jumps along the amplitude.
+#[test]
+fn harmonic_balance_follows_the_branch_from_rest() {
+    type Force = fn(f64) -> f64;
+    let quadratic: Force = |x| x + 5.0 * x * x + 10.0 * x.powi(3);
+    let cases: [(&str, Force, &[f64], u32); 4] = [
+        (
+            "x'' + x + 5*x^2 + 10*x^3 = 0",
+            quadratic,
+            &[0.1, 0.7, 0.8, 0.9, 1.0],
+            10,
+        ),
+        ("x'' + x^3 - x^4 = 0", |x| x.powi(3) - x.powi(4), &[0.2], 8),
+        (
+            "x'' + x^3 - x^4 + x^5 = 0",
+            |x| x.powi(3) - x.powi(4) + x.powi(5),
+            &[0.5, 2.0],
+            10,
+        ),
+        (
+            "x'' + x - 3*x^2 + 3*x^3 = 0",
+            |x| x - 3.0 * x * x + 3.0 * x.powi(3),
+            &[0.4, 1.5],
+            10,
+        ),
+    ];
+    for (equation, force, amplitudes, order) in cases {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let solved = |order: u32, amplitude: f64| {
+            let options = Options {
+                method: Some(Method::HarmonicBalance),
+                order: Some(order),
+                ..Options::default()
+            };
+            let solution = solve(&oscillator, &options).unwrap();
+            let at = BTreeMap::from([("A".into(), amplitude)]);
+            lindstedt::method::numbers::evaluate(&oscillator, &solution, &at).unwrap()
+        };
+        for &amplitude in amplitudes {
+            let found = solved(order, amplitude);
+            let expected = by_small_steps(force, amplitude, 1e-4);
+            let frequency = found.frequency_squared.sqrt();
+            assert!(
+                (frequency / expected - 1.0).abs() < 2e-3,
+                "{equation} {amplitude}: {frequency} {expected}"
+            );
+            let motion = found.motion.expect("a motion");
+            // The odd harmonics together.
+            let first = 0.5 * (motion.evaluate(0.0) - motion.evaluate(std::f64::consts::PI));
+            assert!(first.abs() > 0.5 * amplitude, "{equation} {amplitude}: {first}");
+        }
+    }
+    let oscillator = Oscillator::parse("x'' + x + 5*x^2 + 10*x^3 = 0").unwrap();
+    let solution = solve(
+        &oscillator,
+        &Options {
+            method: Some(Method::HarmonicBalance),
+            ..Options::default()
+        },
+    )
+    .unwrap();
+    let mut before = 1.0;
+    for k in 1..=100 {
+        let at = BTreeMap::from([("A".into(), 0.01 * f64::from(k))]);
+        let law = lindstedt::method::numbers::evaluate(&oscillator, &solution, &at)
+            .unwrap()
+            .frequency_squared;
+        assert!((law.sqrt() - before).abs() < 0.06, "{k}: {} {before}", law.sqrt());
+        before = law.sqrt();
+        if k == 80 {
+            assert!((before - 2.6597).abs() < 1e-3, "{before}");
         }
     }
 }

@@ -355,3 +355,68 @@ fn without_a_balance_there_is_no_cycle() {
     let refusal = refused("x'' - mu*(1 - 2*x^2 + x^4/2)*x' + x");
     assert!(refusal.to_string().contains("multiple root"), "{refusal}");
 }
+
+/// A verdict is not lost where there is nothing to draw: the result stands, and what is missing is said.
+#[test]
+fn a_formula_without_a_motion_keeps_its_verdict() {
+    let picture = std::env::temp_dir().join(format!("no-motion-{}.svg", std::process::id()));
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["derive", "x'' - 10*(1 - x^2)*x' + x = 0", "--plot"])
+        .arg(&picture)
+        .output()
+        .expect("the program runs");
+    let [text, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
+    assert!(
+        text.contains("omega               not real") && text.contains("verdict             fail"),
+        "{text}"
+    );
+    assert!(
+        error.starts_with("error: no picture: the formula has no real frequency there"),
+        "{error}"
+    );
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!picture.exists());
+}
+
+/// Relaxation oscillations far beyond the reach of explicit steps, and of other equations with the same jumps, in any units.
+#[test]
+fn relaxation_oscillations_are_judged_however_stiff() {
+    let slow = 3.0 - 2.0 * 2.0_f64.ln();
+    let van_der_pol = derive("x'' - mu*(1 - x^2)*x' + x = 0", &Options::default());
+    for (mu, value) in [("1e3", 1e3), ("1e4", 1e4), ("1e5", 1e5)] {
+        let verification = judged(&van_der_pol, &[("mu", mu)]);
+        // ... + 3 alpha mu^(-1/3), less than its next term away: Dorodnitsyn.
+        let period = slow * value + 3.0 * 2.338_107 / f64::cbrt(value) - 2.0 / 3.0 * f64::ln(value) / value;
+        let found = TAU / verification.true_frequency;
+        assert!((found / period - 1.0).abs() < 2e-6, "{mu}: {found} {period}");
+        assert_eq!(verification.verdict, Verdict::Fail);
+        assert!(
+            verification
+                .ranges
+                .iter()
+                .any(|range| range.text.contains("and attracts"))
+        );
+    }
+    // Lengths of 1e-6 and times of 1e-3: x = 1e-6 X, t = 1e-3 T turns mu into 1e3 mu.
+    let scaled = derive("x'' - mu*(1 - 1e12*x^2)*x' + 1e6*x = 0", &Options::default());
+    let found = TAU / judged(&scaled, &[("mu", "1e6")]).true_frequency;
+    let plain = TAU / judged(&van_der_pol, &[("mu", "1e3")]).true_frequency;
+    assert!((found * 1e3 / plain - 1.0).abs() < 1e-8, "{found} {plain}");
+}
+
+/// Powers of which the algebra would not end are refused at once, those below are expanded.
+#[test]
+fn high_powers_end() {
+    let (_, solution) = derive("x'' - mu*(1 - x^40)*x' + x = 0", &Options::default());
+    // <x'^2 (1 - x^40)> = 0: a^40/4^20 C(40, 20)/21 = 1.
+    let binomial = (1..=20).fold(1.0, |product, k| product * f64::from(20 + k) / f64::from(k));
+    let amplitude = solution.limit_cycle.expect("a cycle").cycles[0]
+        .amplitude
+        .evaluate(&[].into());
+    let expected = 2.0 * (21.0 / binomial).powf(1.0 / 40.0);
+    assert!((amplitude.expect("a number") / expected - 1.0).abs() < 1e-14);
+    for equation in ["x'' - mu*(1 - x^1000)*x' + x = 0", "x'' + x + eps*x^999 = 0"] {
+        let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).expect_err(equation);
+        assert!(refusal.to_string().contains("harmonics at this order"), "{refusal}");
+    }
+}

@@ -537,13 +537,7 @@ fn max_min_has_the_bounds_of_the_motion() {
         let scale = turning.first().copied().unwrap_or(1.0);
         let found: Vec<f64> = lines
             .iter()
-            .filter_map(|line| {
-                line.strip_prefix("x = ")?
-                    .split_once(": f/x turns back")?
-                    .0
-                    .parse()
-                    .ok()
-            })
+            .filter_map(|line| line.strip_prefix("x = ")?.split_once(": q turns back")?.0.parse().ok())
             .collect();
         assert_eq!(found.len(), turning.len(), "{equation}: {lines:#?}");
         for (found, expected) in found.iter().zip(&turning) {
@@ -610,6 +604,48 @@ fn max_min_has_the_bounds_of_the_motion() {
             }
         }
     }
+}
+
+/// A dip of f(x)/x far narrower than any grid is seen from the structure of the force.
+#[test]
+fn max_min_sees_narrow_dips() {
+    for (centre, unit) in [(2.0535_f64, 1.0_f64), (7.3, 1.0), (2.0535, 1e-6)] {
+        let square = centre * unit * unit;
+        let (rise, sharp) = (0.01 / (unit * unit), 3e5 / unit.powi(4));
+        let equation = format!("x'' + x + {rise:e}*x^3 - x*exp(-{sharp:e}*(x^2 - {square:e})^2)/10 = 0");
+        let lines = lines(&solution(&equation, &by(Method::MaxMin, 1)));
+        let places = lines
+            .iter()
+            .filter_map(|line| line.strip_prefix("x = ")?.split_once(": q turns back"));
+        let places: Vec<f64> = places.map(|entry| entry.0.parse().expect("a number")).collect();
+        assert_eq!(places.len(), 2, "{equation}: {lines:#?}");
+        assert!((places[1] / square.sqrt() - 1.0).abs() < 1e-5, "{equation}: {places:?}");
+        assert!(
+            lines.iter().any(|line| line.contains("the least is L2 = 0.92")) || centre > 3.0,
+            "{lines:#?}"
+        );
+    }
+}
+
+/// With letters in several powers the condition is said, and for which signs it holds.
+#[test]
+fn max_min_says_on_what_its_bounds_depend() {
+    let bounds = |equation: &str| solution(equation, &by(Method::MaxMin, 1)).validity[0].clone();
+    assert_eq!(
+        bounds("x'' + x + eps*x^3 + k*x^5 = 0"),
+        "omega^2 lies between 1 and 1 + eps*A^2 + k*A^4 while 2*eps*x + 4*k*x^3 keeps its sign for 0 < x < A, \
+         as it does for positive eps, k"
+    );
+    let mixed = bounds("x'' + x + eps*x^3 - k*x^5 = 0");
+    assert!(
+        mixed.ends_with("while 2*eps*x - 4*k*x^3 keeps its sign for 0 < x < A"),
+        "{mixed}"
+    );
+    // One power changes one way only, whatever its sign.
+    assert_eq!(
+        bounds("x'' + x - eps*x^3 = 0"),
+        "omega^2 lies between 1 and 1 - eps*A^2"
+    );
 }
 
 /// Where the coefficients are letters, the place at which f(x)/x turns back is given by them.

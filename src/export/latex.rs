@@ -22,7 +22,7 @@ use crate::impact::Impact;
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{LimitCycle, Solution};
-use crate::verify::comparison::Comparison;
+use crate::verify::comparison::{Comparison, Row};
 use crate::verify::{Verdict, Verification};
 
 /// A polynomial with the lowest power of the small parameter first.
@@ -311,7 +311,7 @@ pub fn comparison(comparison: &Comparison) -> String {
             row.solution.title(),
             percent(row.relative_error),
             percent(row.max_deviation),
-            formula(&row.solution),
+            with_hbar(row),
         );
     }
     text.push_str("\\hline\n\\end{tabular}\n");
@@ -322,6 +322,19 @@ pub fn comparison(comparison: &Comparison) -> String {
         let _ = writeln!(text, "% {line}");
     }
     text
+}
+
+/// The formula of a row, and the hbar with which it was evaluated.
+fn with_hbar(row: &Row) -> String {
+    let formula = formula(&row.solution);
+    match row.chosen_hbar() {
+        None => formula,
+        Some((name, value)) => {
+            let value = scientific_text(&significant(value, 6));
+            let formula = formula.strip_suffix('$').unwrap_or(&formula);
+            format!("{formula}, \\; {} = {value}$", symbol(name))
+        }
+    }
 }
 
 /// The law in one line, with the definitions it needs.

@@ -12,7 +12,7 @@ use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::series::terms;
 use crate::solution::{Method, Solution};
-use crate::symbol::{Symbol, fresh_stem};
+use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// Whether everything stands in units of omega, and `p` marks the orders.
 fn is_homotopy(solution: &Solution) -> bool {
@@ -46,17 +46,18 @@ pub fn text(solution: &Solution) -> String {
     let mut text = String::from("Derivation\n");
     if !solution.steps.is_empty() {
         let (name, unit, [y, w]) = (solution.coordinate(), unit(solution), letters(solution));
+        let (p, omega0) = (fresh("p", &solution.names()), solution.linear_frequency_name());
         let frame = match is_homotopy(solution) {
             true => [
-                format!("{name} = {unit}*({y}0 + p*{y}1 + p^2*{y}2 + ...), theta = omega*t, derivatives in theta"),
+                format!("{name} = {unit}*({y}0 + {p}*{y}1 + {p}^2*{y}2 + ...), theta = omega*t, derivatives in theta"),
                 format!(
-                    "omega0^2 = omega^2*(1 - p*{w}1 - p^2*{w}2 - ...); the nonlinear terms stand at p, all in units of omega^2"
+                    "{omega0}^2 = omega^2*(1 - {p}*{w}1 - {p}^2*{w}2 - ...); the nonlinear terms stand at {p}, all in units of omega^2"
                 ),
             ],
             false => [
                 format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), theta = omega*t, derivatives in theta"),
                 format!(
-                    "omega^2 = omega0^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
+                    "omega^2 = {omega0}^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
                 ),
             ],
         };
@@ -162,15 +163,16 @@ pub fn latex(solution: &Solution) -> String {
     if !solution.steps.is_empty() {
         let (name, unit) = (symbol(solution.coordinate().into()), symbol(unit(solution)));
         let [y, w] = letters(solution);
+        let [p, omega0] = [fresh("p", &solution.names()), solution.linear_frequency_name()].map(symbol);
         let ([y0, y1, y2], [w1, w2]) = ([0, 1, 2].map(|n| indexed(&y, n)), [1, 2].map(|n| indexed(&w, n)));
         let (motion, squared) = match is_homotopy(solution) {
             true => (
-                format!("{y0} + p {y1} + p^{{2}} {y2} + \\dots"),
-                format!("\\omega_{{0}}^{{2}} &= \\omega^{{2}} \\left(1 - p {w1} - p^{{2}} {w2} - \\dots\\right)"),
+                format!("{y0} + {p} {y1} + {p}^{{2}} {y2} + \\dots"),
+                format!("{omega0}^{{2}} &= \\omega^{{2}} \\left(1 - {p} {w1} - {p}^{{2}} {w2} - \\dots\\right)"),
             ),
             false => (
                 format!("{y0} + {y1} + {y2} + \\dots"),
-                format!("\\omega^{{2}} &= \\omega_{{0}}^{{2}} \\left(1 + {w1} + {w2} + \\dots\\right)"),
+                format!("\\omega^{{2}} &= {omega0}^{{2}} \\left(1 + {w1} + {w2} + \\dots\\right)"),
             ),
         };
         lines.push(format!(

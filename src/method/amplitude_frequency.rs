@@ -24,6 +24,7 @@ use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+use crate::symbol::fresh_stem;
 
 /// The frequency from the residuals of two trial motions.
 ///
@@ -44,15 +45,17 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let law = positive_amplitude(&law).unwrap_or(law);
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
+    let [letter, residual] = ["omega", "R"].map(|letter| fresh_stem(letter, &oscillator.names()));
+    let [first_name, second_name] = [1, 2].map(|number| format!("{letter}{number}"));
     let [omega, first_trial, second_trial] =
-        ["omega", "omega1", "omega2"].map(|name| Expr::symbol(name).integer_power(2));
+        ["omega", &first_name, &second_name].map(|name| Expr::symbol(name).integer_power(2));
     let (first_trial, second_trial) = (first_trial?, second_trial?);
-    let [r1, r2] = ["R1", "R2"].map(Expr::symbol);
+    let [r1, r2] = [1, 2].map(|number| Expr::symbol(&format!("{residual}{number}")));
     let mixed = Expr::divide(&(&first_trial * &r2 - &second_trial * &r1), &(&r2 - &r1))?;
     let [one, two] = &trials;
     solution.derivation = vec![
-        Line::equation(first_trial, one).because("first trial motion A*cos(omega1*t)"),
-        Line::equation(second_trial, two).because("second trial motion A*cos(omega2*t)"),
+        Line::equation(first_trial, one).because(format!("first trial motion A*cos({first_name}*t)")),
+        Line::equation(second_trial, two).because(format!("second trial motion A*cos({second_name}*t)")),
         Line::equation(r1, first).because("residuals where the square of the cosine is 3/4"),
         Line::equation(r2, second),
         Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),

@@ -25,6 +25,7 @@ use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+use crate::symbol::fresh;
 
 const METHOD: Method = Method::EnergyBalance;
 
@@ -91,7 +92,7 @@ fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Re
     };
     let kinetic = Expr::divide(&(&omega * &amplitude).integer_power(2)?, &Expr::from(4))?;
     Ok(vec![
-        Line::equation("V", potential).because("potential energy"),
+        Line::equation(fresh("V", &oscillator.names()), potential).because("potential energy"),
         Line::equation(kinetic + at(&eighth)?, at(&amplitude)?)
             .because("kinetic and potential energy of A*cos(theta) at theta = pi/4, and at theta = 0"),
     ])

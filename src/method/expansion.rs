@@ -17,7 +17,7 @@ use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::expr::Expr;
 use crate::oscillator::Term;
 use crate::series::FourierSeries;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh_stem};
 
 /// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
 pub struct ExactSeries {
@@ -54,7 +54,7 @@ impl ExactSeries {
 }
 
 /// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
-/// term of the result, `inverse_slope` is as for [`expand_from_root`].
+/// term of the result, `inverse_slope` is as for [`expand_from_root`], and no name in `taken` is used for anything new.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -64,6 +64,7 @@ pub fn expand_exactly(
     scheme: &Scheme,
     delta: Option<Symbol>,
     inverse_slope: Option<&Polynomial>,
+    taken: &[Symbol],
 ) -> Result<ExactSeries, SecularError> {
     let scales = scales(terms);
     let reduced: Vec<Term> = terms
@@ -93,7 +94,7 @@ pub fn expand_exactly(
             let polynomial = |numerator: &Integer, denominator: &Integer| {
                 Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
             };
-            Ok(collect(&expansion, scheme, polynomial, restore))
+            Ok(collect(&expansion, scheme, polynomial, restore, taken))
         }
         _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
@@ -102,7 +103,7 @@ pub fn expand_exactly(
             let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
                 numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
             };
-            Ok(collect(&expansion, scheme, polynomial, restore))
+            Ok(collect(&expansion, scheme, polynomial, restore, taken))
         }
     }
 }
@@ -171,7 +172,9 @@ fn collect<C: Ring>(
     scheme: &Scheme,
     polynomial: impl Fn(&C, &Integer) -> Polynomial,
     restore: impl Fn(usize) -> Monomial,
+    taken: &[Symbol],
 ) -> ExactSeries {
+    let letter = fresh_stem("B", taken);
     let exact = |series: &FourierSeries<C>, n: usize| {
         let monomial = restore(n);
         series.map(|numerator, denominator| polynomial(numerator, denominator).times_monomial(&monomial))
@@ -183,7 +186,7 @@ fn collect<C: Ring>(
     let constant = |series: &FourierSeries<C>, n: usize| exact(series, n).mean().0;
     let amplitude = |n: usize| {
         let fixed = expansion.amplitudes.get(n.checked_sub(1)?)?;
-        let unknown = Symbol::new(&format!("B{n}"));
+        let unknown = Symbol::new(&format!("{letter}{n}"));
         let mut sine = constant(&fixed.slope, 1).product(&Polynomial::symbol(unknown));
         sine.accumulate(&constant(&fixed.sine, n + 1));
         Some(AmplitudeCondition {

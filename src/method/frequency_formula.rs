@@ -22,6 +22,7 @@ use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+use crate::symbol::fresh;
 
 /// The frequency from the slope of the force at half the amplitude.
 ///
@@ -46,7 +47,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     set_law(&mut solution, &law)?;
     let derivative = Formula::Slope {
         factor: Expr::one(),
-        of: "f".into(),
+        of: fresh("f", &oscillator.names()),
         by: oscillator.coordinate,
     };
     solution.derivation = vec![

@@ -27,9 +27,7 @@ use crate::derivation::{Formula, Line};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
-
-/// The name of the mean potential in the derivation.
-const MEAN: &str = "V_mean";
+use crate::symbol::fresh;
 
 /// The frequency by the mean Hamiltonian.
 ///
@@ -63,6 +61,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
+    let names = oscillator.names();
+    let mean_name = fresh("V_mean", &names);
     let along = amplitude.clone() * Expr::symbol("theta").cos()?;
     let integral = Formula::Integral {
         factor: Expr::divide(&Expr::one(), &Expr::pi())?,
@@ -73,12 +73,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     let slope = Formula::Slope {
         factor: Expr::divide(&Expr::from(2), &amplitude)?,
-        of: MEAN.into(),
+        of: mean_name,
         by: "A".into(),
     };
     solution.derivation = vec![
-        Line::equation("V", potential).because("potential energy"),
-        Line::equal([MEAN.into(), integral, mean.into()]).because("its mean over A*cos(theta)"),
+        Line::equation(fresh("V", &names), potential).because("potential energy"),
+        Line::equal([mean_name.into(), integral, mean.into()]).because("its mean over A*cos(theta)"),
         Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
             .because("the mean Hamiltonian is stationary"),
     ];

@@ -34,7 +34,7 @@ use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{Method, Solution, System};
-use crate::symbol::{Symbol, fresh_stem};
+use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
 
@@ -83,13 +83,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
         Some(equations) => {
-            let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
             if equations
                 .iter()
                 .any(|equation| equation.contains_function(Function::Acos))
             {
-                solution.validity.push("the arcs are written for a1 > 0".to_owned());
+                let first = harmonics.iter().zip(&names).find(|(k, _)| **k == 1);
+                let first = first.map_or(Symbol::new("A"), |(_, name)| *name);
+                solution.validity.push(format!("the arcs are written for {first} > 0"));
             }
+            let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
             solution.system = Some(System { unknowns, equations });
         }
         None => {
@@ -134,8 +136,9 @@ fn projections(
         let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
         let letter = names.last().map_or("a", |name| name.name());
         let letter = letter.trim_end_matches(|digit: char| digit.is_ascii_digit() || digit == '_');
-        let general = balance(Expr::symbol("k"), Expr::symbol(&format!("{letter}_k")), 2)?;
-        lines.push(general.because(format!("harmonics k = {}", kept.join(", "))));
+        let taken = oscillator.names();
+        let (k, coefficient) = (fresh("k", &taken), fresh(&format!("{letter}_k"), &taken));
+        lines.push(balance(k.into(), coefficient.into(), 2)?.because(format!("harmonics {k} = {}", kept.join(", "))));
     }
     lines.push(Line::equation(
         "A",

@@ -133,7 +133,11 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
     let hbar = constant_series(hbar);
     let mut inverse = FourierSeries::zero();
     let mut linear = force.linear.clone();
-    let mut lines = vec![Line::equation("u0", displacement[0].clone())];
+    let names = solution.names();
+    let [u, w, r] = ["u", "w", "R"].map(|letter| fresh_stem(letter, &names));
+    let numbered = |letter: &str, number: usize| Symbol::new(&format!("{letter}{number}"));
+    let (control, mut start_name) = (convergence_control(solution), numbered(&w, 0));
+    let mut lines = vec![Line::equation(numbered(&u, 0), displacement[0].clone())];
     for m in 1..=order {
         extend_powers(&mut powers, &displacement, m - 1);
         let mut right_side = powers[0][m - 1].product(&constant_series(linear.clone()));
@@ -156,11 +160,12 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
             let name = first.single_term().filter(|(_, number)| number.is_one());
             let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
             let name = name.filter(|name| solution.definitions.iter().any(|entry| entry.symbol == *name));
-            let name = name.unwrap_or_else(|| Symbol::new("w0"));
+            let name = name.unwrap_or(start_name);
+            start_name = name;
             let inertia = |square: Polynomial| displacement[0].times(-1).product(&constant_series(square));
             let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
             lines.extend(secular_lines(
-                m,
+                numbered(&r, m),
                 &right_side.sum(&unknown),
                 Expr::from(name).integer_power(2)?,
                 &squared,
@@ -176,13 +181,13 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
                 .product(&inverse)
                 .product(&by_amplitude)
                 .divided_by(2);
-            let name = Symbol::new(&format!("w{}", m - 1));
+            let name = numbered(&w, m - 1);
             let unknown = frequency[0]
                 .product(&displacement[0])
                 .product(&constant_series(Polynomial::symbol(name)))
                 .times(-2);
             lines.extend(secular_lines(
-                m,
+                numbered(&r, m),
                 &right_side.sum(&unknown),
                 name.into(),
                 &constant(&next),
@@ -203,15 +208,15 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }
-        let name = Symbol::new(&format!("u{m}"));
+        let (name, before, residual) = (numbered(&u, m), numbered(&u, m - 1), numbered(&r, m));
         let driven = next.sum(&next.derivative().derivative());
         let left = Formula::Oscillator {
             of: name,
             square: Expr::one(),
         };
         lines.push(Line::equal([left, driven.into()]).because(match m {
-            1 => "u1'' + u1 = hbar*R1/w0^2".to_owned(),
-            _ => format!("u{m}'' + u{m} = u{k}'' + u{k} + hbar*R{m}/w0^2", k = m - 1),
+            1 => format!("{name}'' + {name} = {control}*{residual}/{start_name}^2"),
+            _ => format!("{name}'' + {name} = {before}'' + {before} + {control}*{residual}/{start_name}^2"),
         }));
         let start = |derivatives| Formula::AtZero { of: name, derivatives };
         lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
@@ -226,11 +231,10 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
 }
 
 /// `R_m` with the unknown frequency in it, and the condition that fixes that.
-fn secular_lines(m: usize, residual: &FourierSeries<Polynomial>, unknown: Expr, value: &Polynomial) -> Vec<Line> {
-    let name = format!("R{m}");
+fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomial>, unknown: Expr, value: &Polynomial) -> Vec<Line> {
     let secular = constant(&residual.cosine(1));
     vec![
-        Line::equation(name.as_str(), residual.clone()),
+        Line::equation(name, residual.clone()),
         Line::equation(&secular, Expr::zero()).because(format!("no cos(theta) in {name}")),
         Line::equation(unknown, value),
     ]

@@ -76,7 +76,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         amplitude: Amplitude::Free,
         detuning: Detuning::Displacement,
     };
-    let series = expand_exactly(&terms, order, &scheme, None, None)?;
+    let series = expand_exactly(&terms, order, &scheme, None, None, &oscillator.names())?;
 
     // 1 + W_1 + W_2 + ... in units of omega^2 holds the corrections: omega0^2 = omega^2 (1 - W_1 - ...).
     let squared = Polynomial::term(Monomial::power_of(omega, 2), Rational::one());

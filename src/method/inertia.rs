@@ -41,7 +41,7 @@ use crate::oscillator::Oscillator;
 use crate::period;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Method, Solution, System};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// The two functions of `x'' + g x'^2 + h = 0`, and what the energy is made of.
 pub(super) struct VariableMass {
@@ -140,15 +140,23 @@ pub(super) fn solve(method: Method, oscillator: &Oscillator, options: &Options) 
     by(&moving, oscillator, options).map(Some)
 }
 
-/// The name of `M` in a derivation.
-const MASS: &str = "M";
+/// The name of something in a derivation: `M`, `U`, ..., or what is free of the equation's names.
+fn named(wanted: &str, oscillator: &Oscillator) -> Symbol {
+    fresh(wanted, &oscillator.names())
+}
+
+/// `M`, by name.
+fn mass_name(oscillator: &Oscillator) -> Symbol {
+    named("M", oscillator)
+}
 
 fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line>, Refusal> {
     let (x, velocity) = (oscillator.coordinate, Expr::from(oscillator.velocity()));
+    let (name, potential) = (mass_name(oscillator), named("U", oscillator));
     let mass = match &moving.mass {
-        Some(mass) => Line::equation(MASS, mass),
+        Some(mass) => Line::equation(name, mass),
         None => {
-            let variable = Symbol::new("u");
+            let variable = named("u", oscillator);
             let exponent = Formula::Integral {
                 factor: Expr::from(2),
                 from: Expr::zero(),
@@ -156,23 +164,22 @@ fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line
                 integrand: Box::new(moving.growth.substitute(x, &variable.into())?.into()),
                 variable,
             };
-            let logarithm = Expr::function(Function::Log, vec![Expr::symbol(MASS)])?;
+            let logarithm = Expr::function(Function::Log, vec![name.into()])?;
             Line::equation(logarithm, exponent)
         }
     };
-    let kinetic = Expr::symbol(MASS) * velocity.integer_power(2)?;
-    let energy = Expr::divide(&kinetic, &Expr::from(2))? + Expr::symbol("U");
+    let kinetic = Expr::from(name) * velocity.integer_power(2)?;
+    let energy = Expr::divide(&kinetic, &Expr::from(2))? + Expr::from(potential);
     let slope = Formula::Slope {
         factor: Expr::one(),
-        of: "U".into(),
+        of: potential,
         by: x,
     };
-    let weighted = moving
-        .weighted_force()
-        .unwrap_or_else(|| Expr::symbol(MASS) * &moving.force);
+    let weighted = moving.weighted_force();
+    let weighted = weighted.unwrap_or_else(|| Expr::from(name) * &moving.force);
     Ok(vec![
-        mass.because("times M the equation has an energy"),
-        Line::equation("E", energy),
+        mass.because(format!("times {name} the equation has an energy")),
+        Line::equation(named("E", oscillator), energy),
         Line::equation(slope, weighted),
     ])
 }
@@ -183,9 +190,12 @@ fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> R
     let x = oscillator.coordinate;
     let (mass, force) = match (&moving.mass, moving.weighted_force()) {
         (Some(mass), Some(force)) => (mass.clone(), force),
-        _ => (Expr::symbol(MASS), Expr::symbol(MASS) * &moving.force),
+        _ => {
+            let mass = Expr::from(mass_name(oscillator));
+            (mass.clone(), mass * &moving.force)
+        }
     };
-    let variable = Symbol::new("u");
+    let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| named(name, oscillator));
     let gained = Formula::Integral {
         factor: Expr::from(2),
         from: x.into(),
@@ -195,26 +205,26 @@ fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> R
     };
     let period = Formula::Integral {
         factor: Expr::from(2),
-        from: Expr::symbol("x1"),
+        from: turning_back.into(),
         to: Expr::symbol("A"),
         integrand: Box::new(Formula::OverRoot(mass.sqrt()?, Box::new(gained))),
         variable: x,
     };
     let work = Formula::Integral {
         factor: Expr::one(),
-        from: Expr::symbol("x1"),
+        from: turning_back.into(),
         to: Expr::symbol("A"),
         integrand: Box::new(force.into()),
         variable: x,
     };
-    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::symbol("T"))?;
+    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
     let mut lines = match moving.mass {
         Some(_) => vec![],
         None => mass_lines(moving, oscillator)?.into_iter().take(1).collect(),
     };
     lines.extend([
-        Line::equal([work, Expr::zero().into()]).because("the other turning point x1 < 0"),
-        Line::equation("T", period).because("the period, from the energy"),
+        Line::equal([work, Expr::zero().into()]).because(format!("the other turning point {turning_back} < 0")),
+        Line::equation(total, period).because("the period, from the energy"),
         Line::equation("omega", frequency),
     ]);
     solution.derivation = mass_lines(moving, oscillator)?;
@@ -265,12 +275,16 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             set_law(&mut solution, &law)?;
         }
         None => {
-            let weighted = moving
-                .weighted_force()
-                .unwrap_or_else(|| Expr::symbol(MASS) * &moving.force);
+            let (name, there) = (mass_name(oscillator), named("M_eighth", oscillator));
+            let weighted = moving.weighted_force();
+            let weighted = weighted.unwrap_or_else(|| Expr::from(name) * &moving.force);
             let mass = match &moving.mass {
                 Some(mass) => mass.substitute(x, &eighth)?,
-                None => Expr::symbol("M_eighth"),
+                None => there.into(),
+            };
+            let words = match &moving.mass {
+                Some(_) => "the energy of A*cos(theta) at theta = pi/4".to_owned(),
+                None => format!("the energy of A*cos(theta) at theta = pi/4, {there} the value of {name} there"),
             };
             let work = Formula::Integral {
                 factor: Expr::one(),
@@ -279,8 +293,7 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
                 integrand: Box::new(weighted.into()),
                 variable: x,
             };
-            let line = Line::equation(quarter * squared * mass, work)
-                .because("the energy of A*cos(theta) at theta = pi/4, M_eighth the value of M there");
+            let line = Line::equation(quarter * squared * mass, work).because(words);
             solution.derivation.push(line);
             solution.by_quadrature = Some(solution.derivation.clone());
         }
@@ -321,15 +334,16 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
     };
     match law() {
         Some((kinetic, potential, law)) => {
-            let slope = |of: &str, factor: Expr| Formula::Slope {
+            let [k, p] = ["K", "P"].map(|name| named(name, oscillator));
+            let slope = |of: Symbol, factor: Expr| Formula::Slope {
                 factor,
-                of: of.into(),
+                of,
                 by: "A".into(),
             };
             solution.derivation.extend([
-                Line::equation("K", kinetic).because("mean kinetic energy of A*cos(theta) over omega^2"),
-                Line::equation("P", potential).because("mean potential energy"),
-                Line::equal([slope("K", squared.clone()), slope("P", Expr::one())]).because("stationary in A"),
+                Line::equation(k, kinetic).because("mean kinetic energy of A*cos(theta) over omega^2"),
+                Line::equation(p, potential).because("mean potential energy"),
+                Line::equal([slope(k, squared.clone()), slope(p, Expr::one())]).because("stationary in A"),
                 Line::equation(squared, &law),
             ]);
             set_law(&mut solution, &law)?;
@@ -339,7 +353,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
             let along = &amplitude * &cosine;
             let mass = match &moving.mass {
                 Some(mass) => mass.substitute(x, &along)?,
-                None => Expr::symbol(MASS),
+                None => mass_name(oscillator).into(),
             };
             let (growth, force) = (
                 moving.growth.substitute(x, &along)?,
@@ -358,9 +372,10 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 over_half(squared, &mass * &bracket),
                 over_half(Expr::one(), mass * force * cosine),
             ]);
-            solution
-                .derivation
-                .push(line.because("M times the equation has no cos(theta) along A*cos(theta)"));
+            solution.derivation.push(line.because(format!(
+                "{} times the equation has no cos(theta) along A*cos(theta)",
+                mass_name(oscillator)
+            )));
             solution.by_quadrature = Some(solution.derivation.clone());
         }
     }
@@ -478,19 +493,18 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
         }
         (None, names) => {
             let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
+            let k = named("k", oscillator);
             let projection = Formula::Integral {
                 factor: Expr::one(),
                 from: Expr::zero(),
                 to: Expr::pi(),
-                integrand: Box::new(
-                    (&oscillator.residual * &(Expr::symbol("k") * Expr::symbol("theta")).cos()?).into(),
-                ),
+                integrand: Box::new((&oscillator.residual * &(Expr::from(k) * Expr::symbol("theta")).cos()?).into()),
                 variable: "theta".into(),
             };
             let line = Line::equal([projection, Expr::zero().into()]);
             solution
                 .derivation
-                .push(line.because(format!("for k = {}", kept.join(", "))));
+                .push(line.because(format!("for {k} = {}", kept.join(", "))));
             let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
             if names.len() > 1 {
                 solution.derivation.push(Line::equation("A", sum));

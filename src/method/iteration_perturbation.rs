@@ -231,9 +231,10 @@ impl Pass {
     }
 }
 
-/// `x0`, `x1`, ...
-fn numbered(oscillator: &Oscillator, number: u32) -> Symbol {
-    Symbol::new(&format!("{}{number}", oscillator.coordinate))
+/// `x0`, `x1`, ...; another stem where the equation uses one of these.
+pub(super) fn numbered(oscillator: &Oscillator, number: u32) -> Symbol {
+    let letter = fresh_stem(oscillator.coordinate.name(), &oscillator.names());
+    Symbol::new(&format!("{letter}{number}"))
 }
 
 /// The first pass of a force that is no polynomial.

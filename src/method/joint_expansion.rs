@@ -53,7 +53,7 @@ pub(super) fn expand_jointly(
     let (linear, others): (Vec<Expr>, Vec<Expr>) = terms
         .into_iter()
         .partition(|term| is_linear(term) && !asked.iter().any(|&name| term.contains(name)));
-    let delta = fresh("delta", &oscillator.parameters);
+    let delta = fresh("delta", &oscillator.names());
     let marked = |expression: &Expr| &Expr::from(delta) * expression;
     let mut parameters = asked.clone();
     let with_letters = small_parameters(&linear, &others, oscillator, &mut parameters);

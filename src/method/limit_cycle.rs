@@ -131,7 +131,7 @@ impl AmplitudeEquation {
             let roots = positive_roots(&numbers);
             return Ok(roots
                 .iter()
-                .map(|root| self.numerical(root, &numbers, name, &signs))
+                .map(|root| self.numerical(root, &numbers, [name, fresh("z", taken)], &signs))
                 .collect());
         }
         let powers: Vec<usize> = (1..self.rest.len()).filter(|&k| !self.rest[k].is_zero()).collect();
@@ -142,8 +142,8 @@ impl AmplitudeEquation {
         }
     }
 
-    /// The cycle at a root of an equation in numbers.
-    fn numerical(&self, root: &RealRoot, equation: &[Rational], name: Symbol, signs: &Monomial) -> Cycle {
+    /// The cycle at a root of an equation in numbers, with names for its amplitude and for the root.
+    fn numerical(&self, root: &RealRoot, equation: &[Rational], [name, z]: [Symbol; 2], signs: &Monomial) -> Cycle {
         let slope = derivative(equation);
         let slope_value = slope
             .iter()
@@ -170,11 +170,10 @@ impl AmplitudeEquation {
             .clone()
             .unwrap_or_else(|| Expr::number(rounded(root.value.sqrt())));
         let remark = radical.is_none().then(|| {
-            let z = Symbol::new("z");
             let term = |(k, c): (usize, &Rational)| Polynomial::term(Monomial::power_of(z, k as i32), c.clone());
             let terms = root.factor.iter().enumerate().map(term);
             let factor = terms.fold(Polynomial::zero(), |sum, term| sum + term);
-            format!("{name}^2 is a root z of {factor} = 0; the value of {name} is rounded to 15 digits")
+            format!("{name}^2 is a root {z} of {factor} = 0; the value of {name} is rounded to 15 digits")
         });
         // a0^(2 degree) = -(lower powers), and 1/J = -1/(2 z^(lowest + 1) h'(z)) modulo the factor.
         let in_name = |list: &[Rational]| {

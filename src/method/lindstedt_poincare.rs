@@ -29,7 +29,7 @@ use num_traits::{One, Zero};
 use super::expansion::expand_exactly;
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
-use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
+use super::secular::{Amplitude, Detuning, Normalisation, Scheme, SecularError, bounded};
 use super::{Options, Refusal, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::{Polynomial, Ring};
@@ -161,13 +161,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .collect();
     let delta = marker.unwrap_or(symbol);
     let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
-    let mut series = expand_exactly(&scaled, order, &scheme, Some(delta), inverse_slope).map_err(|error| {
-        if parts.damping.is_zero() {
-            error.into()
-        } else {
-            damping_or_excitation(&parts)
-        }
-    })?;
+    let mut series =
+        expand_exactly(&scaled, order, &scheme, Some(delta), inverse_slope, &taken).map_err(|error| match error {
+            SecularError::Growth { .. } | SecularError::Degenerate { .. } if !parts.damping.is_zero() => {
+                damping_or_excitation(&parts)
+            }
+            error => error.into(),
+        })?;
     if cycle.is_some() {
         // What marked the order of a term is one where it is no parameter of the answer.
         let unmarked = |polynomial: &Polynomial| match (
@@ -273,6 +273,9 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
     let default = if small == SmallParameter::Amplitude { 4 } else { 2 };
     let order = options.order.unwrap_or(default);
     let expanded = oscillator.expand(small, order);
+    if let Ok(force) = &expanded {
+        within_reach(force, parts, order)?;
+    }
     let excited = match &expanded {
         Ok(force) => small == SmallParameter::Amplitude && has_drift(force),
         Err(error) => matches!(error, OscillatorError::NotSmall { .. }),
@@ -281,6 +284,9 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
     if excited && !parts.damping.is_zero() && !in_amplitude {
         let order = options.order.unwrap_or(2);
         let joint = expand_jointly(oscillator, parts, small, order);
+        if let Some(joint) = &joint {
+            within_reach(&joint.force, parts, order)?;
+        }
         if let Some(joint) = joint.filter(|joint| may_balance(&joint.force)) {
             let bookkeeping = joint.value.map(|value| Definition {
                 symbol: joint.delta,
@@ -331,6 +337,16 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
         order,
         bookkeeping: None,
     })
+}
+
+/// An error where powers are so high that even the first order of the amplitude would take too long.
+fn within_reach(force: &PerturbedForce, parts: &Parts, order: u32) -> Result<(), SecularError> {
+    let terms = force
+        .terms
+        .iter()
+        .map(|term| (term.order, term.position + term.velocity));
+    // The last amplitude of a limit cycle follows from one order more.
+    bounded(terms, order as usize + usize::from(!parts.damping.is_zero()))
 }
 
 /// Whether the amplitude changes, at whatever order of an expansion in it.

@@ -31,16 +31,17 @@ use super::one_term::{
     compiled, conservative_force, first_order_only, integral_law, law_of, require_odd, solve_by_integral,
 };
 use super::{Options, Refusal};
+use crate::conservative::features::Features;
 use crate::conservative::{split, take_powers};
 use crate::decimal::decimal;
 use crate::derivation::{Formula, Line};
 use crate::exact::{Polynomial, Rational};
-use crate::expr::{Expr, Function};
+use crate::expr::{Expr, Function, Node};
 use crate::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
 use crate::solution::{Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// The frequency between the bounds of `f(x)/x`.
 ///
@@ -61,10 +62,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .unwrap_or_else(|| quotient.clone());
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
     let squared: Formula = Expr::symbol("omega").integer_power(2)?.into();
-    let (rest, end) = (Expr::symbol("q_rest"), Expr::symbol("q_A"));
-    let (lo, hi, share) = (Expr::symbol("lo"), Expr::symbol("hi"), Expr::symbol("k"));
+    let names = oscillator.names();
+    let [q, rest, end, turn] = ["q", "q_rest", "q_A", "q_s"].map(|name| fresh(name, &names));
+    let [lo, hi, share] = ["lo", "hi", "k"].map(|name| Expr::from(fresh(name, &names)));
+    let [rest, end] = [rest, end].map(Expr::from);
     let mut lines = vec![
-        Line::equation("q", &quotient).because(format!("{coordinate}'' + q*{coordinate} = 0 with the factor")),
+        Line::equation(q, &quotient).because(format!("{coordinate}'' + {q}*{coordinate} = 0 with the factor")),
         Line::equation(rest.clone(), &at_rest).because("at rest"),
         Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = A")),
     ];
@@ -73,17 +76,32 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let between = |bounds: [&Expr; 2]| Line::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]));
     let bounds = match turning_backs(oscillator, &quotient, &force) {
         None => {
-            lines.push(between([&rest, &end]).because("while f/x runs from one to the other without turning back"));
+            lines.push(
+                between([&rest, &end]).because(format!("while {q} runs from one to the other without turning back")),
+            );
             if let Some((place, value)) = stationary_point(&quotient, coordinate)? {
                 lines.push(
                     Line::equal(place).because("it turns back where the right side is positive and A lies beyond"),
                 );
-                lines.push(Line::equation("q_s", value).because("the bound there"));
+                lines.push(Line::equation(turn, value).because("the bound there"));
             }
-            format!("omega^2 lies between {at_rest} and {at_turning} wherever f(x)/x is monotonic")
+            let slope = quotient.differentiate(coordinate)?.expand()?;
+            let condition = format!("while {slope} keeps its sign for 0 < {coordinate} < A");
+            match of_one_sign(&slope, coordinate) {
+                false => format!("omega^2 lies between {at_rest} and {at_turning} {condition}"),
+                true => {
+                    let mut letters = slope.symbols();
+                    letters.remove(&coordinate);
+                    let letters: Vec<&str> = letters.into_iter().map(Symbol::name).collect();
+                    format!(
+                        "omega^2 lies between {at_rest} and {at_turning} {condition}, as it does for positive {}",
+                        letters.join(", ")
+                    )
+                }
+            }
         }
         Some(places) if places.is_empty() => {
-            lines.push(between([&rest, &end]).because("f/x runs from one to the other without turning back"));
+            lines.push(between([&rest, &end]).because(format!("{q} runs from one to the other without turning back")));
             format!("omega^2 lies between {at_rest} and {at_turning}")
         }
         Some(places) => {
@@ -134,10 +152,20 @@ fn turning_backs(oscillator: &Oscillator, quotient: &Expr, force: &Expr) -> Opti
     let value = compiled(oscillator, quotient, &BTreeMap::new())?;
     let slope = compiled(oscillator, &quotient.differentiate(coordinate).ok()?, &BTreeMap::new())?;
     let place = |k: i32| 10_f64.powf(f64::from(k) / f64::from(POINTS));
+    let mut places: Vec<f64> = (-DECADES * POINTS..=DECADES * POINTS).map(place).collect();
+    // Narrow places slip through any grid: they get points of their own.
+    let features = Features::new(force, coordinate, &BTreeMap::new());
+    let decades = (-DECADES..DECADES).map(|k| [place(k * POINTS), place((k + 1) * POINTS)]);
+    for feature in decades.flat_map(|[low, high]| features.between(low, high)) {
+        places.extend((-8..=8).map(|k| feature.place + 0.5 * f64::from(k) * feature.width));
+    }
+    places.retain(|x| *x > 0.0 && x.is_finite());
+    places.sort_by(f64::total_cmp);
+    places.dedup();
     let mut found = Vec::new();
-    let mut before = f64::NAN;
-    for k in -DECADES * POINTS..=DECADES * POINTS {
-        let (x, rate) = (place(k), slope(place(k)));
+    let (mut before, mut place_before) = (f64::NAN, 0.0);
+    for x in places {
+        let rate = slope(x);
         if value(x) <= 0.0 || !value(x).is_finite() || found.len() > MOST_PIECES {
             break;
         }
@@ -145,14 +173,28 @@ fn turning_backs(oscillator: &Oscillator, quotient: &Expr, force: &Expr) -> Opti
         let visible = (rate * x).abs() > 1e-9 * value(x).abs();
         if visible {
             if before * rate < 0.0
-                && let Ok(root) = find_root(&slope, place(k - 1), x)
+                && let Ok(root) = find_root(&slope, place_before, x)
             {
                 found.push((root, value(root)));
             }
-            before = rate;
+            (before, place_before) = (rate, x);
         }
     }
     Some(found)
+}
+
+/// Whether a sum of products of powers has one sign for positive symbols.
+fn of_one_sign(sum: &Expr, coordinate: Symbol) -> bool {
+    let positive = |factor: &Expr| {
+        let (base, exponent) = factor.base_and_exponent();
+        let known = base.as_symbol().is_some() || base.symbols().is_empty() && !base.has_leading_minus();
+        let size = matches!(base.node(), Node::Function(Function::Absolute, arguments) if *arguments == [Expr::from(coordinate)]);
+        (known || size) && exponent.as_number().is_some()
+    };
+    let terms = sum.terms();
+    let signs = terms.iter().map(Expr::has_leading_minus);
+    let first = terms.first().is_some_and(Expr::has_leading_minus);
+    signs.into_iter().all(|minus| minus == first) && terms.iter().all(|term| term.factors().1.iter().all(positive))
 }
 
 /// Whether a term is a power of the coordinate times a constant.
@@ -170,20 +212,22 @@ fn pieces(
 ) -> Result<Vec<Line>, Refusal> {
     let rest = compiled(oscillator, at_rest, &BTreeMap::new()).map_or(f64::NAN, |value| value(0.0));
     let (mut least, mut largest) = (rest, rest);
+    let taken = oscillator.names();
+    let (q, [l, h]) = (fresh("q", &taken), ["L", "H"].map(|letter| fresh_stem(letter, &taken)));
     let mut lines = Vec::new();
     for (index, &(place, value)) in places.iter().enumerate() {
         if index == MOST_PIECES {
             lines.push(Line::words(format!(
-                "f/x goes on turning back beyond {}: left out",
+                "{q} goes on turning back beyond {}: left out",
                 decimal(place)
             )));
             break;
         }
         (least, largest) = (least.min(value), largest.max(value));
         let number = index + 1;
-        let names = ["L", "H"].map(|letter| Expr::symbol(&format!("{letter}{number}")));
+        let [least_name, largest_name] = [&l, &h].map(|letter| Symbol::new(&format!("{letter}{number}")));
         lines.push(Line::words(format!(
-            "{x} = {}: f/{x} turns back at {}; up to there the least is L{number} = {}, the largest H{number} = {}",
+            "{x} = {}: {q} turns back at {}; up to there the least is {least_name} = {}, the largest {largest_name} = {}",
             decimal(place),
             decimal(value),
             decimal(least),
@@ -194,9 +238,8 @@ fn pieces(
             Some((next, _)) => format!("for A from {} to {}", decimal(place), decimal(*next)),
             None => format!("for A beyond {}", decimal(place)),
         };
-        let [least_name, largest_name] = names;
-        let minimum = Expr::function(Function::Minimum, vec![least_name, end.clone()])?;
-        let maximum = Expr::function(Function::Maximum, vec![largest_name, end.clone()])?;
+        let minimum = Expr::function(Function::Minimum, vec![least_name.into(), end.clone()])?;
+        let maximum = Expr::function(Function::Maximum, vec![largest_name.into(), end.clone()])?;
         lines.push(Line::equation(lo, minimum).because(range));
         lines.push(Line::equation(hi, maximum));
     }

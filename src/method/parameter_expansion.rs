@@ -21,13 +21,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use super::iteration_perturbation::numbered;
 use super::one_term::{conservative_force, integral_law, solve_by_integral};
 use super::{Options, Refusal, homotopy_perturbation};
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
-use crate::symbol::Symbol;
+use crate::symbol::{fresh, fresh_stem};
 
 /// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the force is no polynomial.
 ///
@@ -45,14 +46,18 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let omega = Expr::symbol("omega").integer_power(2)?;
         let along = Expr::symbol("A") * Expr::symbol("theta").cos()?;
         let driven = &omega * &along - oscillator.force.substitute(oscillator.coordinate, &along)?;
-        let [start, first] = [0, 1].map(|number| Symbol::new(&format!("{}{number}", oscillator.coordinate)));
+        let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
+        let names = oscillator.names();
+        let (p, w, omega0) = (fresh("p", &names), fresh_stem("w", &names), fresh("omega0", &names));
         let left = Formula::Oscillator {
             of: first,
             square: omega,
         };
         solution.derivation = vec![
-            Line::equation(start, along).because("at p^0"),
-            Line::equation(left, driven).because("at p^1, omega0^2 - omega^2 = p*w1 and the nonlinear terms together"),
+            Line::equation(start, along).because(format!("at {p}^0")),
+            Line::equation(left, driven).because(format!(
+                "at {p}^1, {omega0}^2 - omega^2 = {p}*{w}1 and the nonlinear terms together"
+            )),
         ];
         let law = integral_law(oscillator, &oscillator.force, &solution)?;
         solution.derivation.extend(law);

@@ -113,6 +113,40 @@ pub enum SecularError {
         /// The order at which it fails.
         order: usize,
     },
+    /// Far more algebra than anyone waits for.
+    #[error(
+        "the power {degree} in the equation gives {harmonics} harmonics at this order, with coefficients of hundreds of digits"
+    )]
+    TooManyHarmonics {
+        /// The highest power of position and velocity together.
+        degree: u32,
+        /// The highest harmonic at the highest order.
+        harmonics: usize,
+    },
+}
+
+/// An error where a high power makes an expansion to this order far too long; `terms` are the order of each term of the force
+/// and its power of position and velocity together.
+///
+/// # Errors
+/// [`SecularError::TooManyHarmonics`].
+pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Result<(), SecularError> {
+    /// Powers below are left alone: of them any order may be asked for.
+    const HIGH_POWER: u32 = 30;
+    const MOST_WORK: f64 = 1e9;
+    // By order: the power n + 1 that a sine has at order n brings one harmonic more.
+    let rate = |(order, power): (usize, u32)| power / u32::try_from(order.max(1)).unwrap_or(1);
+    let degree = terms.map(rate).max().unwrap_or(0);
+    let harmonics = highest
+        .saturating_mul(degree.saturating_sub(1) as usize)
+        .saturating_add(1);
+    // Products of series of so many harmonics, whose coefficients are as long as binomials of that size.
+    let (orders, length) = (highest as f64, harmonics as f64);
+    let work = (orders * length).powi(2) * f64::from(degree.max(2)).log2() * (length / 32.0).max(1.0);
+    match degree > HIGH_POWER && work > MOST_WORK {
+        true => Err(SecularError::TooManyHarmonics { degree, harmonics }),
+        false => Ok(()),
+    }
 }
 
 /// Expands frequency and displacement to `highest`, inclusive.
@@ -137,6 +171,9 @@ pub fn expand_from_root<C: Ring>(
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<C>>,
 ) -> Result<Expansion<C>, SecularError> {
+    let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
+    let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
+    bounded(powers, highest.saturating_add(of_amplitude))?;
     let mut order_by_order = OrderByOrder::new(force, highest, *scheme, inverse_slope);
     for order in 1..=highest {
         order_by_order.solve_order(order)?;

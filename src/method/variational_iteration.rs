@@ -26,6 +26,7 @@ use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+use crate::symbol::{fresh, fresh_stem};
 
 /// Frequency and motion after one correction.
 ///
@@ -37,7 +38,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
     first_iterate(&mut solution, oscillator, &force)?;
-    let [amplitude, omega, t, s, first, start] = ["A", "omega", "t", "s", "u1", "u0"].map(Expr::symbol);
+    let names = solution.names();
+    let (variable, letter) = (fresh("s", &names), fresh_stem("u", &names));
+    let [amplitude, omega, t, s] = ["A", "omega", "t", variable.name()].map(Expr::symbol);
+    let [start, first] = [0, 1].map(|number| Expr::symbol(&format!("{letter}{number}")));
     let along = &amplitude * &(&omega * &s).cos()?;
     let defect = force.substitute(oscillator.coordinate, &along)? - omega.integer_power(2)? * &along;
     let multiplier = Expr::divide(&(&omega * &(s - &t)).sin()?, &omega)?;
@@ -46,7 +50,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         from: Expr::zero(),
         to: t.clone(),
         integrand: Box::new((multiplier * defect).into()),
-        variable: "s".into(),
+        variable,
     };
     solution.derivation = vec![
         Line::equation(start.clone(), &amplitude * &(&omega * &t).cos()?).because("first iterate"),

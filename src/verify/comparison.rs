@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::reach::{Truth, reach};
 use super::validity::{self, Reach};
 use super::{TrueMotion, Values, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
+use crate::method::homotopy_analysis::convergence_control;
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -29,6 +30,18 @@ pub struct Row {
     pub reach: Option<Reach>,
     /// The verdict on the frequency; `None` where the true one is not known.
     pub verdict: Option<Verdict>,
+}
+
+impl Row {
+    /// The convergence-control parameter that was chosen for the numbers, where it was.
+    pub fn chosen_hbar(&self) -> Option<(Symbol, f64)> {
+        let hbar = convergence_control(&self.solution);
+        let own = self
+            .chosen
+            .iter()
+            .filter(|_| self.solution.method == Method::HomotopyAnalysis);
+        own.copied().find(|entry| entry.0 == hbar)
+    }
 }
 
 /// A method that does not apply.

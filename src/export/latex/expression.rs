@@ -150,7 +150,7 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
         Function::Atan => "\\arctan",
         Function::Log => "\\ln",
         Function::Sign => "\\operatorname{sgn}",
-        Function::Step => "H",
+        Function::Step => "\\mathrm{H}",
         Function::Sin => "\\sin",
         Function::Cos => "\\cos",
         Function::Tan => "\\tan",
@@ -160,12 +160,12 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
         Function::Exp => "\\exp",
         Function::Maximum => "\\max",
         Function::Minimum => "\\min",
-        Function::BesselJ0 => "J_{0}",
-        Function::BesselJ1 => "J_{1}",
-        Function::BesselI0 => "I_{0}",
-        Function::BesselI1 => "I_{1}",
+        Function::BesselJ0 => "\\mathrm{J}_{0}",
+        Function::BesselJ1 => "\\mathrm{J}_{1}",
+        Function::BesselI0 => "\\mathrm{I}_{0}",
+        Function::BesselI1 => "\\mathrm{I}_{1}",
         Function::Gamma => "\\Gamma",
-        Function::EllipticK => "K",
+        Function::EllipticK => "\\mathrm{K}",
     };
     let [open, close] = match function {
         Function::Absolute => ["\\left|", "\\right|"],
@@ -182,9 +182,9 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
     call
 }
 
-const GREEK: [&str; 22] = [
+const GREEK: [&str; 21] = [
     "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
-    "tau", "phi", "chi", "psi", "omega", "Omega", "Gamma", "Lambda",
+    "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
 ];
 
 /// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter,
@@ -210,6 +210,8 @@ pub fn symbol(symbol: Symbol) -> String {
         "eps" => "\\varepsilon".to_owned(),
         "epsilon" => "\\epsilon".to_owned(),
         "hbar" => "\\hbar".to_owned(),
+        // Functions stand upright, parameters do not: Gamma(1/4) beside a parameter Gamma.
+        "Gamma" => "\\mathit{\\Gamma}".to_owned(),
         _ if GREEK.contains(&stem) => format!("\\{stem}"),
         _ if stem.chars().count() == 1 => stem.to_owned(),
         _ => format!("\\mathrm{{{stem}}}"),
@@ -245,7 +247,7 @@ mod tests {
             ),
             (
                 "gamma*(x - xc)^(3/2)*H(x - xc)",
-                r"\gamma \left(x - x_{c}\right)^{3/2} H\left(x - x_{c}\right)",
+                r"\gamma \left(x - x_{c}\right)^{3/2} \mathrm{H}\left(x - x_{c}\right)",
             ),
             ("sqrt(k + 1)", r"\sqrt{1 + k}"),
             ("-x/2", r"-\frac{x}{2}"),

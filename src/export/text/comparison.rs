@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use super::{percent, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::export::json::verdict;
-use crate::method::homotopy_analysis::HBAR;
 use crate::symbol::Symbol;
 use crate::verify::comparison::{Comparison, Row};
 use crate::verify::validity::Reach;
@@ -183,8 +182,8 @@ fn without_number(row: &Row) -> &'static str {
 
 /// The formula of a row, and the hbar with which it was evaluated.
 fn with_hbar(row: &Row) -> String {
-    let hbar = row.chosen.iter().find(|entry| entry.0.name() == HBAR);
-    let value = hbar.map(|(name, value)| format!(", {name} = {}", significant(*value, 6)));
+    let hbar = row.chosen_hbar();
+    let value = hbar.map(|(name, value)| format!(", {name} = {}", significant(value, 6)));
     row.solution.formula() + &value.unwrap_or_default()
 }
 

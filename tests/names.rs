@@ -164,3 +164,22 @@ fn negative_constants_are_no_stiffness() {
         );
     }
 }
+
+/// In LaTeX functions stand upright, so a parameter of the same letter is told apart.
+#[test]
+fn functions_of_answers_are_no_parameters() {
+    for (expression, function, parameter) in [
+        ("K*K(1/2)", "\\mathrm{K}\\left", "K "),
+        ("J0*J0(A)", "\\mathrm{J}_{0}\\left", "J_{0} "),
+        ("J1*J1(A)", "\\mathrm{J}_{1}\\left", "J_{1} "),
+        ("I0*I0(A)", "\\mathrm{I}_{0}\\left", "I_{0} "),
+        ("I1*I1(A)", "\\mathrm{I}_{1}\\left", "I_{1} "),
+        ("Gamma*Gamma(1/4)", "\\Gamma\\left", "\\mathit{\\Gamma} "),
+    ] {
+        let printed = latex::expression(&expression.parse().expect("an expression"));
+        assert!(
+            printed.contains(function) && printed.starts_with(parameter),
+            "{printed}"
+        );
+    }
+}

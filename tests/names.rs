@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lindstedt::export::{latex, text};
+use lindstedt::export::{json, latex, text};
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
@@ -163,6 +163,154 @@ fn negative_constants_are_no_stiffness() {
             "{equation}: {refusal}"
         );
     }
+}
+
+/// What a report spells names in: as many uses of a name as there are.
+struct Report {
+    words: Vec<String>,
+    formulas: String,
+}
+
+impl Report {
+    fn of(solution: &Solution) -> Self {
+        let steps = text::steps(solution) + &text::solution(solution, None, 0.01);
+        let formulas = latex::steps(solution) + &latex::solution(solution, None);
+        // Comments and running text spell names as they are typed.
+        let formulas: Vec<&str> = formulas.lines().filter(|line| !line.starts_with('%')).collect();
+        let mut formulas = formulas.join("\n");
+        while let Some(start) = formulas.find("\\text{") {
+            let mut depth = 0;
+            let end = formulas[start..].find(|letter: char| {
+                depth += i32::from(letter == '{') - i32::from(letter == '}');
+                letter == '}' && depth == 0
+            });
+            formulas.replace_range(start..=start + end.expect("a brace"), "");
+        }
+        Self {
+            words: vec![steps, json::solution(solution, None).to_string()],
+            formulas,
+        }
+    }
+
+    /// How often a name stands in text, JSON and LaTeX.
+    fn uses(&self, name: &str) -> Vec<usize> {
+        let mut uses: Vec<usize> = self
+            .words
+            .iter()
+            .map(|text| {
+                let call = format!("{name}(");
+                let calls = text.match_indices(call.as_str()).filter(|(start, _)| {
+                    let before = text[..*start].chars().next_back();
+                    !before.is_some_and(|letter| letter.is_ascii_alphanumeric() || letter == '_')
+                });
+                words(text).get(name).copied().unwrap_or(0) - calls.count()
+            })
+            .collect();
+        let spelt = latex::symbol(Symbol::new(name));
+        let alone = self.formulas.match_indices(spelt.as_str()).filter(|(start, _)| {
+            let before = self.formulas[..*start].chars().next_back();
+            let after = self.formulas[start + spelt.len()..].chars().next();
+            let in_name = |letter: char| letter.is_ascii_alphabetic() || letter == '\\';
+            let goes_on = |letter: char| letter.is_ascii_alphabetic() || letter == '_';
+            // A command ends where a letter follows no letter; `\mathrm{K}` is no `K`.
+            let inside =
+                self.formulas[..*start].ends_with("\\mathrm{") || self.formulas[..*start].ends_with("\\tilde{");
+            !inside && !(before.is_some_and(in_name) && !spelt.starts_with('\\')) && !after.is_some_and(goes_on)
+        });
+        uses.push(alone.count());
+        uses
+    }
+
+    /// Every name in its formulas that a parameter could have.
+    fn names(&self) -> Vec<String> {
+        /// Words that stand in formulas' lines, names that an equation may not use, and a differential.
+        const OTHERS: [&str; 28] = [
+            "A", "a", "x", "t", "pi", "omega", "theta", "kappa", "in", "to", "at", "of", "is", "it", "by", "or", "as",
+            "no", "up", "an", "on", "H", "df", "The", "the", "and", "du", "dx",
+        ];
+        let mut names: Vec<String> = words(&self.words[0]).into_keys().map(str::to_owned).collect();
+        let all = names.clone();
+        names.retain(|name| {
+            let letter = name.starts_with(|letter: char| letter.is_ascii_alphabetic());
+            let short = name.len() <= 2 || name.contains('_') || name.contains(|digit: char| digit.is_ascii_digit());
+            // Of a family the first few stand for all.
+            let few = !name.ends_with(['3', '4', '5', '6', '7', '8', '9']);
+            let short = short || ["lo", "hi", "hbar", "delta"].contains(&name.as_str());
+            letter
+                && short
+                && few
+                && !OTHERS.contains(&name.as_str())
+                && !name.starts_with("int_")
+                // Differentials, du of an integral over u.
+                && !name.strip_prefix('d').is_some_and(|of| all.iter().any(|known| known == of))
+        });
+        names
+    }
+}
+
+/// Whatever name a method uses for something of its own, a parameter may have it as well: then the parameter stands wherever
+/// it stands under another name, and nothing else is called so, in text, JSON and LaTeX.
+#[test]
+fn every_name_of_every_method_may_be_taken() {
+    let equations = [
+        ("x'' + x + NAME*x^3 = 0", None),
+        ("x'' + 2*x + NAME*x^2 + x^3 = 0", None),
+        ("x'' + x - 2*NAME*x^3 + NAME*x^5/3 = 0", None),
+        ("x'' + sin(x) + NAME*x^3/3 = 0", None),
+        ("x'' + x + NAME*exp(x) - NAME = 0", None),
+        ("x'' + sqrt(3)*x + NAME*abs(x)*x = 0", None),
+        ("x'' + x + NAME*x^(1/3) = 0", None),
+        ("x'' + x + NAME*(x - 1/2)*H(x - 1/2) = 0", None),
+        ("(1 + NAME*x^2)*x'' + NAME*x*x'^2 + x = 0", None),
+        ("x'' + NAME*cos(x)*x'^2 + x = 0", None),
+        ("x'' + NAME*x'^2/(1 + x^4) + x = 0", None),
+        ("x'' - NAME*(1 - x^2)*x' + x = 0", Some("NAME")),
+        ("x'' - NAME*(1 - x^4)*x' + x = 0", Some("NAME")),
+        ("x'' - NAME*(1 - 3*x^2 + x^4)*x' + x = 0", Some("NAME")),
+        ("x'' + x - NAME*sin(x) = 0", Some("NAME")),
+    ];
+    let (mut tried, mut wrong) = (0, Vec::new());
+    for (equation, small) in equations {
+        for method in Method::ALL {
+            let answered = |name: &str, order: Option<u32>| {
+                let oscillator = Oscillator::parse(&equation.replace("NAME", name)).ok()?;
+                let small = small.map_or("A".to_owned(), |small| small.replace("NAME", name));
+                let options = Options {
+                    method: Some(method),
+                    small: Some(small),
+                    order,
+                    ..Options::default()
+                };
+                solve(&oscillator, &options).ok()
+            };
+            for order in [None, Some(2)] {
+                let Some(plain) = answered("kappa", order) else {
+                    continue;
+                };
+                let plain = Report::of(&plain);
+                let expected = plain.uses("kappa");
+                for name in plain.names() {
+                    let Some(solution) = answered(&name, order) else {
+                        wrong.push(format!("{equation} with {name} by {} has no answer", method.name()));
+                        continue;
+                    };
+                    let report = Report::of(&solution);
+                    if report.uses(&name) != expected {
+                        wrong.push(format!(
+                            "{equation} with {name} by {}: {:?} for {expected:?}\n{}\n{}",
+                            method.name(),
+                            report.uses(&name),
+                            report.words[0],
+                            report.formulas
+                        ));
+                    }
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(tried > 400, "{tried}");
 }
 
 /// In LaTeX functions stand upright, so a parameter of the same letter is told apart.

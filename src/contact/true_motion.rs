@@ -230,8 +230,8 @@ const ACCURACY: f64 = 5e-5;
 /// The tightest tolerance worth trying in double precision.
 const TIGHTEST: f64 = 1e-14;
 
-/// The same, with its digits assured: a tolerance a hundred times looser changes no quantity by more than [`ACCURACY`]. The
-/// first pair compared is that of `options` and a hundredth of it; where they differ the next one is closer.
+/// The same, with its digits assured: a tolerance a hundred times looser changes no quantity by more than 5e-5 of itself.
+/// The first pair compared is that of `options` and a hundredth of it; where they differ the next one is closer.
 ///
 /// # Errors
 /// As [`true_motion`], and [`TrueMotionError::NotSettled`] where double precision does not know six digits.

@@ -215,7 +215,8 @@ impl Report {
             // A command ends where a letter follows no letter; `\mathrm{K}` is no `K`.
             let inside =
                 self.formulas[..*start].ends_with("\\mathrm{") || self.formulas[..*start].ends_with("\\tilde{");
-            !inside && !(before.is_some_and(in_name) && !spelt.starts_with('\\')) && !after.is_some_and(goes_on)
+            let longer = before.is_some_and(in_name) && !spelt.starts_with('\\') || after.is_some_and(goes_on);
+            !inside && !longer
         });
         uses.push(alone.count());
         uses

@@ -132,3 +132,14 @@ fn a_failed_impact_says_why() {
         "{text}"
     );
 }
+
+/// One row beyond the tolerance fails a table; where all hold, it succeeds.
+#[test]
+fn a_table_fails_with_its_worst_row() {
+    for (tolerance, code) in [("0.5", 0), ("1e-3", 3)] {
+        let arguments = ["compare", "x'' + x + x^3 = 0", "--at", "A=1", "--tolerance", tolerance];
+        let output = run(&arguments, None);
+        assert_eq!(output.status.code(), Some(code), "{}", printed(&output));
+        assert_eq!(printed(&output).contains(" fail "), code == 3);
+    }
+}

@@ -1,6 +1,11 @@
 //! Floating-point numbers as people write them.
 
+use num_bigint::BigInt;
+use num_traits::{Pow, Signed, Zero};
+
 use crate::exact::Rational;
+use crate::exact::rational::to_f64;
+use crate::exact::scaled::Scaled;
 
 /// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
 pub fn decimal(value: f64) -> String {
@@ -39,12 +44,53 @@ pub fn rounded_to(value: f64, digits: usize) -> Rational {
     let decimals = digits.saturating_sub(1);
     let text = format!("{value:.decimals$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let digits: num_bigint::BigInt = mantissa.replace('.', "").parse().unwrap_or_default();
+    let digits: BigInt = mantissa.replace('.', "").parse().unwrap_or_default();
     let power = exponent.parse::<i32>().unwrap_or(0) - decimals as i32;
     let ten = Rational::from_integer(10.into());
     let scale = num_traits::pow(ten, power.unsigned_abs() as usize);
     let digits = Rational::from_integer(digits);
     if power < 0 { digits / scale } else { digits * scale }
+}
+
+/// So many significant digits of a fraction, as a fraction, however large or small it is.
+pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
+    let (mantissa, power) = scientific(value, digits);
+    Rational::from_integer(mantissa) * Pow::pow(Rational::from_integer(10.into()), power)
+}
+
+/// A fraction with so many significant digits, as [`significant`] writes it, beyond the range of doubles as well.
+pub fn significant_fraction(value: &Rational, digits: usize) -> String {
+    let double = to_f64(value);
+    if value.is_zero() || double.is_normal() {
+        return significant(double, digits);
+    }
+    let (mantissa, power) = scientific(value, digits);
+    let sign = if value.is_negative() { "-" } else { "" };
+    let text = mantissa.abs().to_string();
+    let (first, rest) = text.split_at(1);
+    let rest = rest.trim_end_matches('0');
+    let point = if rest.is_empty() { "" } else { "." };
+    let exponent = power + text.len() as i32 - 1;
+    format!("{sign}{first}{point}{rest}e{exponent}")
+}
+
+/// A whole number of so many digits, and the power of ten that makes it the fraction, rounded.
+fn scientific(value: &Rational, digits: usize) -> (BigInt, i32) {
+    if value.is_zero() {
+        return (BigInt::zero(), 0);
+    }
+    // The logarithm may be off by one: a digit too many or too few is seen and mended.
+    let logarithm = Scaled::of_fraction(value).logarithm() / std::f64::consts::LN_10;
+    let mut power = logarithm.floor() as i32 - digits as i32 + 1;
+    loop {
+        let scaled = value / Pow::pow(Rational::from_integer(10.into()), power);
+        let mantissa = scaled.round().to_integer();
+        match mantissa.abs().to_string().len() {
+            found if found > digits => power += 1,
+            found if found < digits => power -= 1,
+            _ => return (mantissa, power),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -76,5 +122,23 @@ mod tests {
             Rational::from_integer((-250_000_000_000_000_000_000_i128).into())
         );
         assert_eq!(rounded(0.0), Rational::from_integer(0.into()));
+    }
+
+    #[test]
+    fn fractions_of_any_size() {
+        let ten = |power: i32| Pow::pow(Rational::from_integer(10.into()), power);
+        let third = Rational::new(1.into(), 3.into());
+        for power in [-2000, -400, -308, 0, 308, 400, 2000] {
+            let value = -&third * ten(power);
+            let expected = Rational::from_integer((-333_333).into()) * ten(power - 6);
+            assert_eq!(rounded_fraction(&value, 6), expected);
+            // Rounding up to one digit more.
+            let nines = ten(power) - ten(power - 20);
+            assert_eq!(rounded_fraction(&nines, 15), ten(power));
+        }
+        assert_eq!(rounded_fraction(&Rational::zero(), 15), Rational::zero());
+        assert_eq!(significant_fraction(&third, 6), "0.333333");
+        assert_eq!(significant_fraction(&(-&third * ten(500)), 6), "-3.33333e499");
+        assert_eq!(significant_fraction(&ten(-400), 6), "1e-400");
     }
 }

@@ -207,11 +207,11 @@ impl<'a> Force<'a> {
         }
     }
 
-    /// The force at rest, for messages.
+    /// The force at rest, for messages; as it stands where it is too long to be written out.
     fn at_rest<E>(&self, at_zero: &Result<Expr, E>) -> String {
-        at_zero
-            .as_ref()
-            .map_or_else(|_| self.force.to_string(), Expr::to_string)
+        let as_it_stands = || self.force.substitute(self.coordinate, &Expr::zero()).ok();
+        let at_zero = at_zero.as_ref().ok().cloned().or_else(as_it_stands);
+        at_zero.unwrap_or_else(|| self.force.clone()).to_string()
     }
 
     /// Numbers in place of the parameters to choose between closed forms: all about equal to `scale`.

@@ -56,7 +56,7 @@ pub struct Impact {
     /// The equation as it is judged.
     pub equation: String,
     /// The derived law of the free swing.
-    pub law: Solution,
+    pub free_swing: Solution,
     /// Every join continuous, contact speed from the one-term motion.
     pub paper: ThreePhases,
     /// Contact speed from the energy.
@@ -98,18 +98,18 @@ pub enum ImpactError {
 /// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not positive: see [`ImpactError`].
 pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
     let swing = Oscillator::parse(FREE_SWING)?;
-    let law = method::solve(
+    let free_swing = method::solve(
         &swing,
         &method::Options {
             order: Some(setup.order),
             ..Default::default()
         },
     )?;
-    let amplitude = |symbol| (symbol == law.amplitude.symbol()).then_some(setup.amplitude);
-    let squared = law
-        .frequency_squared
-        .as_ref()
-        .map(|squared| law.evaluate(squared, &amplitude));
+    let amplitude = |symbol| (symbol == free_swing.amplitude.symbol()).then_some(setup.amplitude);
+    let squared = free_swing
+        .law
+        .frequency_squared()
+        .map(|squared| free_swing.evaluate(squared, &amplitude));
     let frequency_squared = squared.and_then(Result::ok).unwrap_or(f64::NAN);
 
     // Both forces come out of the printed equation, so that phases and judge use what is printed.
@@ -160,7 +160,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
     Ok(Impact {
         equation: original.equation(),
         setup,
-        law,
+        free_swing,
         paper,
         energy,
         truth,
@@ -263,7 +263,7 @@ impl Impact {
     /// What lies beyond the tolerance in a column: the quantities with their errors, and what of the closed form they come
     /// from.
     pub fn shortcomings(&self, column: Column, tolerance: f64) -> Vec<(Vec<(&'static str, f64)>, String)> {
-        let order = self.law.order;
+        let order = self.free_swing.order;
         let (speed, met) = match column {
             Column::Paper => (
                 "the contact begins with the speed of that cosine",

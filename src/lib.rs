@@ -8,7 +8,7 @@
 //!
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let solution = method::solve(&pendulum, &method::Options { order: Some(2), ..Default::default() })?;
-//! let law = solution.frequency_squared.as_ref().expect("a polynomial law");
+//! let law = solution.law.frequency_squared().expect("a polynomial law");
 //! assert_eq!(law.to_string(), "1 - A^2/8");
 //!
 //! let mut at = verify::Values::default();
@@ -26,7 +26,7 @@
 //! | names and numbers | [`symbol`], [`spelling`], [`decimal`], [`exact`] | symbols, fractions, polynomials, the coefficient ring |
 //! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
 //! | series | [`series`] | Taylor, Fourier, running convolutions |
-//! | any equations | [`system`] | first-order systems of any size by Taylor series, with events |
+//! | any equations | [`system`] | first-order systems of any size by Taylor series and by Runge-Kutta, with events |
 //! | answer and question | [`derivation`], [`solution`], [`oscillator`] | what a method returns and how it got there, and what it is given |
 //! | numbers alone | [`ode`], [`period`], [`return_map`] | Runge-Kutta, quadrature, roots; the true period; limit cycles |
 //! | forces of position alone | [`conservative`] | potential and projections in closed form |

@@ -69,6 +69,14 @@ pub enum PeriodError {
         /// Where.
         place: f64,
     },
+    /// The force is beyond all numbers where the motion leads.
+    #[error("the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308")]
+    Overflow {
+        /// Where.
+        place: f64,
+        /// What is beyond, in words.
+        term: String,
+    },
     /// The motion did not come back within the time allowed.
     #[error("no return to a turning point within t = {0}")]
     NoReturn(f64),
@@ -101,6 +109,10 @@ impl PeriodError {
                 searched: searched + origin,
             },
             Self::Pole { place } => Self::Pole { place: place + origin },
+            Self::Overflow { place, term } => Self::Overflow {
+                place: place + origin,
+                term,
+            },
             Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => self,
         }
     }

@@ -39,6 +39,9 @@ const STIFF_LONGEST: f64 = 1e12;
 const RATIO: f64 = 1.15;
 const RINGS: i32 = 30;
 
+/// How many amplitudes away a motion that has not turned is gone for good: no cycle that is looked for reaches as far.
+const GONE: f64 = 1e4;
+
 /// Rings on end without a return after which a side is given up.
 const LOST_RINGS: usize = 4;
 
@@ -64,6 +67,14 @@ pub enum NoLimitCycle {
         from: f64,
         /// Upper end of the search.
         to: f64,
+    },
+    /// The motion runs away instead.
+    #[error(
+        "no limit cycle: released at rest from x = {from:.3e} the motion escapes to infinity, and none comes back nearby"
+    )]
+    Escapes {
+        /// The release point.
+        from: f64,
     },
     /// A relaxation oscillation with parts of too different speed.
     #[error("the true motion is too stiff to be followed in double precision, even by an implicit method")]
@@ -114,13 +125,17 @@ pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Resul
         Some(false) => &[&[false], &[true]],
         None => &[&[true, false]],
     };
-    let mut too_stiff = false;
+    let (mut too_stiff, mut escapes) = (false, false);
     for directions in directions {
         let mut searched = Vec::new();
         for &attracts in *directions {
             match at_once(equation, attracts) {
                 Ok(Some(cycle)) => return Ok(cycle),
                 Ok(None) | Err(NoReturn::Away) => searched.push(attracts),
+                Err(NoReturn::Escapes) => {
+                    escapes |= attracts;
+                    searched.push(attracts);
+                }
                 Err(NoReturn::TooManySteps) => too_stiff = true,
             }
         }
@@ -133,6 +148,11 @@ pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Resul
     }
     if too_stiff {
         return Err(NoLimitCycle::TooStiff);
+    }
+    if escapes {
+        return Err(NoLimitCycle::Escapes {
+            from: equation.equilibrium + equation.amplitude,
+        });
     }
     Err(NoLimitCycle::NoneBetween {
         from: equation.equilibrium + equation.amplitude * RATIO.powi(-RINGS),
@@ -222,6 +242,7 @@ fn cycle(equation: &Equation, attracts: bool, path: Trajectory) -> LimitCycle {
 /// Why a motion was not seen to come back.
 enum NoReturn {
     Away,
+    Escapes,
     TooManySteps,
 }
 
@@ -273,6 +294,12 @@ fn follow(
         // A cycle goes around the equilibrium: what turns back on one side of it is rounding, as at mu = 1e30.
         StopReason::Event { .. } if path.end().x > 0.0 && path.knots().any(|knot| knot.x < 0.0) => Ok(path),
         StopReason::Event { .. } if options.stiff => Err(NoReturn::TooManySteps),
+        // Damping that grows with the distance makes the steps of a motion that runs away ever shorter.
+        StopReason::MaximumSteps { .. } | StopReason::StepTooSmall { .. } | StopReason::NonFinite { .. }
+            if path.end().x.abs() > GONE =>
+        {
+            Err(NoReturn::Escapes)
+        }
         StopReason::MaximumSteps { .. } => Err(NoReturn::TooManySteps),
         _ => Err(NoReturn::Away),
     }
@@ -512,5 +539,14 @@ mod tests {
             nearest_limit_cycle(&equation, None).err()
         };
         assert!(matches!(search(&damped), Some(NoLimitCycle::NoneBetween { .. })));
+        // Beyond its separatrix at 0.45 a soft spring throws the motion out, damped or not: x' = 50 x far away.
+        for (mu, cubic) in [(0.1, -5.0), (0.1, -0.3), (1.0, -20.0), (1e-3, -1.0)] {
+            let soft = move |x: f64, v: f64| mu * (1.0 - x * x) * v - x - cubic * x.powi(3);
+            let found = search(&soft);
+            assert!(
+                matches!(found, Some(NoLimitCycle::Escapes { from: 2.0 })),
+                "{mu}, {cubic}: {found:?}"
+            );
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! A formula without its amplitude convention, order and validity is half a formula, so all of them travel together.
 
 mod branch;
+mod law;
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -10,11 +11,13 @@ use std::fmt;
 use num_traits::{One, Signed};
 
 pub use branch::Branch;
+pub use law::{ClosedForm, Law, Root, System};
 
+use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::derivation::{Line, Step};
 use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
-use crate::exact::rational::{Rational, to_f64};
+use crate::exact::rational::Rational;
 use crate::exact::scaled::Scaled;
 use crate::expr::Expr;
 use crate::series::FourierSeries;
@@ -182,40 +185,9 @@ pub fn constant_in_words(value: &Expr) -> String {
     const MANY: usize = 16;
     let text = value.to_string();
     match value.as_number() {
-        Some(number) if !number.is_integer() && text.len() > MANY => crate::decimal::significant(to_f64(number), 15),
+        Some(number) if !number.is_integer() && text.len() > MANY => significant_fraction(number, 15),
         _ => text,
     }
-}
-
-/// A law that is no polynomial: `omega^2 = 2*J1(A)/A`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ClosedForm {
-    /// Whether the value is omega^2; otherwise omega.
-    pub squared: bool,
-    /// The right side, in the parameters, the amplitude symbol and the symbols of the definitions.
-    pub value: Expr,
-}
-
-impl ClosedForm {
-    /// The left side: `omega^2` or `omega`.
-    pub fn name(&self) -> &'static str {
-        if self.squared { "omega^2" } else { "omega" }
-    }
-}
-
-impl fmt::Display for ClosedForm {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} = {}", self.name(), self.value)
-    }
-}
-
-/// Algebraic equations that determine frequency and coefficients together, solved by numbers alone.
-#[derive(Clone, Debug, PartialEq)]
-pub struct System {
-    /// What is solved for: `omega` and the coefficients of the motion.
-    pub unknowns: Vec<Symbol>,
-    /// Each is equal to zero.
-    pub equations: Vec<Expr>,
 }
 
 /// The limit cycle that a solution describes, among those of its equation.
@@ -284,18 +256,8 @@ pub struct Solution {
     pub definitions: Vec<Definition>,
     /// The equilibrium about which the motion swings; `A` is measured from it.
     pub equilibrium: Expr,
-    /// omega, where the method gives a polynomial.
-    pub frequency: Option<Polynomial>,
-    /// omega^2, likewise.
-    pub frequency_squared: Option<Polynomial>,
-    /// For implicit methods: a polynomial in even powers of `omega`, equal to zero.
-    pub relation: Option<Polynomial>,
-    /// A closed form that is no polynomial.
-    pub closed_form: Option<ClosedForm>,
-    /// A law that only numbers solve: `omega^2 = (2/(pi*A)) int_0^pi ...`.
-    pub by_quadrature: Option<Vec<Line>>,
-    /// The equations of a balance of several harmonics.
-    pub system: Option<System>,
+    /// What ties the frequency to the amplitude.
+    pub law: Law,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomial>,
     /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
@@ -316,12 +278,21 @@ impl Solution {
     /// # Errors
     /// The first symbol without a value.
     pub fn evaluate(&self, polynomial: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
+        self.evaluate_with_size(polynomial, value_of).map(|(value, _)| value)
+    }
+
+    /// The value, and the sum of the sizes of its terms.
+    fn evaluate_with_size(
+        &self,
+        polynomial: &Polynomial,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Result<(f64, f64), Symbol> {
         let values = match polynomial.symbols().iter().any(|symbol| self.defines(*symbol)) {
             true => self.defined_values(value_of)?,
             false => vec![],
         };
         let pi = Symbol::new("pi");
-        polynomial.evaluate(|symbol| {
+        polynomial.evaluate_with_size(|symbol| {
             let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
             defined
                 .or_else(|| value_of(symbol))
@@ -359,7 +330,7 @@ impl Solution {
 
     /// The law that only numbers solve, in one line.
     pub fn by_numbers(&self) -> Option<String> {
-        let lines: Vec<String> = self.by_quadrature.as_ref()?.iter().map(ToString::to_string).collect();
+        let lines: Vec<String> = self.law.quadrature()?.iter().map(ToString::to_string).collect();
         Some(lines.join("; "))
     }
 
@@ -399,7 +370,7 @@ impl Solution {
         let mut own = own.filter(|symbol| symbol.name().trim_end_matches('_') == "omega0");
         let omega0 = Symbol::new("omega0");
         let square = Polynomial::term(Monomial::power_of(omega0, 2), One::one());
-        let squared = self.frequency_squared.as_ref().or(self.relation.as_ref());
+        let squared = self.law.frequency_squared().or(self.law.relation());
         let at_rest = squared.map(|law| self.leading(law).truncated(self.amplitude.symbol(), 0));
         match own.next() {
             Some(symbol) => symbol,
@@ -414,11 +385,9 @@ impl Solution {
 
     /// Rounds every coefficient to fifteen digits and says so.
     pub fn round_coefficients(&mut self) {
-        let round = |number: &Rational| crate::decimal::rounded(to_f64(number));
+        let round = |number: &Rational| rounded_fraction(number, 15);
         let rounded = |polynomial: &Polynomial| polynomial.map(round);
-        for law in [&mut self.frequency, &mut self.frequency_squared, &mut self.relation] {
-            *law = law.as_ref().map(rounded);
-        }
+        self.law = self.law.map(rounded);
         if let Some(cycle) = &mut self.limit_cycle {
             cycle.amplitude = rounded(&cycle.amplitude);
         }
@@ -470,15 +439,15 @@ impl Solution {
 
     /// The law in one line, with the definitions it needs.
     pub fn formula(&self) -> String {
-        let law = if let Some(law) = &self.frequency_squared {
+        let law = if let Some(law) = self.law.frequency_squared() {
             format!("omega^2 = {}", self.lowest_first(law))
-        } else if let Some(form) = self.closed_form.as_ref().filter(|_| !self.numerical) {
+        } else if let Some(form) = self.law.closed_form().filter(|_| !self.numerical) {
             form.to_string()
-        } else if let Some(form) = &self.closed_form {
+        } else if let Some(form) = self.law.closed_form() {
             format!("{} in closed form, with rounded coefficients", form.name())
-        } else if let Some(law) = &self.frequency {
+        } else if let Some(law) = self.law.frequency() {
             format!("omega = {}", self.lowest_first(law))
-        } else if let Some(relation) = &self.relation {
+        } else if let Some(relation) = self.law.relation() {
             format!("0 = {}", self.lowest_first(relation))
         } else if self.method == Method::HarmonicBalance {
             let harmonics = self.displacement.harmonics();
@@ -487,9 +456,8 @@ impl Solution {
         } else {
             return self.by_numbers().unwrap_or_default();
         };
-        let laws = [&self.frequency_squared, &self.frequency, &self.relation];
-        let mut used: BTreeSet<Symbol> = laws.into_iter().flatten().flat_map(Polynomial::symbols).collect();
-        used.extend(self.closed_form.iter().flat_map(|form| form.value.symbols()));
+        let mut used: BTreeSet<Symbol> = self.law.polynomials().flat_map(Polynomial::symbols).collect();
+        used.extend(self.law.closed_form().into_iter().flat_map(|form| form.value.symbols()));
         let definitions = self.definitions_behind(used).into_iter();
         let definitions =
             definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
@@ -516,10 +484,10 @@ impl Solution {
         for (monomial, number) in terms {
             let term = match (self.numerical && !number.is_integer(), monomial.factors().is_empty()) {
                 (false, _) => Polynomial::term(monomial.clone(), number.clone()).to_string(),
-                (true, true) => crate::decimal::decimal(to_f64(number)),
+                (true, true) => significant_fraction(number, 6),
                 (true, false) => {
                     let rest = Polynomial::term(monomial.clone(), One::one());
-                    format!("{}*{rest}", crate::decimal::decimal(to_f64(number)))
+                    format!("{}*{rest}", significant_fraction(number, 6))
                 }
             };
             match (text.is_empty(), term.strip_prefix('-')) {
@@ -534,20 +502,20 @@ impl Solution {
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that continues omega0^2
     /// from amplitude zero; `None` where a value is missing or the branch ends before.
     pub fn frequency_squared_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
-        if let Some(law) = &self.frequency_squared {
+        if let Some(law) = self.law.frequency_squared() {
             return self.evaluate(law, value_of).ok();
         }
-        if self.relation.is_some() {
+        if self.law.relation().is_some() {
             return match self.branch_at(value_of)? {
-                Branch::At(squared) => Some(squared),
+                Branch::At { squared, .. } => Some(squared),
                 Branch::Ends(_) => None,
             };
         }
-        if let Some(form) = &self.closed_form {
+        if let Some(form) = self.law.closed_form() {
             let value = self.evaluate_expression(&form.value, value_of)?;
             return Some(if form.squared { value } else { value * value.abs() });
         }
-        let frequency = self.evaluate(self.frequency.as_ref()?, value_of).ok()?;
+        let frequency = self.evaluate(self.law.frequency()?, value_of).ok()?;
         Some(frequency * frequency.abs())
     }
 
@@ -564,7 +532,7 @@ impl Solution {
     /// The branch of the relation that starts at the linear frequency, at given values; `None` where there is no relation, a
     /// value is missing, or the branch has no start.
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
-        let relation = self.relation.as_ref()?;
+        let relation = self.law.relation()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
         let mut sizes: Vec<(Symbol, Scaled)> = Vec::new();
         for symbol in relation.symbols() {
@@ -585,7 +553,23 @@ impl Solution {
             }
         };
         let terms: Vec<branch::Term> = relation.terms().map(term).collect();
-        branch::follow(&terms, value_of(amplitude).unwrap_or(0.0))
+        branch::follow(&terms, value_of(amplitude).unwrap_or(0.0), self.precision())
+    }
+
+    /// How far the coefficients are rounded, relatively: to fifteen digits, or as any double.
+    fn precision(&self) -> f64 {
+        if self.numerical { 5e-15 } else { f64::EPSILON }
+    }
+
+    /// How far rounding of the coefficients may move omega^2, relatively, where the law is a polynomial: its terms cancel far
+    /// outside of its reach. `None` where a value is missing.
+    pub fn rounding_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
+        let (law, power) = match (self.law.frequency_squared(), self.law.frequency()) {
+            (Some(law), _) => (law, 1.0),
+            (None, law) => (law?, 2.0),
+        };
+        let (value, size) = self.evaluate_with_size(law, value_of).ok()?;
+        Some(power * self.precision() * size / value.abs())
     }
 
     /// The motion as a numerical Fourier series in `theta`.
@@ -620,17 +604,8 @@ impl Solution {
 
     /// Whether any polynomial of the solution contains the amplitude symbol: not so for linear equations and limit cycles.
     pub fn depends_on_amplitude(&self) -> bool {
-        let laws = self
-            .frequency
-            .iter()
-            .chain(&self.frequency_squared)
-            .chain(&self.relation);
         let amplitude = self.amplitude.symbol();
-        let equations = self.system.iter().flat_map(|system| &system.equations);
-        let forms = self.closed_form.iter().map(|form| &form.value).chain(equations);
-        self.by_quadrature.is_some()
-            || laws.into_iter().any(|law| law.symbols().contains(&amplitude))
-            || forms.into_iter().any(|form| form.contains(amplitude))
+        self.law.contains(amplitude)
             || self
                 .definitions
                 .iter()

@@ -94,6 +94,16 @@ fn every_example_prints_what_it_printed() {
     });
 }
 
+#[path = "../examples/two_links.rs"]
+mod two_links;
+
+/// The example of the library: a motion checked by its energy and by the other integrator.
+#[test]
+fn the_example_of_two_links_prints_what_it_printed() {
+    two_links::main().expect("a motion");
+    snapshots(|| insta::assert_snapshot!("two-links", two_links::report().expect("a motion")));
+}
+
 /// The table of every method in text, LaTeX and JSON.
 #[test]
 fn every_comparison_prints_what_it_printed() {

@@ -1,7 +1,8 @@
 //! Homotopy perturbation against published relations, other methods and the exact frequency.
 
 use lindstedt::exact::Polynomial;
-use lindstedt::expr::parse_expression;
+use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Oscillator, Symbol};
@@ -41,7 +42,7 @@ fn the_relation_of_duffing_to_order_six() {
     // Om = 1 + 3/4 s - 3/128 s^2/Om + 21/131072 s^4/Om^3 - 33/16777216 s^6/Om^5, times Om^5.
     let expected = "omega^12 - omega^10 - 3*eps*A^2*omega^10/4 + 3*eps^2*A^4*omega^8/128 - 21*eps^4*A^8*omega^4/131072 \
                     + 33*eps^6*A^12/16777216";
-    assert_eq!(derive(DUFFING, 6).relation, Some(polynomial(expected)));
+    assert_eq!(derive(DUFFING, 6).law.relation(), Some(&polynomial(expected)));
 }
 
 #[test]
@@ -50,25 +51,25 @@ fn odd_orders_of_duffing_beyond_the_first_add_nothing() {
     // b = (2K/pi)^2 (1 - 2m) and c = 2m (2K/pi)^2. Jacobi's imaginary modulus, m -> -m/(1 - m), K -> sqrt(1 - m) K, turns c
     // into -c and leaves b + 3c/4 as it is: beyond the first, all corrections of b are even in c.
     for order in [2, 4] {
-        assert_eq!(derive(DUFFING, order).relation, derive(DUFFING, order + 1).relation);
+        assert_eq!(derive(DUFFING, order).law, derive(DUFFING, order + 1).law);
     }
-    assert_ne!(derive(DUFFING, 3).relation, derive(DUFFING, 4).relation);
+    assert_ne!(derive(DUFFING, 3).law, derive(DUFFING, 4).law);
 }
 
 #[test]
 fn the_first_order_is_the_papers_equation_12() {
     let solution = derive("x'' + x - x^3/6 = 0", 1);
-    assert_eq!(solution.frequency_squared, Some(polynomial("1 - A^2/8")));
+    assert_eq!(solution.law.frequency_squared(), Some(&polynomial("1 - A^2/8")));
     assert_eq!(
-        derive("x'' + sin(x) = 0", 1).frequency_squared,
-        Some(polynomial("1 - A^2/8"))
+        derive("x'' + sin(x) = 0", 1).law.frequency_squared(),
+        Some(&polynomial("1 - A^2/8"))
     );
 }
 
 #[test]
 fn the_second_order_is_a_square_root() {
     let solution = derive(DUFFING, 2);
-    let text = solution.closed_form.as_ref().expect("a closed form").to_string();
+    let text = solution.law.closed_form().expect("a closed form").to_string();
     let root = parse_expression(text.strip_prefix("omega^2 = ").expect("omega^2 = ...")).expect("an expression");
     for s in [-0.5, 0.1, 1.0, 2.0, 100.0] {
         let value = root
@@ -163,7 +164,7 @@ fn a_branch_ends_where_its_discriminant_vanishes() {
         solution.branch_at(&value)
     };
     let edge = (-ending).sqrt();
-    assert!(matches!(at(0.999_999 * edge), Some(Branch::At(_))));
+    assert!(matches!(at(0.999_999 * edge), Some(Branch::At { .. })));
     for amplitude in [1.000_001 * edge, 2.0, 1e6] {
         let found = at(-amplitude);
         assert!(
@@ -191,6 +192,48 @@ fn forces_without_a_linear_part_start_from_their_lowest_power() {
     assert!((omega(1e12) / 1e24 / 0.746834 - 1.0).abs() < 2e-2, "{}", omega(1e12));
     let (below, above) = (omega(0.999), omega(1.001));
     assert!(below < above && above < 1.01 * below, "{below} {above}");
+}
+
+/// What the validity says of homotopy analysis and of iteration perturbation is what was done.
+#[test]
+fn validity_says_what_is_open_and_where_it_was_cut() {
+    let of = |method, equation: &str, order, hbar: Option<&str>| {
+        let options = Options {
+            method: Some(method),
+            order,
+            hbar: hbar.map(|text| text.parse().expect("a number")),
+            ..Options::default()
+        };
+        solve(&Oscillator::parse(equation).expect("an equation"), &options).expect("a solution")
+    };
+    let says = |solution: &Solution, words: &str| solution.validity.iter().any(|line| line.contains(words));
+    // Where hbar is open it is said to be; the first order and a given one leave nothing open.
+    for (order, hbar, open) in [
+        (Some(2), None, true),
+        (None, None, true),
+        (Some(1), None, false),
+        (Some(3), Some("-1"), false),
+    ] {
+        let solution = of(Method::HomotopyAnalysis, DUFFING, order, hbar);
+        assert_eq!(
+            says(&solution, "hbar controls the convergence"),
+            open,
+            "{:?}",
+            solution.validity
+        );
+    }
+    let solution = of(Method::IterationPerturbation, DUFFING, None, None);
+    assert!(!says(&solution, "cut after"), "{:?}", solution.validity);
+    let solution = of(Method::IterationPerturbation, "x'' + sin(x) = 0", None, None);
+    let highest = solution.displacement.highest_harmonic();
+    assert!(
+        says(&solution, &format!("the motion is cut after its harmonic {highest}")),
+        "{:?}",
+        solution.validity
+    );
+    let solution = of(Method::IterationPerturbation, "x'' + k*x + x^3 = 0", Some(2), None);
+    let words = "after 2 passes; the frequency is the root that continues omega0^2 from A = 0";
+    assert!(says(&solution, words), "{:?}", solution.validity);
 }
 
 /// The hbar in use stands beside its formula in every format, whatever the parameters are called.
@@ -226,4 +269,72 @@ fn a_table_says_which_hbar_was_used() {
         let table = json::comparison(&comparison).to_string();
         assert!(table.contains(&format!("\"{own}\":{digits}")), "{digits} {table}");
     }
+}
+
+/// A load whose equilibrium is no fraction, in units in which the coefficients of the formula leave the range of doubles, and
+/// in units in which they are of order one: omega^2 scales with the unit of time alone.
+#[test]
+fn formulas_hold_in_any_units() {
+    let mut compared = 0;
+    for (large, small, amplitude) in [
+        (
+            "x'' + 1e16*x + 66e38*x^3 + 218e61*x^5 - 1380 = 0",
+            "x'' + x + 0.66*x^3 + 0.218*x^5 - 0.138 = 0",
+            "2.24",
+        ),
+        (
+            "x'' + 1e16*x + 3e26*x^2 + 66e38*x^3 - 1380 = 0",
+            "x'' + x + 0.03*x^2 + 0.66*x^3 - 0.138 = 0",
+            "11.5",
+        ),
+    ] {
+        for (method, order) in [
+            (Method::IterationPerturbation, 2),
+            (Method::HomotopyAnalysis, 3),
+            (Method::HomotopyPerturbation, 3),
+            (Method::LindstedtPoincare, 4),
+        ] {
+            let squared = |equation: &str, amplitude: String| {
+                let oscillator = Oscillator::parse(equation).expect(equation);
+                let options = Options {
+                    method: Some(method),
+                    order: Some(order),
+                    hbar: (method == Method::HomotopyAnalysis).then(|| Expr::from(-1)),
+                    ..Options::default()
+                };
+                let solution = solve(&oscillator, &options).expect(equation);
+                let at = [("A".into(), amplitude.parse().expect("a number"))].into();
+                evaluate(&oscillator, &solution, &at).map(|found| found.frequency_squared)
+            };
+            let (found, expected) = (
+                squared(large, format!("{amplitude}e-12")),
+                squared(small, amplitude.to_owned()),
+            );
+            match (found, expected) {
+                (Ok(found), Ok(expected)) => {
+                    compared += 1;
+                    let error = found / 1e16 / expected - 1.0;
+                    assert!(error.abs() < 1e-9, "{large} {method:?}: {found} {expected}");
+                }
+                (found, expected) => assert!(found.is_err() && expected.is_err(), "{found:?} {expected:?}"),
+            }
+        }
+    }
+    assert!(compared >= 6, "{compared}");
+}
+
+/// Where the first frequency is not real there is no hbar to look for, and the reason is said.
+#[test]
+fn homotopy_analysis_says_where_its_first_frequency_is_not_real() {
+    let oscillator = Oscillator::parse("x'' + 1.32*tanh(6830*x) + 0.703*x = 0").expect("an oscillator");
+    let options = Options {
+        method: Some(Method::HomotopyAnalysis),
+        order: Some(3),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).expect("a solution");
+    let at = |amplitude: f64| evaluate(&oscillator, &solution, &[("A".into(), amplitude)].into());
+    let refused = at(3.88).expect_err("not real");
+    assert!(refused.to_string().contains("w0 has no real value"), "{refused}");
+    assert!(at(1e-5).is_ok());
 }

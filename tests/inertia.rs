@@ -135,6 +135,82 @@ fn laws_of_one_term_are_their_definitions() {
     }
 }
 
+/// Homotopy perturbation of order n is right to the power 2 n of the amplitude, n where there are even terms: its error, against
+/// Runge-Kutta on the equation as typed, falls by as much with the amplitude.
+#[test]
+fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
+    for (equation, even, at) in [
+        ("(1 + x^2)*x'' + x*x'^2 + x = 0", false, vec![]),
+        ("x'' + x*x'^2 + sin(x) = 0", false, vec![]),
+        (
+            "(1 + b*x^2)*x'' - b*x*x'^2 + k*x = 0",
+            false,
+            vec![("b", "0.7"), ("k", "3")],
+        ),
+        ("x'' + x'^2/4 + x = 0", true, vec![]),
+        ("x'' + x*x'^2/3 + x + x^2 = 0", true, vec![]),
+    ] {
+        let amplitudes = if even { ["0.02", "0.04"] } else { ["0.1", "0.2"] };
+        for order in [1, 2, 3] {
+            if even && order == 1 {
+                continue;
+            }
+            let [near, far] = amplitudes.map(|amplitude| {
+                let mut values = at.clone();
+                values.push(("A", amplitude));
+                let verdict = judged(equation, Method::HomotopyPerturbation, Some(order), &values);
+                verdict.relative_error.expect("a frequency").abs()
+            });
+            let power = if even { order + 1 } else { 2 * order + 2 };
+            let slope = (far / near).log2();
+            // Beyond the order nothing is promised, and near 1e-12 Runge-Kutta itself is heard.
+            assert!(
+                slope > f64::from(power) - 0.4 || far < 1e-10,
+                "{equation} of order {order}: {near:e}, {far:e}"
+            );
+        }
+        // Another way to the same place: Lindstedt-Poincare.
+        let (order, power) = if even { (4, 5.0) } else { (2, 6.0) };
+        let [near, far] = amplitudes.map(|amplitude| {
+            let mut values = at.clone();
+            values.push(("A", amplitude));
+            let methods = [(Method::HomotopyPerturbation, order), (Method::LindstedtPoincare, 4)];
+            let [homotopy, series] = methods.map(|(method, order)| {
+                let verdict = judged(equation, method, Some(order), &values);
+                verdict.frequency.expect("a frequency")
+            });
+            (homotopy / series - 1.0).abs()
+        });
+        assert!((far / near).log2() > power - 0.4, "{equation}: {near:e}, {far:e}");
+    }
+}
+
+/// One harmonic, whether balanced or freed of its secular term, gives one law: `omega^2 (1 - A^2/4) = 1`.
+#[test]
+fn the_first_order_of_homotopy_perturbation_is_the_balance_of_one_harmonic() {
+    let (_, solution) = derived("x'' + x*x'^2 + x = 0", Method::HomotopyPerturbation, Some(1));
+    let law = solution.law.closed_form().expect("a law").value.clone();
+    for (amplitude, expected) in [(0.5, 1.0 / (1.0 - 0.0625)), (1.5, 1.0 / (1.0 - 0.5625))] {
+        let value = law.evaluate(&std::collections::BTreeMap::from([("A".into(), amplitude)]));
+        assert!((value.expect("a number") / expected - 1.0_f64).abs() < 1e-14, "{law}");
+    }
+    for equation in ["x'' + x*x'^2 + x = 0", "x'' + x^3*x'^2/2 + 2*x - x^3 = 0"] {
+        let [one, other] = [Method::HomotopyPerturbation, Method::HarmonicBalance].map(|method| {
+            let verdict = judged(equation, method, Some(1), &[("A", "0.8")]);
+            verdict.frequency.expect("a frequency")
+        });
+        assert!((one / other - 1.0).abs() < 1e-12, "{equation}: {one} {other}");
+    }
+    // Units do not matter: a nanometre and a gigahertz.
+    let frequency = |equation, amplitude| {
+        let verdict = judged(equation, Method::HomotopyPerturbation, Some(2), &[("A", amplitude)]);
+        verdict.frequency.expect("a frequency")
+    };
+    let plain = frequency("(1 + x^2)*x'' + x*x'^2 + x = 0", "0.3");
+    let small = frequency("(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0", "0.3e-9");
+    assert!((small / plain / 1e9 - 1.0).abs() < 1e-12, "{small} {plain}");
+}
+
 /// More harmonics come closer to Runge-Kutta, and the balances that are written out hold at the numbers found.
 #[test]
 fn harmonic_balance_converges_and_its_equations_hold() {
@@ -155,7 +231,7 @@ fn harmonic_balance_converges_and_its_equations_hold() {
             assert!(error < 0.2 * last, "{equation} with {order}: {error:e} after {last:e}");
             last = error;
             let (_, solution) = derived(equation, Method::HarmonicBalance, Some(order));
-            let Some(system) = &solution.system else { continue };
+            let Some(system) = solution.law.system() else { continue };
             let mut values: std::collections::BTreeMap<Symbol, f64> = at
                 .iter()
                 .map(|(name, value)| (Symbol::new(name), value.parse().expect("a number")))
@@ -229,6 +305,7 @@ fn other_velocities_are_refused() {
             Method::Hamiltonian,
             Method::EnergyBalance,
             Method::HarmonicBalance,
+            Method::HomotopyPerturbation,
         ] {
             let options = Options {
                 method: Some(method),

@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 
 /// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only: it
 /// uses nothing but the request to stop.
-const LAYERS: [&[&str]; 19] = [
+const LAYERS: [&[&str]; 20] = [
     &["interrupt"],
     &["symbol", "spelling", "ode"],
     &["exact", "period", "return_map"],
     &["decimal"],
     &["expr"],
-    &["series", "system"],
+    &["series"],
+    &["system"],
     &["derivation"],
     &["solution"],
     &["oscillator"],

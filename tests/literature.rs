@@ -44,11 +44,11 @@ fn polynomial(text: &str) -> Polynomial {
 }
 
 fn law(solution: &Solution) -> &Polynomial {
-    solution.frequency.as_ref().expect("a polynomial law")
+    solution.law.frequency().expect("a polynomial law")
 }
 
 fn law_squared(solution: &Solution) -> &Polynomial {
-    solution.frequency_squared.as_ref().expect("a polynomial law")
+    solution.law.frequency_squared().expect("a polynomial law")
 }
 
 /// `c_k(A)` of `cos k theta`.
@@ -614,7 +614,7 @@ fn what_does_not_apply_is_refused_by_name() {
     for (equation, name) in [
         ("x'' + 2*zeta*x' + sin(x) = 0", "`2*zeta*x'`"),
         ("x'' + x + c*x'^3 = 0", "`c*x'^3`"),
-        ("x'' + x + eps*(x^3 + 3*x'^3) = 0", "`eps*(x^3 + 3*x'^3)`"),
+        ("x'' + x + eps*(x^3 + 3*x'^3) = 0", "`3*x'^3`"),
         ("x'' + k*x + c*x^2*x' + eps*x^3 = 0", "`c*x^2*x'`"),
     ] {
         let refusal = refused(equation, &default);

@@ -139,7 +139,12 @@ fn linear_coefficients_that_are_no_fractions() {
             let rough = (value + 0.75 * 0.25).sqrt();
             assert!((found / rough - 1.0).abs() < 2e-3, "{linear}: {found} {rough}");
             let line = solution.formula();
-            for symbol in solution.frequency_squared.iter().flat_map(|law| law.symbols()) {
+            for symbol in solution
+                .law
+                .frequency_squared()
+                .into_iter()
+                .flat_map(|law| law.symbols())
+            {
                 let known = symbol.name() == "A" || symbol.name() == "kappa" || symbol.name() == "pi";
                 assert!(known || line.contains(&format!("{symbol} = ")), "{line}");
             }

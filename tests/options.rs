@@ -154,6 +154,32 @@ fn a_hyphen_is_standard_input() {
     std::fs::remove_dir_all(folder).expect("the folder goes");
 }
 
+/// A limit of the algebra is met once, at the beginning, and not by every method in turn.
+#[test]
+fn what_is_too_long_is_refused_soon() {
+    let wide = "x'' + (x + y + z + 1)^60 - (y + z + 1)^60 + x = 0";
+    for (arguments, message) in [
+        (
+            vec!["compare", wide, "--at", "A=0.1", "--at", "y=0", "--at", "z=0"],
+            "stopped at 100000 terms",
+        ),
+        (
+            vec!["derive", "x'' + x*(1 + x^2)^50 = 0", "--method", "homotopy-analysis"],
+            "the power 101 in the equation gives 201 harmonics",
+        ),
+    ] {
+        let start = std::time::Instant::now();
+        let output = run(&arguments);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(error.contains(message), "{error}");
+        assert!(
+            start.elapsed().as_secs_f64() < 20.0,
+            "{arguments:?}: {:?}",
+            start.elapsed()
+        );
+    }
+}
+
 #[test]
 fn a_time_limit_ends_what_takes_longer() {
     let long = ["derive", "pendulum", "--method", "homotopy-analysis", "--order", "20"];

@@ -133,7 +133,7 @@ fn every_printed_integral_is_the_number_given_with_it() {
             let Some((oscillator, solution)) = derived(equation, method) else {
                 continue;
             };
-            let Some(lines) = &solution.by_quadrature else {
+            let Some(lines) = solution.law.quadrature() else {
                 continue;
             };
             methods += 1;
@@ -177,6 +177,33 @@ fn every_printed_integral_is_the_number_given_with_it() {
             equations_hold(&more, &mut numbers, &context, &name);
         }
         assert_eq!(methods, expected, "{equation}");
+    }
+}
+
+/// Released on the other side, the motion turns on this one, and the printed period counts from there to A.
+#[test]
+fn the_period_of_a_negative_amplitude_is_printed_as_well() {
+    for (equation, mass) in [
+        ("x'' + x + x^2 = 0", (|_| 1.0) as fn(f64) -> f64),
+        ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4)),
+    ] {
+        let (oscillator, solution) = derived(equation, Method::Exact).expect(equation);
+        let words: Vec<&str> = solution.derivation.iter().map(|line| line.words.as_str()).collect();
+        let said = |text: &str| words.iter().any(|words| words.contains(text));
+        assert!(
+            said("x1, of the other sign than A") && said("for A < 0 from A to x1"),
+            "{words:?}"
+        );
+        let mut numbers = Numbers::from([("A".into(), -0.4)]);
+        let found = evaluate(&oscillator, &solution, &numbers).expect(equation);
+        let period = TAU / found.frequency_squared.sqrt();
+        // From x1 to A is the way back, whose integral has the other sign.
+        numbers.extend([("omega".into(), -TAU / period), ("T".into(), -period)]);
+        let context = |numbers: &mut Numbers, _: Symbol, place: f64| {
+            numbers.insert("M".into(), mass(place));
+        };
+        assert!(equations_hold(&solution.derivation, &mut numbers, &context, equation) > 0);
     }
 }
 

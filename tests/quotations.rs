@@ -63,6 +63,48 @@ fn the_term_is_the_one_that_was_typed() {
     assert!(fast.contains("`0.5*(x'')^2`"), "{fast}");
 }
 
+/// A bracket that numbers and parameters scale is no term of its own: what stands in it is quoted, and pointed at where it
+/// stands.
+#[test]
+fn terms_inside_scaled_brackets_are_quoted_as_typed() {
+    let cases = [
+        ("2*(x'' + x + 0.5*x') = 0", "0.5*x'", 13),
+        ("(x'' + x + 0.5*x')/2 = 0", "0.5*x'", 11),
+        ("-(x'' + x + 0.5*x') = 0", "0.5*x'", 12),
+        ("(x'' + x + 0.5*x') = 0", "0.5*x'", 11),
+        ("x'' + x = 3*(-0.5*x' + x^3)", "-0.5*x'", 14),
+        ("-2*-(x'' + x) = -3/2*(0.5*x')*4", "0.5*x'", 22),
+        ("x'' = -2*(x + 0.25*(3*x' + x^3)/k)", "3*x'", 20),
+        ("m*(x'' + ((0.5*x'))) + x = 0", "0.5*x'", 11),
+        ("(1 + 1)*(x'' + x - x'*2/3)*(k + 2)/3 = 0", "-x'*2/3", 19),
+        ("0 = 1.5*(0.1*(x'' + x) + 0.2*(0.3*x'))", "0.3*x'", 30),
+    ];
+    for (equation, expected, column) in cases {
+        let refused = refusal(equation, Method::Hamiltonian, None).expect(equation);
+        assert_eq!(refused.term(), Some(expected), "{equation}: {refused}");
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let [line, carets] = oscillator.typed.place(expected).expect(equation);
+        assert_eq!((line.as_str(), carets.find('^')), (equation, Some(column)));
+        assert_eq!(carets.matches('^').count(), expected.trim_start_matches('-').len());
+    }
+    let cases = [
+        // Of one bracket the terms alone, of several with their scales, so that their sum is what was typed.
+        ("2*(x'' + x' + x + 0.5*x') = 0", "x' + 0.5*x'"),
+        ("2*(x'' + x + 0.5*x') + 0.3*x' = 0", "2*(0.5*x') + 0.3*x'"),
+        ("x'' + x = -3*(x - 0.5*x')/2 - x'", "-3*(0.5*x')/2 + x'"),
+        // No bracket that the motion itself scales.
+        ("x'' + x + 2*(1 - x)*(0.5*x') = 0", "2*(1 - x)*(0.5*x')"),
+        ("x'' + x + (0.5*x' + 1)^2 = 0", "(0.5*x' + 1)^2"),
+        ("x'' + x + 1/(2 + 0.5*x') = 0", "1/(2 + 0.5*x')"),
+    ];
+    for (equation, expected) in cases {
+        let refused = refusal(equation, Method::Hamiltonian, None).expect(equation);
+        assert_eq!(refused.term(), Some(expected), "{equation}: {refused}");
+    }
+    let refused = refusal("x'' + 2*(x + 0.5*x^2) = 0", Method::MaxMin, None).expect("an even term");
+    assert_eq!(refused.term(), Some("0.5*x^2"), "{refused}");
+}
+
 /// About another equilibrium a term is even or odd there, and the message says where.
 #[test]
 fn oddness_about_another_equilibrium_is_said_to_be_that() {

@@ -230,6 +230,8 @@ fn steps_and_seconds_are_limits_that_are_said() {
             .skip(1)
             .all(|row| row.ends_with(",false,step limit"))
     );
+    let note = String::from_utf8_lossy(&rows.stderr);
+    assert!(note.contains("warning: 3 of 3 motions stopped early"), "{note}");
 
     std::fs::write(&path, "[run]\nduration = 1e9\nstep_limit = 10000000\n").expect("a file");
     let output = run_for("0.2", &[file, "--format", "json"]);

@@ -203,7 +203,7 @@ fn the_orders_of_homotopy_perturbation_hold_as_printed() {
         let corrections = (1..=3).map(|n| value_of(&format!("W{n}"), &lines));
         let sum: f64 = corrections.map(|w| w.evaluate(&at).expect("a number")).sum();
         let left = value_of("omega0^2", &lines).evaluate(&at).expect("a number");
-        let relation = solution.relation.as_ref().expect("a relation");
+        let relation = solution.law.relation().expect("a relation");
         let value = solution
             .evaluate(relation, &|symbol| at.get(&symbol).copied())
             .expect("a value");
@@ -412,7 +412,7 @@ fn pade_shows_the_system_it_solves() {
             .find_map(|line| line.strip_prefix("agrees with:  omega^2 = "))
             .expect("a quotient");
         let printed = read(quotient).evaluate(&values).expect("a number");
-        let law = &solution.closed_form.as_ref().expect("a closed form").value;
+        let law = &solution.law.closed_form().expect("a closed form").value;
         assert!(
             (printed - law.evaluate(&values).expect("a number")).abs() < 1e-13,
             "{equation} in {small}"
@@ -709,7 +709,7 @@ fn no_method_leaves_its_derivation_in_comments() {
                 method.name()
             );
             let whole = latex::solution(&solution, None);
-            if solution.by_quadrature.is_some() {
+            if solution.law.quadrature().is_some() {
                 assert!(whole.contains("\\int_"), "{whole}");
             }
         }

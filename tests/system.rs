@@ -1,11 +1,14 @@
-//! First-order systems followed by their Taylor series, against elliptic functions, exact orbits and conserved energies.
+//! First-order systems followed by their Taylor series and by Runge-Kutta, against elliptic functions, exact orbits, conserved
+//! energies, and each other.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 use lindstedt::Symbol;
 use lindstedt::expr::{Expr, parse_expression};
-use lindstedt::system::{End, Event, Options, Path, System, SystemError};
+use lindstedt::ode::{self, Point, integrate_first_order};
+use lindstedt::series::recurrence::RecurrenceError;
+use lindstedt::system::{End, Event, Integrator, Options, Path, System, SystemError};
 
 fn expression(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|error| panic!("{text}: {error}"))
@@ -23,8 +26,20 @@ fn system(states: &[&str], right: &[&str], numbers: &[(&str, f64)]) -> Result<Sy
 
 fn follow(system: &System, start: &[f64], end: f64, events: &[Event]) -> Path {
     system
-        .follow(0.0, start, end, events, &Options::default())
+        .solve(0.0, start, end, events, &Options::default())
         .expect("a path")
+}
+
+fn runge_kutta() -> Options {
+    Options {
+        integrator: Integrator::RungeKutta,
+        ..Options::default()
+    }
+}
+
+/// By Taylor series and by Runge-Kutta.
+fn by_both(system: &System, start: &[f64], end: f64, events: &[Event]) -> [Path; 2] {
+    [Options::default(), runge_kutta()].map(|options| system.solve(0.0, start, end, events, &options).expect("a path"))
 }
 
 #[test]
@@ -50,18 +65,47 @@ fn two_links_keep_their_energy() {
     let first = format!("(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/{divisor}");
     let second = format!("(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/{divisor}");
     let links = system(&["a", "b", "p", "q"], &["p", "q", &first, &second], &[]).unwrap();
+    let vertical = [Event::record(expression("a")), Event::record(expression("a - 3/2"))];
     let energy = |y: &[f64]| {
         let [a, b, p, q] = [y[0], y[1], y[2], y[3]];
         p * p + 0.5 * q * q + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos()
     };
     // Small, large, and one that tumbles over.
     for start in [[0.1, 0.1, 0.0, 0.0], [1.5, -0.5, 0.0, 0.0], [2.5, 2.0, 0.5, -1.0]] {
-        let path = follow(&links, &start, 50.0, &[]);
-        assert_eq!(path.reason(), End::Reached);
+        let [path, other] = by_both(&links, &start, 50.0, &vertical);
+        assert_eq!((path.reason(), other.reason()), (End::Reached, End::Reached));
+        assert!(other.step_count() > path.step_count());
         let before = energy(&start);
         for i in 0..=500 {
-            let drift = energy(&path.at(0.1 * f64::from(i)).expect("a state")) - before;
-            assert!(drift.abs() < 1e-12, "{start:?} at {i}: {drift:e}");
+            let [state, judged] = [&path, &other].map(|path| path.at(0.1 * f64::from(i)).expect("a state"));
+            for (state, kept) in [(&state, 1e-12), (&judged, 1e-11)] {
+                let drift = energy(state) - before;
+                assert!(drift.abs() < kept, "{start:?} at {i}: {drift:e}");
+            }
+            // Both are right as far as the motion lets errors grow: the one that tumbles is chaotic.
+            let time = 0.1 * f64::from(i);
+            let allowed = if start[0] < 2.0 { 1e-10 } else { 1e-11 * time.exp() };
+            for (value, expected) in judged.iter().zip(&state).filter(|_| allowed < 1e-4) {
+                assert!(
+                    (value - expected).abs() < allowed,
+                    "{start:?} at {time}: {judged:?} {state:?}"
+                );
+            }
+        }
+        // At rest on the surface of an event they leave it without an occurrence.
+        let until = if start[0] < 2.0 { 50.0 } else { 15.0 };
+        let met = |path: &Path| -> Vec<_> {
+            path.occurrences()
+                .iter()
+                .copied()
+                .filter(|met| met.time < until)
+                .collect()
+        };
+        let (met, judged) = (met(&path), met(&other));
+        assert!(met.len() == judged.len() && met.len() > 5, "{met:?} {judged:?}");
+        for (met, judged) in met.iter().zip(judged) {
+            assert_eq!((met.event, met.rising), (judged.event, judged.rising));
+            assert!((met.time - judged.time).abs() < 1e-4, "{met:?} {judged:?}");
         }
     }
     // The normal modes of small swings: omega^2 = 2 -+ sqrt(2), b = +-sqrt(2) a.
@@ -107,61 +151,251 @@ fn an_orbit_closes_after_its_period() {
     }
 }
 
-/// Half a period on a spring k, half on 1 + k, exactly.
+/// Half a period on a spring k, half on 1 + k, exactly, however the corner is written.
 #[test]
 fn a_corner_is_met_and_left_where_it_is() {
-    let bilinear = system(&["x", "v"], &["v", "-x - k*x*H(x)"], &[("k", 3.0)]).unwrap();
-    let path = follow(&bilinear, &[-1.0, 0.0], 100.0, &[Event::stop(expression("v"))]);
-    assert_eq!(path.reason(), End::Event(0));
-    // From -1 up to the corner in a quarter of 2 pi, on to rest at 1/2 in a quarter of pi.
-    assert!((path.end() - 0.75 * PI).abs() < 1e-13, "{}", path.end());
-    assert!((path.at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
+    for right in [
+        "-x - k*x*H(x)",
+        "-x - k*max(x, 0)",
+        "-x - k*(x + abs(x))/2",
+        "min(-x, -(1 + k)*x)",
+    ] {
+        let bilinear = system(&["x", "v"], &["v", right], &[("k", 3.0)]).unwrap();
+        for path in by_both(&bilinear, &[-1.0, 0.0], 100.0, &[Event::stop(expression("v"))]) {
+            assert_eq!(path.reason(), End::Event(0));
+            // From -1 up to the corner in a quarter of 2 pi, on to rest at 1/2 in a quarter of pi.
+            assert!((path.end() - 0.75 * PI).abs() < 1e-12, "{right}: {}", path.end());
+            assert!((path.at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
+        }
+    }
     // Free fall onto a wall of constant force: parabolas.
     let wall = system(&["x", "v"], &["v", "-sgn(x)"], &[]).unwrap();
-    let path = follow(
-        &wall,
-        &[1.0, 0.0],
-        8.0 * 2.0_f64.sqrt(),
-        &[Event::record(expression("x"))],
+    let end = 8.0 * 2.0_f64.sqrt();
+    let paths = by_both(&wall, &[1.0, 0.0], end, &[Event::record(expression("x"))]);
+    for (path, allowed) in paths.iter().zip([1e-13, 1e-11]) {
+        let end = path.at(path.end()).expect("a state");
+        assert!((end[0] - 1.0).abs() < allowed, "{end:?}");
+        assert_eq!(path.occurrences().len(), 4);
+    }
+}
+
+/// The same bilinear spring in any units: a hundred half swings of a quadrillionth of a second are no standstill.
+#[test]
+fn corners_are_met_in_any_units() {
+    for (omega, length) in [(1e15, 1e-12), (1.0, 1.0), (1e-12, 1e15)] {
+        let numbers = [("s", omega * omega)];
+        let bilinear = system(&["x", "v"], &["v", "-s*x - 3*s*x*H(x)"], &numbers).unwrap();
+        let period = 1.5 * PI / omega;
+        for path in by_both(
+            &bilinear,
+            &[-length, 0.0],
+            50.0 * period,
+            &[Event::record(expression("v"))],
+        ) {
+            assert_eq!(
+                (path.reason(), path.end()),
+                (End::Reached, 50.0 * period),
+                "{omega} {:?}",
+                path.occurrences()
+            );
+            let end = path.at(path.end()).expect("a state");
+            assert!((end[0] / length + 1.0).abs() < 1e-10, "{omega} {end:?}");
+            let turns = path.occurrences().iter().filter(|met| met.time < 49.9 * period);
+            assert_eq!(turns.count(), 99, "{omega}");
+        }
+    }
+}
+
+/// A contact has no value on the near side: x^(3/2) from the touch on. The rebound is as fast as the touch, and the depth is
+/// that of the energy, 1/2 = 2/5 k d^(5/2).
+#[test]
+fn a_contact_is_gated_by_its_step() {
+    let contact = system(&["x", "v"], &["v", "-k*x^(3/2)*H(x)"], &[("k", 1e6)]).unwrap();
+    let events = [Event::record(expression("v")), Event::stop(expression("x + 1/2"))];
+    for path in by_both(&contact, &[-0.4, 1.0], 10.0, &events) {
+        // In time the contact has no series at the touch and the release: the series may end there, and says so.
+        if path.reason() == End::Singular && path.step_count() < 200 {
+            assert!(path.at(path.end()).expect("a state")[0].abs() < 1e-12);
+            continue;
+        }
+        assert_eq!(path.reason(), End::Event(1));
+        let end = path.at(path.end()).expect("a state");
+        assert!((end[1] + 1.0).abs() < 1e-8, "{end:?}");
+        let deepest = path
+            .occurrences()
+            .iter()
+            .find(|met| met.event == 0)
+            .expect("a turning point");
+        let depth = path.at(deepest.time).expect("a state")[0];
+        assert!((depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8, "{depth}");
+    }
+}
+
+/// Euler's free body in an array: three states, two constants, and the same by expressions.
+#[test]
+fn any_number_of_states_by_a_closure() {
+    let spin = |_: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[0] * w[2], -w[0] * w[1]];
+    let start = [0.1, 1.0, 0.2];
+    let options = ode::Options::with_tolerance(1e-13);
+    let turned = ode::Event::new(|point: &Point<[f64; 3]>| point.y[1], ode::Action::Record);
+    let path = integrate_first_order(spin, Point { t: 0.0, y: start }, 40.0, &[turned], &options).expect("a path");
+    let by_name = system(&["a", "b", "c"], &["-b*c", "2*a*c", "-a*b"], &[]).unwrap();
+    let series = follow(&by_name, &start, 40.0, &[Event::record(expression("b"))]);
+    let times = |index: usize| series.occurrences()[index].time;
+    assert!(series.occurrences().len() >= 4 && path.occurrences().len() == series.occurrences().len());
+    for (index, met) in path.occurrences().iter().enumerate() {
+        assert!((met.state.t - times(index)).abs() < 1e-10 && met.rising == series.occurrences()[index].rising);
+    }
+    for point in path.samples(101) {
+        let [a, b, c] = point.y;
+        assert!((2.0 * a * a + b * b - 1.02).abs() < 1e-11 && (a * a - c * c + 0.03).abs() < 1e-11);
+        for (value, expected) in series.at(point.t).expect("a state").iter().zip(point.y) {
+            assert!((value - expected).abs() < 1e-10, "{point:?}");
+        }
+    }
+    assert!(path.state_at(40.1).is_none());
+    let nowhere = |_: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [0.0, (-w[0]).sqrt(), 0.0];
+    let refused = integrate_first_order(nowhere, Point { t: 0.0, y: start }, 1.0, &[], &options).unwrap_err();
+    assert_eq!(refused, ode::IntegrationError::RateNotFinite { index: 1, t: 0.0 });
+    let refused = integrate_first_order(
+        spin,
+        Point {
+            t: 0.0,
+            y: [f64::NAN; 3],
+        },
+        1.0,
+        &[],
+        &options,
+    )
+    .unwrap_err();
+    assert!(
+        matches!(refused, ode::IntegrationError::ValuesNotFinite { .. }),
+        "{refused}"
     );
-    assert!((path.at(path.end()).expect("a state")[0] - 1.0).abs() < 1e-13);
-    assert_eq!(path.occurrences().len(), 4);
+}
+
+/// What is looked for may turn faster than the motion, at any time of the day.
+#[test]
+fn fast_events_and_corners_are_all_met() {
+    let even = system(&["x"], &["1"], &[]).unwrap();
+    for path in by_both(&even, &[0.001], 10.0, &[Event::record(expression("sin(100*x)"))]) {
+        assert_eq!(path.occurrences().len(), 318);
+        for (index, met) in path.occurrences().iter().enumerate() {
+            let time = (index + 1) as f64 * PI / 100.0 - 0.001;
+            assert!(
+                (met.time - time).abs() < 1e-12 && met.rising == (index % 2 == 1),
+                "{met:?}"
+            );
+        }
+    }
+    // Up on one half of every period, down on the other; and twice as long up as down.
+    let square = system(&["x", "y"], &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"], &[]).unwrap();
+    for path in by_both(&square, &[0.0, 0.0], TAU, &[]) {
+        let end = path.at(TAU).expect("a state");
+        assert!(end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11, "{end:?}");
+    }
+    // A late start costs no digits.
+    let bilinear = system(&["x", "v"], &["v", "-x - 3*x*H(x)"], &[]).unwrap();
+    for options in [Options::default(), runge_kutta()] {
+        let path = bilinear
+            .solve(1e6, &[-1.0, 0.0], 1e6 + 1.5 * PI * 20.0, &[], &options)
+            .expect("a path");
+        let end = path.at(path.end()).expect("a state");
+        assert!((end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8, "{end:?}");
+    }
+}
+
+/// Saturation with |x| = 1 as an event as well: where the corner is, rounding may put the event on either side of it.
+#[test]
+fn an_event_on_a_corner_is_met_once() {
+    let saturated = system(&["x", "v"], &["v", "-min(max(x, -1), 1)"], &[]).unwrap();
+    let events = [Event::record(expression("x")), Event::record(expression("abs(x) - 1"))];
+    // Parabolas from 3 to 1 in two units, a sine from there to -1 in 2 atan(1/2).
+    let (fall, swing) = (2.0, 2.0 * 0.5_f64.atan());
+    for path in by_both(&saturated, &[3.0, 0.0], 40.0 * (2.0 * fall + swing), &events) {
+        let count = |event: usize| path.occurrences().iter().filter(|met| met.event == event).count();
+        assert_eq!((count(0), count(1)), (40, 80), "{:?}", path.occurrences());
+        for (index, met) in path.occurrences().iter().filter(|met| met.event == 1).enumerate() {
+            let halves = (index / 2) as f64 * (2.0 * fall + swing);
+            let time = halves + fall + if index % 2 == 1 { swing } else { 0.0 };
+            assert!(
+                (met.time - time).abs() < 1e-9 && met.rising == (index % 2 == 1),
+                "{met:?} {time}"
+            );
+        }
+    }
+    // At rest on a corner to which both sides lead back, and on one that it can leave on one side.
+    let held = system(&["x", "v"], &["v", "1 - 2*H(x)"], &[]).unwrap();
+    for path in by_both(&held, &[0.0, 0.0], 3.0, &[]) {
+        assert_eq!((path.reason(), path.end()), (End::Sticks, 0.0));
+    }
+    let bounce = system(&["x", "v"], &["v", "-sgn(x)"], &[]).unwrap();
+    for path in by_both(&bounce, &[0.0, 1.0], 9.0, &[Event::record(expression("x"))]) {
+        assert_eq!((path.reason(), path.occurrences().len()), (End::Reached, 4));
+        let end = path.at(9.0).expect("a state");
+        assert!((end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11, "{end:?}");
+    }
 }
 
 /// Dry friction takes twice its bound of the amplitude in every half swing, and holds where the spring is weaker.
 #[test]
 fn dry_friction_stops_the_motion_where_it_holds() {
     let slider = system(&["x", "v"], &["v", "-x - mu*sgn(v)"], &[("mu", 0.1)]).unwrap();
-    let path = follow(&slider, &[-1.05, 0.0], 100.0, &[Event::record(expression("v"))]);
-    assert_eq!(path.reason(), End::Sticks);
-    // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of time pi.
-    assert!((path.end() - 5.0 * PI).abs() < 1e-11, "{}", path.end());
-    assert!((path.at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
+    for path in by_both(&slider, &[-1.05, 0.0], 100.0, &[Event::record(expression("v"))]) {
+        assert_eq!(path.reason(), End::Sticks);
+        // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of time pi.
+        assert!((path.end() - 5.0 * PI).abs() < 1e-11, "{}", path.end());
+        assert!((path.at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
+    }
 }
 
 #[test]
 fn what_cannot_be_followed_is_said() {
     assert_eq!(
         system(&["x"], &["k*x"], &[]).expect_err("an unknown name"),
-        SystemError::Unknown("k".into())
+        SystemError::Expression(RecurrenceError::Unknown("k".into()))
     );
     assert!(matches!(system(&["x"], &[], &[]), Err(SystemError::Length { .. })));
+    // A corner inside a jump would keep a side that is no longer its own.
+    for jumps in ["max(H(x), 1/2)", "1 - abs(1 + 2*sgn(x))"] {
+        let refused = system(&["x"], &[jumps], &[]).expect_err(jumps);
+        assert!(matches!(refused, SystemError::JumpInCorner(_)), "{refused}");
+    }
+    // What has no value has no sign either.
+    let unsigned = system(&["x"], &["1 + H(log(x))"], &[]).unwrap();
     let root = system(&["x"], &["sqrt(x)"], &[]).unwrap();
-    let refused = root.follow(0.0, &[-1.0], 1.0, &[], &Options::default());
-    assert_eq!(refused.expect_err("no root"), SystemError::Start("x".into()));
+    for options in [Options::default(), runge_kutta()] {
+        let refused = unsigned.solve(0.0, &[-1.0], 1.0, &[], &options);
+        assert_eq!(refused.expect_err("no logarithm"), SystemError::Start("x".into()));
+        let refused = root.solve(0.0, &[-1.0], 1.0, &[], &options);
+        assert_eq!(refused.expect_err("no root"), SystemError::Start("x".into()));
+        let refused = root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("y"))], &options);
+        let unknown = SystemError::Expression(RecurrenceError::Unknown("y".into()));
+        assert_eq!(refused.expect_err("an unknown name"), unknown);
+        let refused = root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("log(x - 9)"))], &options);
+        assert_eq!(refused.expect_err("no logarithm"), SystemError::Event(0));
+        // Without a way to go the start is all there is.
+        let path = root.solve(2.0, &[1.0], 2.0, &[], &options).expect("a start");
+        assert_eq!(
+            (path.end(), path.reason(), path.at(2.0)),
+            (2.0, End::Reached, Some(vec![1.0]))
+        );
+        assert!(path.at(2.1).is_none() && path.at(1.9).is_none());
+    }
     assert!(matches!(
-        root.follow(0.0, &[f64::NAN], 1.0, &[], &Options::default()),
+        root.solve(0.0, &[f64::NAN], 1.0, &[], &Options::default()),
         Err(SystemError::Bounds)
     ));
     // x' = x^2 ends in a pole at t = 1.
     let pole = system(&["x"], &["x^2"], &[]).unwrap();
-    let path = follow(&pole, &[1.0], 2.0, &[]);
-    assert_eq!(path.reason(), End::Singular);
-    assert!((path.end() - 1.0).abs() < 1e-6, "{}", path.end());
+    for path in by_both(&pole, &[1.0], 2.0, &[]) {
+        assert_eq!(path.reason(), End::Singular);
+        assert!((path.end() - 1.0).abs() < 1e-6, "{}", path.end());
+    }
     let short = Options {
         step_limit: 3,
         ..Options::default()
     };
-    let path = pole.follow(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
+    let path = pole.solve(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
     assert_eq!((path.reason(), path.step_count()), (End::StepLimit, 3));
 }

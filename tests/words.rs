@@ -143,3 +143,53 @@ fn a_table_fails_with_its_worst_row() {
         assert_eq!(printed(&output).contains(" fail "), code == 3);
     }
 }
+
+/// What is beyond double precision is called that, and where, and not a pole or an end of the force.
+#[test]
+fn an_overflow_is_called_one() {
+    for (equation, amplitude, place, term) in [
+        ("x'' + x*exp(x^2) = 0", "2.5e11", "2.5e11", "exp(x^2)"),
+        ("x'' + exp(x) - 1 = 0", "2.5e11", "2.5e11", "exp(x)"),
+        ("x'' + x + x^99 = 0", "-1e30", "-1e30", "x^99"),
+        ("x'' + sinh(x) = 0", "1000", "1e3", "sinh(x)"),
+    ] {
+        let output = run(
+            &[
+                "derive",
+                equation,
+                "--method",
+                "exact",
+                "--at",
+                &format!("A={amplitude}"),
+            ],
+            None,
+        );
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let expected = format!("the force overflows at x = {place}: `{term}` is beyond the range of double precision");
+        assert!(message.contains(&expected), "{equation}: {message}");
+    }
+    let table = printed(&run(&["compare", "x'' + x + x^99 = 0", "--at", "A=1e30"], Some(400)));
+    assert!(
+        table.contains("not known: the force overflows at x = 1e30: `x^99`"),
+        "{table}"
+    );
+    assert!(
+        table.contains("omega^2 is beyond the range of double precision"),
+        "{table}"
+    );
+    assert!(!table.contains("the force ends") && !table.contains("pole"), "{table}");
+    // What escapes is not too stiff.
+    let soft = [
+        "compare",
+        "x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0",
+        "--at",
+        "mu=0.1",
+        "--at",
+        "eps=-5",
+    ];
+    let table = printed(&run(&soft, Some(400)));
+    assert!(
+        table.contains("the motion escapes") && !table.contains("stiff"),
+        "{table}"
+    );
+}

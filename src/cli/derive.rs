@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
+use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal};
 use lindstedt::problem::{self, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
@@ -269,38 +270,34 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             chosen.name()
         ))
     };
-    let by_polynomial = [
-        Method::HomotopyPerturbation,
-        Method::HomotopyAnalysis,
-        Method::ParameterExpansion,
-    ];
-    if arguments.taylor.is_some() && !by_polynomial.contains(&chosen) {
-        return without(
-            "--taylor",
-            "homotopy-perturbation, homotopy-analysis and parameter-expansion",
-        );
+    let entry = Entry::of(chosen);
+    if arguments.taylor.is_some() && !entry.takes(Choice::Taylor) {
+        return without("--taylor", &that_take(Choice::Taylor));
     }
-    if arguments.cycle.is_some() && ![Method::LindstedtPoincare, Method::Pade].contains(&chosen) {
-        return without("--cycle", "lindstedt-poincare");
+    if arguments.cycle.is_some() && !entry.takes(Choice::Cycle) {
+        return without("--cycle", &that_take(Choice::Cycle));
     }
     let (order, pade) = match arguments.order.or(problem.order.map(Order::from)) {
-        Some(_) if method == Some(Method::Exact) => {
+        Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
             return without("--order, or `order` in the file,", "the methods that approximate");
         }
-        Some(Order::Degrees(..)) if method != Some(Method::Pade) => {
-            return usage("degrees L,M are those of --method pade".to_owned());
+        Some(Order::Degrees(..)) if !entry.takes(Choice::Degrees) => {
+            return usage(format!(
+                "degrees L,M are those of --method {}",
+                that_take(Choice::Degrees)
+            ));
         }
         Some(Order::Degrees(numerator, denominator)) => (None, Some((numerator, denominator))),
-        Some(Order::Power(_)) if method == Some(Method::Pade) => {
-            return usage("--method pade takes two degrees: --order 2,1".to_owned());
+        Some(Order::Power(_)) if entry.takes(Choice::Degrees) => {
+            return usage(format!("--method {} takes two degrees: --order 2,1", chosen.name()));
         }
         Some(Order::Power(order)) => (Some(order), None),
         None => (None, None),
     };
     let hbar = match &arguments.hbar {
         None => None,
-        Some(_) if method != Some(Method::HomotopyAnalysis) => {
-            return usage("--hbar belongs to --method homotopy-analysis".to_owned());
+        Some(_) if !entry.takes(Choice::Hbar) => {
+            return usage(format!("--hbar belongs to --method {}", that_take(Choice::Hbar)));
         }
         Some(text) => match parse_expression(text) {
             Ok(value) if value.as_number().is_some() => Some(value),

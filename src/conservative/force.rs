@@ -246,6 +246,16 @@ impl Force {
             .find(|&place| self.is_pole(place, size))
     }
 
+    /// What of the force is beyond double precision at the distance `y`, in words, where that is why it has no finite value there.
+    pub fn overflow(&self, y: f64) -> Option<String> {
+        let mut there = self.numbers.clone();
+        there.insert(self.coordinate, self.equilibrium + y);
+        match self.at(y).is_finite() {
+            true => None,
+            false => self.force.overflow(&there),
+        }
+    }
+
     /// Whether the force grows towards a place so fast that its potential is infinite there: as close to it as rounding lets
     /// the force be known, like a power of the distance no weaker than its inverse, or nearly.
     pub fn is_pole(&self, place: f64, size: f64) -> bool {

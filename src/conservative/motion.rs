@@ -43,11 +43,14 @@ impl Force {
     ) -> Result<T, PeriodError> {
         let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
         let force = period::Force::with_cuts(&value, &cuts);
-        let pole = |end: f64| {
-            self.gap(start, end).map(|place| PeriodError::Pole {
-                place: place - self.equilibrium(),
-            })
+        let no_value = |distance: f64| match self.overflow(distance) {
+            Some(term) => PeriodError::Overflow { place: distance, term },
+            None => PeriodError::Pole { place: distance },
         };
+        let pole = |end: f64| self.gap(start, end).map(|place| no_value(place - self.equilibrium()));
+        if self.overflow(start).is_some() {
+            return Err(no_value(start).moved(self.equilibrium()));
+        }
         let found = match period::turning_point(&force, 0.0, start) {
             Ok(end) => match pole(end) {
                 Some(error) => Err(error),

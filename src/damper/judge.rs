@@ -332,7 +332,10 @@ fn told(
     if start.velocity == 0.0 {
         turns.push(Turn { t: 0.0, x: start.x });
     }
-    for Occurrence { phase, event, state } in trajectory.occurrences().iter().copied() {
+    for Occurrence {
+        phase, event, state, ..
+    } in trajectory.occurrences().iter().copied()
+    {
         let coordinate = Coordinate::of(model, place(phase).0.region);
         match meanings.get(phase).and_then(|list| list.get(event)) {
             Some(&Meaning::Touch(side)) => {

@@ -11,6 +11,8 @@
 //! in units of 1/omega with omega^2 = g/L, energy in units of m g L; everything else is dimensionless. The maximum
 //! says that the contact never pulls: left fast enough, the barrier lets go before it is back in place.
 
+use std::f64::consts::{FRAC_2_PI, PI, TAU};
+
 use thiserror::Error;
 
 /// How dry friction depends on the velocity.
@@ -200,7 +202,7 @@ impl Model {
     pub fn damping(&self, velocity: f64, direction: f64) -> f64 {
         let dry = match self.friction {
             Friction::Exact => self.alpha * direction,
-            Friction::Arctangent => self.alpha * std::f64::consts::FRAC_2_PI * (STEEPNESS * velocity).atan(),
+            Friction::Arctangent => self.alpha * FRAC_2_PI * (STEEPNESS * velocity).atan(),
         };
         -2.0 * self.zeta * velocity - dry
     }
@@ -244,5 +246,42 @@ impl Model {
     pub fn energy(&self, x: f64, velocity: f64) -> f64 {
         let depth = self.depth(x).map_or(0.0, |(_, depth)| depth);
         self.swing_energy(x, velocity) + self.elastic_energy(depth)
+    }
+
+    /// When Coulomb friction lets go of a pendulum at rest at x, held since `t` against the constant force `field` and
+    /// the excitation: the time and the direction; nothing where it holds for ever.
+    ///
+    /// |field + beta cos x sin(eta t)| = alpha, with the force on its way out.
+    pub(super) fn release(&self, t: f64, x: f64, field: f64) -> Option<(f64, f64)> {
+        let drive = self.beta * x.cos();
+        if drive == 0.0 || self.frequency_ratio == 0.0 {
+            return None;
+        }
+        let phase = self.frequency_ratio * t;
+        let mut first: Option<(f64, f64)> = None;
+        for direction in [1.0, -1.0] {
+            let level = (direction * self.alpha - field) / drive;
+            if level.abs() >= 1.0 {
+                continue;
+            }
+            // On its way out: direction * drive * cos(phase) > 0.
+            let angle = if direction * drive > 0.0 {
+                level.asin()
+            } else {
+                PI - level.asin()
+            };
+            let turns = ((phase - angle) / TAU).floor();
+            // The state may stand at the level already, to rounding: then it goes at once.
+            let near = 1e-14 * phase.abs().max(1.0);
+            let mut candidate = angle + TAU * turns;
+            if candidate < phase - near {
+                candidate += TAU;
+            }
+            let time = (candidate / self.frequency_ratio).max(t);
+            if first.is_none_or(|(earlier, _)| time < earlier) {
+                first = Some((time, direction));
+            }
+        }
+        first
     }
 }

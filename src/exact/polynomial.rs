@@ -289,7 +289,15 @@ impl Polynomial<Rational> {
 
     /// The value with every symbol replaced by its number; the first symbol without one is the error.
     pub fn evaluate(&self, value_of: impl Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
-        let (mut sum, mut in_range) = (0.0, true);
+        self.evaluate_with_size(value_of).map(|(sum, _)| sum)
+    }
+
+    /// The value, and the sum of the sizes of its terms: what they cancel to, beside what they are.
+    ///
+    /// # Errors
+    /// The first symbol without a number.
+    pub fn evaluate_with_size(&self, value_of: impl Fn(Symbol) -> Option<f64>) -> Result<(f64, f64), Symbol> {
+        let (mut sum, mut size, mut in_range) = (0.0, 0.0, true);
         for (monomial, coefficient) in &self.terms {
             let mut product = to_f64(coefficient);
             in_range &= product.is_normal();
@@ -299,9 +307,10 @@ impl Polynomial<Rational> {
                 in_range &= power.is_normal() && product.is_normal();
             }
             sum += product;
+            size += product.abs();
         }
         if in_range {
-            return Ok(sum);
+            return Ok((sum, size));
         }
         // A factor or a product on the way is beyond the range of doubles, or zero.
         let term = |(monomial, coefficient): (&Monomial, &Rational)| {
@@ -314,8 +323,12 @@ impl Polynomial<Rational> {
                 Ok(product.product(factor?))
             })
         };
-        let terms: Vec<Scaled> = self.terms.iter().map(term).collect::<Result<_, Symbol>>()?;
-        Ok(Scaled::sum(&terms))
+        let mut terms: Vec<Scaled> = self.terms.iter().map(term).collect::<Result<_, Symbol>>()?;
+        let sum = Scaled::sum(&terms);
+        for term in &mut terms {
+            term.mantissa = term.mantissa.abs();
+        }
+        Ok((sum, Scaled::sum(&terms)))
     }
 
     /// The number, where no symbol occurs.

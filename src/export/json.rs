@@ -19,7 +19,7 @@ use crate::expr::{Expr, parse_expression};
 use crate::impact::{Impact, Setup};
 use crate::series::FourierSeries;
 use crate::solution::{
-    AmplitudeConvention, ClosedForm, Definition, LeadingCycle, LimitCycle, Method, Solution, System,
+    AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, LimitCycle, Method, Root, Solution, System,
 };
 use crate::symbol::Symbol;
 use crate::verify::comparison::{Comparison, Refused, Row};
@@ -83,7 +83,7 @@ fn polynomial(polynomial: &Polynomial, solution: &Solution) -> Value {
 /// The document of kind `solution`; `verification` is null unless the formula was judged.
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Value {
     let small = solution.small_parameter;
-    let optional = |law: &Option<Polynomial>| law.as_ref().map(|law| polynomial(law, solution));
+    let optional = |law: Option<&Polynomial>| law.map(|law| polynomial(law, solution));
     let harmonic = |(k, cosine, sine): (usize, Polynomial, Polynomial)| json!({ "harmonic": k, "cos": polynomial(&cosine, solution), "sin": polynomial(&sine, solution) });
     let names: Vec<&str> = solution.parameters.iter().map(|name| name.name()).collect();
     let definitions: Map<String, Value> = solution
@@ -102,12 +102,12 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Val
         "parameters": names,
         "definitions": definitions,
         "equilibrium": constant(&solution.equilibrium),
-        "frequency": optional(&solution.frequency),
-        "frequency_squared": optional(&solution.frequency_squared),
-        "relation": optional(&solution.relation),
-        "closed_form": solution.closed_form.as_ref().map(ToString::to_string),
+        "frequency": optional(solution.law.frequency()),
+        "frequency_squared": optional(solution.law.frequency_squared()),
+        "relation": optional(solution.law.relation()),
+        "closed_form": solution.law.closed_form().map(ToString::to_string),
         "by_quadrature": solution.by_numbers(),
-        "system": solution.system.as_ref().map(system),
+        "system": solution.law.system().map(system),
         "displacement": {
             "variable": "theta",
             "harmonics": solution.displacement.harmonics().into_iter().map(harmonic).collect::<Vec<_>>(),
@@ -270,7 +270,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Value {
             "linearisation": rule.name(),
             "integrator_tolerance": integrator_tolerance,
         },
-        "law": solution(&impact.law, None),
+        "law": solution(&impact.free_swing, None),
         "frequency": impact.frequency(),
         "phases": impact.paper.phases.iter().map(phase).collect::<Vec<_>>(),
         "energy_phases": impact.energy.phases.iter().map(phase).collect::<Vec<_>>(),
@@ -383,10 +383,6 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         return unexpected("method", "the name of a method, and `amplitude` that of a convention");
     };
     let order = document["order"].as_u64().and_then(|order| u32::try_from(order).ok());
-    let optional = |key: &str| match &document[key] {
-        Value::Null => Ok(None),
-        value => read_polynomial(value, key).map(Some),
-    };
     let strings = |key: &'static str| -> Result<Vec<String>, JsonError> {
         let list = document[key]
             .as_array()
@@ -408,20 +404,38 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
         parameters: strings("parameters")?.iter().map(|name| Symbol::new(name)).collect(),
         definitions: read_definitions(&document["definitions"])?,
         equilibrium: expression(text(&document["equilibrium"], "exact")?, "equilibrium")?,
-        frequency: optional("frequency")?,
-        frequency_squared: optional("frequency_squared")?,
-        relation: optional("relation")?,
-        closed_form: read_closed_form(&document["closed_form"])?,
-        by_quadrature: document["by_quadrature"]
-            .as_str()
-            .map(|text| text.split("; ").map(Line::words).collect()),
-        system: read_system(&document["system"])?,
+        law: read_law(document)?,
         displacement: read_displacement(&document["displacement"]["harmonics"])?,
         limit_cycle,
         numerical: document["numerical"].as_bool().unwrap_or(false),
         validity: strings("validity")?,
         steps: vec![],
         derivation: vec![],
+    })
+}
+
+/// The law, of whose kinds a document holds one.
+fn read_law(document: &Value) -> Result<Law, JsonError> {
+    let optional = |key: &str| match &document[key] {
+        Value::Null => Ok(None),
+        value => read_polynomial(value, key).map(Some),
+    };
+    let (frequency, squared) = (optional("frequency")?, optional("frequency_squared")?);
+    let form = read_closed_form(&document["closed_form"])?;
+    let system = read_system(&document["system"])?;
+    Ok(match (optional("relation")?, squared, frequency, form, system) {
+        (Some(relation), squared, _, form, _) => Law::Relation {
+            relation,
+            root: squared.map(Root::Polynomial).or(form.map(Root::Closed)),
+        },
+        (None, Some(squared), frequency, ..) => Law::Series { squared, frequency },
+        (None, None, Some(frequency), ..) => Law::Frequency(frequency),
+        (None, None, None, Some(form), _) => Law::Closed(form),
+        (None, None, None, None, Some(system)) => Law::System(system),
+        (None, None, None, None, None) => {
+            let lines = document["by_quadrature"].as_str().map(|text| text.split("; "));
+            Law::Quadrature(lines.into_iter().flatten().map(Line::words).collect())
+        }
     })
 }
 

@@ -13,9 +13,8 @@ pub use expression::{expression, symbol};
 
 pub use super::steps::latex as steps;
 use crate::contact::phases::{Column, Form, Phase};
-use crate::decimal::{decimal, significant};
+use crate::decimal::{decimal, significant, significant_fraction};
 use crate::exact::polynomial::Monomial;
-use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::Impact;
@@ -38,8 +37,12 @@ fn coefficient_term(monomial: &Monomial, coefficient: &Rational, numerical: bool
     let term = |number: Rational| expression(&Expr::from(&Polynomial::term(monomial.clone(), number)));
     match numerical && !coefficient.is_integer() {
         false => term(coefficient.clone()),
-        true if monomial.factors().is_empty() => scientific(to_f64(coefficient)),
-        true => format!("{}\\,{}", scientific(to_f64(coefficient)), term(Rational::one())),
+        true if monomial.factors().is_empty() => scientific_text(&significant_fraction(coefficient, 6)),
+        true => format!(
+            "{}\\,{}",
+            scientific_text(&significant_fraction(coefficient, 6)),
+            term(Rational::one())
+        ),
     }
 }
 
@@ -66,22 +69,22 @@ pub fn equation(text: &str) -> String {
 /// The derived formula, and the verdict where it was judged, to be pasted into an article.
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
     let mut lines = vec![equation(&solution.equation).replacen(" = ", " &= ", 1)];
-    if let Some(squared) = &solution.frequency_squared {
+    if let Some(squared) = solution.law.frequency_squared() {
         lines.push(format!("\\omega^{{2}} &= {}", law(squared, solution)));
     }
-    if let Some(frequency) = &solution.frequency {
+    if let Some(frequency) = solution.law.frequency() {
         lines.push(format!("\\omega &= {}", law(frequency, solution)));
     }
-    if let (None, Some(relation)) = (&solution.frequency_squared, &solution.relation) {
+    if let (None, Some(relation)) = (solution.law.frequency_squared(), solution.law.relation()) {
         lines.push(format!("0 &= {}", expression(&Expr::from(relation))));
     }
-    if let Some(form) = &solution.closed_form {
+    if let Some(form) = solution.law.closed_form() {
         let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
         lines.push(format!("{name} &= {}", expression(&form.value)));
     }
-    let by_numbers = solution.by_quadrature.iter().flatten();
+    let by_numbers = solution.law.quadrature().into_iter().flatten();
     lines.extend(by_numbers.flat_map(super::steps::line_as_latex));
-    for equation in solution.system.iter().flat_map(|system| &system.equations) {
+    for equation in solution.law.system().into_iter().flat_map(|system| &system.equations) {
         lines.push(format!("0 &= {}", expression(equation)));
     }
     if let Some(LimitCycle { amplitude, .. }) = &solution.limit_cycle {
@@ -145,8 +148,8 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     let setup = &impact.setup;
     let mut lines = vec![equation(&impact.equation).replacen(" = ", " &= ", 1)];
-    if let Some(squared) = &impact.law.frequency_squared {
-        lines.push(format!("\\omega^{{2}} &= {}", law(squared, &impact.law)));
+    if let Some(squared) = impact.free_swing.law.frequency_squared() {
+        lines.push(format!("\\omega^{{2}} &= {}", law(squared, &impact.free_swing)));
     }
     for (label, value) in [
         ("A", setup.amplitude),
@@ -339,17 +342,17 @@ fn with_hbar(row: &Row) -> String {
 
 /// The law in one line, with the definitions it needs.
 fn formula(solution: &Solution) -> String {
-    let (text, used) = if let Some(squared) = &solution.frequency_squared {
+    let (text, used) = if let Some(squared) = solution.law.frequency_squared() {
         (format!("\\omega^{{2}} = {}", law(squared, solution)), squared.symbols())
-    } else if let Some(form) = &solution.closed_form {
+    } else if let Some(form) = solution.law.closed_form() {
         if solution.numerical {
             return "closed form, rounded coefficients".to_owned();
         }
         let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
         (format!("{name} = {}", expression(&form.value)), form.value.symbols())
-    } else if let Some(frequency) = &solution.frequency {
+    } else if let Some(frequency) = solution.law.frequency() {
         (format!("\\omega = {}", law(frequency, solution)), frequency.symbols())
-    } else if let Some(relation) = &solution.relation {
+    } else if let Some(relation) = solution.law.relation() {
         (format!("0 = {}", law(relation, solution)), relation.symbols())
     } else {
         return "by numbers".to_owned();

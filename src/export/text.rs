@@ -10,10 +10,9 @@ pub use comparison::comparison;
 
 pub use super::steps::text as steps;
 use crate::contact::phases::Column;
-use crate::decimal::{decimal, significant};
+use crate::decimal::{decimal, significant, significant_fraction};
 use crate::derivation::NOTATION;
 use crate::exact::polynomial::Monomial;
-use crate::exact::rational::to_f64;
 use crate::exact::{Polynomial, Rational};
 use crate::impact::Impact;
 use crate::method::homotopy_analysis::HBAR;
@@ -45,14 +44,14 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
     let mut text = format!("{}\n\n", solution.equation);
     let _ = writeln!(text, "{}, {}", solution.title(), solution.amplitude);
     text.push('\n');
-    let mut law = |name: &str, law: &Option<Polynomial>| {
+    let mut law = |name: &str, law: Option<&Polynomial>| {
         if let Some(law) = law {
             let _ = writeln!(text, "  {name:<8}= {}", by_order(law, solution));
         }
     };
-    law("omega^2", &solution.frequency_squared);
-    law("omega", &solution.frequency);
-    if let (None, Some(relation)) = (&solution.frequency_squared, &solution.relation) {
+    law("omega^2", solution.law.frequency_squared());
+    law("omega", solution.law.frequency());
+    if let (None, Some(relation)) = (solution.law.frequency_squared(), solution.law.relation()) {
         let _ = writeln!(
             text,
             "  0       = {}",
@@ -60,7 +59,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
                 .exponent(Symbol::new("omega")))
         );
     }
-    if let Some(closed_form) = &solution.closed_form {
+    if let Some(closed_form) = solution.law.closed_form() {
         let _ = writeln!(text, "  {closed_form}");
     }
     if let Some(cycle) = &solution.limit_cycle {
@@ -74,10 +73,10 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
             let _ = writeln!(text, "  {line}");
         }
     }
-    for line in solution.by_quadrature.iter().flatten() {
+    for line in solution.law.quadrature().into_iter().flatten() {
         let _ = writeln!(text, "  {line}");
     }
-    if let Some(system) = &solution.system {
+    if let Some(system) = solution.law.system() {
         let names: Vec<&str> = system.unknowns.iter().map(|name| name.name()).collect();
         let _ = writeln!(text, "  for {}:", names.join(", "));
         for equation in &system.equations {
@@ -152,7 +151,7 @@ fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> 
     if !numerical || coefficient.is_integer() {
         return term(coefficient.clone());
     }
-    let number = decimal(to_f64(coefficient));
+    let number = significant_fraction(coefficient, 6);
     match monomial.factors().is_empty() {
         true => number,
         false => format!("{number}*{}", term(Rational::one())),
@@ -274,18 +273,18 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         setup.stiffness_source
     );
     let law = impact
+        .free_swing
         .law
-        .frequency_squared
-        .as_ref()
+        .frequency_squared()
         .map(ToString::to_string)
         .unwrap_or_default();
     let _ = writeln!(
         text,
         "\nThe law of the free swing, {} to order {} in A",
-        impact.law.method.title(),
-        impact.law.order
+        impact.free_swing.method.title(),
+        impact.free_swing.order
     );
-    let _ = writeln!(text, "  {}", impact.law.equation);
+    let _ = writeln!(text, "  {}", impact.free_swing.equation);
     let _ = writeln!(text, "  omega^2 = {law}");
     let _ = writeln!(
         text,

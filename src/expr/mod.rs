@@ -33,6 +33,7 @@ mod function;
 mod normal;
 mod number;
 mod order;
+mod overflow;
 mod parse;
 mod polynomial;
 mod print;
@@ -346,7 +347,7 @@ impl Expr {
     }
 
     /// Every node, each shared one once, parents before children.
-    fn unique_nodes(&self) -> impl Iterator<Item = &Self> {
+    pub(crate) fn unique_nodes(&self) -> impl Iterator<Item = &Self> {
         let mut seen = HashSet::new();
         let mut open = vec![self];
         std::iter::from_fn(move || {

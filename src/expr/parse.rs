@@ -15,6 +15,7 @@
 //! its length, its nesting, the digits and exponents of its numbers and the work of bringing it into normal form are
 //! limited.
 
+mod brackets;
 mod error;
 mod lexer;
 mod mistakes;
@@ -96,7 +97,7 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
     let mut parser = Parser::new(text, false)?;
     let coordinate = parser.coordinate()?;
-    let (left, mut terms) = parser.side(false)?;
+    let (left, mut terms) = parser.side(false, coordinate)?;
     let mut right = Expr::zero();
     if parser.peek() == Kind::Equals {
         let first = parser.advance();
@@ -104,7 +105,7 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
             let span = first.start..parser.token().end;
             return Err(parser.error(span, "`==`: an equation has a single sign", "try `=`"));
         }
-        let (sum, typed) = parser.side(true)?;
+        let (sum, typed) = parser.side(true, coordinate)?;
         right = sum;
         terms.extend(typed);
     }
@@ -176,23 +177,11 @@ impl<'a> Parser<'a> {
     }
 
     /// One side of an equation, with its terms as they stand there.
-    fn side(&mut self, right: bool) -> Result<(Expr, Vec<TypedTerm>), ParseError> {
+    fn side(&mut self, right: bool, coordinate: Symbol) -> Result<(Expr, Vec<TypedTerm>), ParseError> {
         let mut shown: Vec<(Expr, Range<usize>)> = Vec::new();
         let sum = self.sum_of(&mut |term, tokens| shown.push((term.clone(), tokens)))?;
-        let typed = shown.into_iter().map(|(value, tokens)| {
-            let tokens = &self.tokens[tokens];
-            let is_sign = |token: &&Token| matches!(token.kind, Kind::Plus | Kind::Minus);
-            let signs = tokens.iter().take_while(is_sign);
-            let minuses = signs.clone().filter(|sign| sign.kind == Kind::Minus).count();
-            let rest = &tokens[signs.count()..];
-            TypedTerm {
-                value,
-                span: rest.first().map_or(0, |token| token.start)..rest.last().map_or(0, |token| token.end),
-                negative: minuses % 2 == 1,
-                right,
-            }
-        });
-        Ok((sum, typed.collect()))
+        let typed = brackets::typed_terms(self.text, &self.tokens, shown, right, coordinate);
+        Ok((sum, typed))
     }
 
     fn product(&mut self) -> Result<Expr, ParseError> {

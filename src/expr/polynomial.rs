@@ -36,6 +36,36 @@ impl Expr {
     }
 }
 
+impl Expr {
+    /// The degree of a polynomial in one variable that can be told without writing it out: nothing of the highest degree can
+    /// cancel where one term alone has it. `None` where it takes more than that.
+    pub fn degree_at_sight(&self, variable: Symbol) -> Option<u32> {
+        let degree = self.fold(|part, degrees: &[u32]| degree_of(part, degrees, variable).ok_or(()));
+        degree.ok()
+    }
+}
+
+/// The degree of a part, given those of its own parts.
+fn degree_of(part: &Expr, degrees: &[u32], variable: Symbol) -> Option<u32> {
+    let constant = degrees.iter().all(|&degree| degree == 0);
+    match part.node() {
+        Node::Symbol(name) => Some(u32::from(*name == variable)),
+        Node::Sum(_) => {
+            // A sum of constants may be zero.
+            let highest = degrees.iter().copied().max().filter(|&highest| highest > 0)?;
+            let alone = degrees.iter().filter(|&&degree| degree == highest).count() == 1;
+            alone.then_some(highest)
+        }
+        Node::Product(..) => degrees.iter().try_fold(0_u32, |sum, &degree| sum.checked_add(degree)),
+        Node::Power(_, exponent) if !constant => {
+            let exponent = exponent.as_number().filter(|number| number.is_integer())?;
+            degrees.first()?.checked_mul(exponent.to_integer().to_u32()?)
+        }
+        Node::Function(..) if !constant => None,
+        Node::Number(_) | Node::Pi | Node::Power(..) | Node::Function(..) => Some(0),
+    }
+}
+
 fn single_factor(factor: &Expr, name: &mut dyn FnMut(&Expr) -> Option<Symbol>) -> Option<Monomial> {
     match factor.node() {
         Node::Pi => Some(Monomial::power_of(Symbol::new("pi"), 1)),
@@ -70,5 +100,43 @@ impl From<&Polynomial> for Expr {
 impl std::fmt::Display for Polynomial {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         Expr::from(self).fmt(formatter)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::parse_expression;
+
+    /// The degree at sight is the one that writing the expression out gives.
+    #[test]
+    fn degrees_at_sight() {
+        for (text, degree, at_sight) in [
+            ("x*(1 + x^2)^50", Some(101), true),
+            ("(x + 1)^30 - 1 + x", Some(30), true),
+            ("x*(a + b*x^2 + x^4)^5", Some(21), true),
+            ("k*x + sqrt(k)*x^3/sin(k)", Some(3), true),
+            ("x*sin(t) + pi*x^2", Some(2), true),
+            ("(x + 1)^3 - x^3 - 1", Some(2), false),
+            ("x*(1 + x)*(1 - x) + x^3", Some(1), false),
+            ("((1 + k)^2 - 1 - 2*k - k^2)*x^3 + x", Some(1), false),
+            ("x + (1 + k)*x^3", Some(3), false),
+            ("x + 1/x", None, false),
+            ("x + x^(3/2)", None, false),
+            ("x + x^k", None, false),
+            ("x + 2^x", None, false),
+            ("x + x*abs(x)", None, false),
+            ("x/(1 + x^2)", None, false),
+        ] {
+            let expression = parse_expression(text).unwrap();
+            let x = Symbol::new("x");
+            let mut constant = |factor: &Expr| (!factor.contains(x)).then(|| Symbol::new("c"));
+            let polynomial = expression.to_polynomial(&mut constant).unwrap();
+            let range = polynomial.and_then(|polynomial| polynomial.exponent_range(x));
+            let known = range.filter(|range| range.0 >= 0).map(|range| range.1 as u32);
+            assert_eq!(known, degree, "{text}");
+            let found = expression.degree_at_sight(x);
+            assert_eq!(found, degree.filter(|_| at_sight), "{text}");
+        }
     }
 }

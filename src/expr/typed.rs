@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::parse::excerpt;
 use super::{Expr, ExprError};
@@ -14,7 +15,7 @@ pub struct Typed {
     terms: Vec<TypedTerm>,
 }
 
-/// One term of either side.
+/// One term of either side, or of a bracket there that is scaled by numbers and parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct TypedTerm {
     /// What it adds to its own side.
@@ -25,6 +26,20 @@ pub(super) struct TypedTerm {
     pub negative: bool,
     /// Whether it stands right of the equals sign.
     pub right: bool,
+    /// What stands around the bracket in which it stands.
+    pub around: Option<Arc<Around>>,
+}
+
+/// What stands around a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A bracket that nothing scales
+/// leaves the texts empty. Around a bracket in a bracket stands what stands around both.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Around {
+    pub opening: String,
+    pub closing: String,
+    /// Whether the minuses before the brackets, those inside the texts apart, are one together.
+    pub negative: bool,
+    /// The factor of the terms inside, signs included.
+    pub scale: Expr,
 }
 
 impl Typed {
@@ -56,13 +71,17 @@ impl Typed {
     }
 
     /// The terms of these numbers, counted from zero, as one text: `0.5*(x')^3`. A single term has the sign that it was typed
-    /// with; of several, those of the right side are brought to the left.
+    /// with; of several, those of the right side are brought to the left, and those of different brackets keep their scale.
     pub fn quote(&self, numbers: &[usize]) -> String {
         /// The longest text that a message quotes in full.
         const LONGEST: usize = 120;
+        let terms: Vec<&TypedTerm> = numbers.iter().filter_map(|&number| self.terms.get(number)).collect();
+        let scaled = terms.iter().any(|term| term.around != terms[0].around);
         let mut quote = String::new();
-        for term in numbers.iter().filter_map(|&number| self.terms.get(number)) {
-            let minus = term.negative ^ (term.right && numbers.len() > 1);
+        for term in &terms {
+            let around = term.around.as_ref().filter(|_| scaled);
+            let turned = around.is_some_and(|around| around.negative);
+            let minus = term.negative ^ turned ^ (term.right && terms.len() > 1);
             quote.push_str(match (quote.is_empty(), minus) {
                 (true, false) => "",
                 (true, true) => "-",
@@ -70,7 +89,9 @@ impl Typed {
                 (false, true) => " - ",
             });
             let words: Vec<&str> = self.text[term.span.clone()].split_whitespace().collect();
+            quote.push_str(around.map_or("", |around| &around.opening));
             quote.push_str(&words.join(" "));
+            quote.push_str(around.map_or("", |around| &around.closing));
         }
         match quote.char_indices().nth(LONGEST) {
             Some((cut, _)) => format!("{}...", &quote[..cut]),

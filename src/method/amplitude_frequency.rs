@@ -13,13 +13,14 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::AmplitudeFrequency), ..Options::default() };
-//! assert_eq!(solve(&duffing, &options)?.frequency_squared.unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! assert_eq!(solve(&duffing, &options)?.law.frequency_squared().unwrap().to_string(), "1 + 3*eps*A^2/4");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
+use crate::conservative::force::Force;
 use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -64,4 +65,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .validity
         .push("one term, collocated at cos(theta)^2 = 3/4: the instant is a convention of the method".to_owned());
     Ok(solution)
+}
+
+/// `f(c A)/(c A)`, `c = sqrt(3)/2`, in numbers.
+pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<f64> {
+    let place = 0.75_f64.sqrt() * amplitude;
+    Some(force.at(place) / place)
 }

@@ -10,8 +10,9 @@
 //! ```
 //!
 //! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish, or, for a force without
-//! linear part such as `x^3`, keep the values that belong to its lowest power. A branch that turns back before it reaches the
-//! amplitude asked for is refused in words.
+//! linear part such as `x^3`, keep the values that belong to its lowest power. Where that branch turns back before it reaches
+//! the amplitude asked for, there may be motions about several wells: they are followed down from amplitudes so large that the
+//! highest power alone decides. Where there are none either, the balance is refused in words.
 //!
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
@@ -36,6 +37,9 @@ pub struct Balance {
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
     pub motion: FourierSeries<f64>,
+    /// Where the branch from rest ends before this amplitude: the motion is then one about several wells, followed down from
+    /// large amplitudes.
+    pub rest_ends_at: Option<f64>,
 }
 
 /// Why a balance has no solution.
@@ -53,6 +57,9 @@ pub enum Lost {
     /// There is no motion to start from.
     #[error("no balance: at small amplitudes these harmonics have no motion to start from")]
     NoStart,
+    /// The sums for the harmonics of the force do not agree, however fine.
+    #[error("no balance: the force changes too often along this motion for its harmonics to be summed")]
+    Unsettled,
     /// The motion found runs through a place where the force has no value.
     #[error("no balance: the motion of these harmonics runs through {}, where the force has no finite value", significant(*place, 6))]
     Gap {
@@ -67,8 +74,13 @@ pub enum Lost {
 /// # Errors
 /// [`Lost`].
 pub fn balance(force: &Force, degree: Option<u32>, harmonics: &[usize], amplitude: f64) -> Result<Balance, Lost> {
+    /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more, and take long.
+    const MOST_CUTS: usize = 600;
     let problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
-    let mut state = problem.followed()?;
+    if problem.cuts.len() > MOST_CUTS {
+        return Err(Lost::Unsettled);
+    }
+    let (mut state, rest_ends_at) = problem.followed()?;
     if degree.is_none() {
         state = problem.refined(state)?;
     }
@@ -87,7 +99,15 @@ pub fn balance(force: &Force, degree: Option<u32>, harmonics: &[usize], amplitud
     Ok(Balance {
         frequency_squared: state.frequency_squared(),
         motion,
+        rest_ends_at,
     })
+}
+
+/// The last of these motions up to which, from the first on, nothing changes.
+fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
+    let first = motions.first()?.1;
+    let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
+    same.last().copied()
 }
 
 /// `ln w`, `b_k`, `ln alpha`.
@@ -377,29 +397,41 @@ impl<'a> Problem<'a> {
         Some((state, all - 1.0)).filter(|found| found.1.is_finite())
     }
 
-    /// A motion of small amplitude: the nearest at which the first harmonic nearly is the whole, or, where there is none, the
-    /// nearest below which nothing changes any more, as for a power of x.
-    fn start(&self) -> Option<State> {
-        /// Corrections so small that the branch is that of rest.
+    /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its first harmonic alone, or, where
+    /// the force has no linear part, the nearest below which nothing changes any more, as for a power of x.
+    fn at_rest(&self) -> Option<State> {
+        /// Corrections so small, and a frequency so close, that the branch is that of rest.
         const NEARLY_ALONE: f64 = 0.01;
-        const HALVINGS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 13, 17, 25, 40, 60, 100];
+        const NEARLY_LINEAR: f64 = 0.05;
+        let linear = self.force.slope(0.0);
         let mut tried: Vec<(State, f64)> = Vec::new();
-        for halving in HALVINGS {
+        for halving in (0..25).chain([30, 40, 60, 100]) {
             let amplitude = self.amplitude * 0.5_f64.powi(halving);
             let Some((alone, corrections)) = self.of_one_term(amplitude) else {
                 continue;
             };
             if corrections <= NEARLY_ALONE
+                && (alone.frequency_squared() / linear - 1.0).abs() <= NEARLY_LINEAR
                 && let Some(found) = self.near(&alone, 0.05)
             {
                 return Some(found);
             }
             tried.push((alone, corrections));
         }
-        let deepest = tried.last()?.1;
-        let settled = |entry: &&(State, f64)| (entry.1 - deepest).abs() <= 1e-6;
-        let (alone, _) = tried.iter().rev().take_while(settled).last()?;
-        self.near(alone, 0.5)
+        let upwards: Vec<&(State, f64)> = tried.iter().rev().collect();
+        self.near(&settled(&upwards)?.0, 0.5)
+    }
+
+    /// A motion of an amplitude so large that nothing changes any more beyond it.
+    fn at_large(&self) -> Option<State> {
+        const DOUBLINGS: i32 = 40;
+        let tried: Vec<Option<(State, f64)>> = (0..=DOUBLINGS)
+            .map(|doubling| self.of_one_term(self.amplitude * 2.0_f64.powi(doubling)))
+            .collect();
+        // Far out the force may overflow.
+        let felt = tried.iter().rposition(Option::is_some)?;
+        let downwards: Vec<&(State, f64)> = tried[..=felt].iter().rev().map_while(Option::as_ref).collect();
+        self.near(&settled(&downwards)?.0, 0.5)
     }
 
     /// A solution close to a guess.
@@ -408,8 +440,44 @@ impl<'a> Problem<'a> {
             .filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
-    /// The branch from its start to the amplitude.
-    fn followed(&self) -> Result<State, Lost> {
+    /// The branch from rest to the amplitude, or that from large amplitudes and where the one from rest ends.
+    fn followed(&self) -> Result<(State, Option<f64>), Lost> {
+        let lost = match self.at_rest() {
+            Some(rest) => match self.followed_from(rest, 1.0) {
+                Ok(found) => return Ok((found, None)),
+                Err(lost) => lost,
+            },
+            None => Lost::NoStart,
+        };
+        let Lost::Ends { amplitude } = lost else {
+            return Err(lost);
+        };
+        if !self.runs_over_several_wells() {
+            return Err(lost);
+        }
+        let outer = self.at_large().and_then(|large| self.followed_from(large, -1.0).ok());
+        outer.map(|found| (found, Some(amplitude))).ok_or(lost)
+    }
+
+    /// Whether the true motion passes other equilibria on its way.
+    fn runs_over_several_wells(&self) -> bool {
+        const SAMPLES: i32 = 1000;
+        let Ok(end) = self.force.turning_point(self.amplitude) else {
+            return false;
+        };
+        let pushes_away = |x: f64| x * self.force.at(x) < 0.0;
+        // Wells may be far smaller than the motion.
+        let near = |k: i32| 0.97_f64.powi(k);
+        let even = |k: i32| f64::from(k) / f64::from(SAMPLES);
+        (1..SAMPLES).any(|k| {
+            [near(k), even(k)]
+                .iter()
+                .any(|part| pushes_away(part * end) || pushes_away(part * self.amplitude))
+        })
+    }
+
+    /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards.
+    fn followed_from(&self, start: State, way: f64) -> Result<State, Lost> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
@@ -417,9 +485,9 @@ impl<'a> Problem<'a> {
         const SHARE: f64 = 0.2;
         let goal = self.amplitude.abs().ln();
         let size = self.count + 2;
-        let mut state = self.start().ok_or(Lost::NoStart)?;
+        let mut state = start;
         let mut direction = DVector::zeros(size);
-        direction[size - 1] = 1.0;
+        direction[size - 1] = way;
         let mut length = LONGEST / 4.0;
         for _ in 0..STEPS {
             let before = state.logarithm();
@@ -428,7 +496,7 @@ impl<'a> Problem<'a> {
             }
             // Round a turn the branch would come back to amplitudes that it has passed, with another motion.
             let tangent = self.tangent(&state, &direction);
-            let Some(tangent) = tangent.filter(|tangent| tangent[size - 1] > 0.0) else {
+            let Some(tangent) = tangent.filter(|tangent| way * tangent[size - 1] > 0.0) else {
                 break;
             };
             let left = (goal - before) / tangent[size - 1];
@@ -476,21 +544,23 @@ impl<'a> Problem<'a> {
         (norm.is_finite() && norm > 0.0).then(|| tangent / norm)
     }
 
-    /// The same solution by finer and finer sums.
+    /// The same solution by finer and finer sums, until they agree.
     fn refined(&self, mut state: State) -> Result<State, Lost> {
-        const FINEST: usize = 64;
-        let mut finer = 1;
-        while finer < FINEST {
+        const MOST_POINTS: usize = 1 << 17;
+        /// Where the sums are as fine as they get: the digits that a user sees.
+        const ENOUGH: f64 = 1e-8;
+        let (mut finer, mut change) = (1, f64::INFINITY);
+        while change >= 1e-12 && 2 * finer * self.nodes(&state, 1).weights.len() <= MOST_POINTS {
             finer *= 2;
             let Some(next) = self.at_amplitude(&state, finer) else {
                 break;
             };
-            let change = (&next.0 - &state.0).amax();
+            change = (&next.0 - &state.0).amax();
             state = next;
-            if change < 1e-12 {
-                return Ok(state);
-            }
         }
-        Ok(state)
+        match change < ENOUGH {
+            true => Ok(state),
+            false => Err(Lost::Unsettled),
+        }
     }
 }

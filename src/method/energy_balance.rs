@@ -13,7 +13,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::EnergyBalance), ..Options::default() };
-//! assert_eq!(solve(&duffing, &options)?.frequency_squared.unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! assert_eq!(solve(&duffing, &options)?.law.frequency_squared().unwrap().to_string(), "1 + 3*eps*A^2/4");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -24,7 +24,7 @@ use crate::conservative::potential::potential;
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Solution};
+use crate::solution::{Law, Method, Solution};
 use crate::symbol::fresh;
 
 const METHOD: Method = Method::EnergyBalance;
@@ -73,7 +73,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                     .because("kinetic energy of A*cos(theta) at theta = pi/4, from the work of the force"),
                 Line::equation(squared.clone(), integral.clone()),
             ];
-            solution.by_quadrature = Some(vec![Line::equation(squared, integral)]);
+            solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
     solution

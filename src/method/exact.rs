@@ -20,7 +20,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::Exact), ..Options::default() };
-//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega = pi/(2*K(sin(A/2)^2))");
+//! assert_eq!(solve(&pendulum, &options)?.law.closed_form().unwrap().to_string(), "omega = pi/(2*K(sin(A/2)^2))");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -38,7 +38,7 @@ use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{ClosedForm, Method, Solution};
+use crate::solution::{ClosedForm, Law, Method, Solution};
 use crate::symbol::fresh;
 
 /// The exact law of a conservative oscillator; its motion is known by numbers.
@@ -54,13 +54,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Some(coefficients) => of_polynomial(&coefficients)?,
         None => of_function(oscillator, &force)?,
     };
-    match law {
-        Some(Law::Squared(squared)) => solution.frequency_squared = Some(squared),
-        Some(Law::Form(value)) => solution.closed_form = Some(ClosedForm { squared: false, value }),
-        None => solution.by_quadrature = Some(period_by_energy(oscillator, &force)?),
-    }
+    solution.law = match law {
+        Some(Known::Squared(squared)) => Law::squared(squared),
+        Some(Known::Form(value)) => Law::Closed(ClosedForm { squared: false, value }),
+        None => Law::Quadrature(period_by_energy(oscillator, &force)?),
+    };
     solution.derivation = period_by_energy(oscillator, &force)?;
-    solution.validity.push(match solution.by_quadrature {
+    solution.validity.push(match solution.law.quadrature() {
         None => "exact wherever the motion is periodic".to_owned(),
         Some(_) => {
             "exact wherever the motion is periodic, by quadrature: no elliptic or Gamma function is known to give it"
@@ -106,9 +106,9 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, 
             integrand: Box::new(force.into()),
             variable: x,
         };
-        lines.push(
-            Line::equal([work, Expr::zero().into()]).because(format!("the other turning point {turning_back} < 0")),
-        );
+        lines.push(Line::equal([work, Expr::zero().into()]).because(format!(
+            "the other turning point {turning_back}, of the other sign than A"
+        )));
     }
     let period = Formula::Integral {
         factor: Expr::from(factor),
@@ -117,13 +117,17 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, 
         integrand: Box::new(Formula::OverRoot(Expr::one(), Box::new(gained))),
         variable: x,
     };
-    lines.push(Line::equation(total, period).because("the period, from the energy"));
+    let words = match odd {
+        true => "the period, from the energy".to_owned(),
+        false => format!("the period, from the energy; for A < 0 from A to {turning_back}"),
+    };
+    lines.push(Line::equation(total, period).because(words));
     let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
     lines.push(Line::equation("omega", frequency));
     Ok(lines)
 }
 
-enum Law {
+enum Known {
     Squared(Polynomial),
     Form(Expr),
 }
@@ -141,7 +145,7 @@ fn by_elliptic(scale: &Expr, parameter: Expr) -> Result<Expr, ExprError> {
     Expr::divide(&(Expr::pi() * scale), &(Expr::from(2) * elliptic(parameter)?))
 }
 
-fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
+fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> {
     let powers: Vec<usize> = (0..coefficients.len())
         .filter(|&n| !coefficients[n].is_zero())
         .collect();
@@ -149,8 +153,8 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
     let amplitude = Expr::symbol("A");
     let squared = amplitude.integer_power(2)?;
     match powers.as_slice() {
-        [1] => Ok(coefficients.get(1).cloned().map(Law::Squared)),
-        [n] if n % 2 == 1 => Ok(Some(Law::Form(of_power(
+        [1] => Ok(coefficients.get(1).cloned().map(Known::Squared)),
+        [n] if n % 2 == 1 => Ok(Some(Known::Form(of_power(
             &of(*n),
             &Rational::from_integer((*n).into()),
         )?))),
@@ -167,7 +171,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
                 &(Expr::pi() * scale),
                 &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
             )?;
-            Ok(Some(Law::Form(law)))
+            Ok(Some(Known::Form(law)))
         }
         [1, 3] => {
             let (a, stiff) = (of(1), of(3) * &squared);
@@ -177,7 +181,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
                 &(Expr::pi() * sum.sqrt()?),
                 &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
             )?;
-            Ok(Some(Law::Form(law)))
+            Ok(Some(Known::Form(law)))
         }
         [1, 5] | [3, 5] | [1, 3, 5] => {
             let (a, b, l) = (of(1), of(3) * &squared, of(5) * squared.integer_power(2)?);
@@ -191,7 +195,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Law>, Refusal> {
                 &(Expr::pi() * quarter),
                 &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
             )?;
-            Ok(Some(Law::Form(law)))
+            Ok(Some(Known::Form(law)))
         }
         _ => Ok(None),
     }
@@ -208,7 +212,7 @@ fn of_power(coefficient: &Expr, n: &Rational) -> Result<Expr, ExprError> {
 }
 
 /// A single term: a power with its sign, a sine or a hyperbolic sine.
-fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Law>, Refusal> {
+fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, Refusal> {
     let coordinate = oscillator.coordinate;
     let [term] = force.terms() else { return Ok(None) };
     let (mut outside, mut inside) = split(term, coordinate);
@@ -221,11 +225,11 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Law>, Ref
         let angle = Expr::divide(&(slope * Expr::symbol("A")), &Expr::from(2))?;
         let squared = Expr::function(*function, vec![angle])?.integer_power(2)?;
         let parameter = if *function == Function::Sin { squared } else { -squared };
-        return Ok(Some(Law::Form(by_elliptic(&scale, parameter)?)));
+        return Ok(Some(Known::Form(by_elliptic(&scale, parameter)?)));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
-            Ok(Some(Law::Form(of_power(&outside, &power.exponent)?)))
+            Ok(Some(Known::Form(of_power(&outside, &power.exponent)?)))
         }
         _ => Ok(None),
     }

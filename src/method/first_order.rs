@@ -14,7 +14,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let oscillator = Oscillator::parse("x'' + x + eps*sin(x) = 0")?;
 //! let options = Options { method: Some(Method::LindstedtPoincare), order: Some(1), ..Options::default() };
-//! assert_eq!(solve(&oscillator, &options)?.closed_form.unwrap().to_string(), "omega^2 = 1 + 2*eps*J1(A)/A");
+//! assert_eq!(solve(&oscillator, &options)?.law.closed_form().unwrap().to_string(), "omega^2 = 1 + 2*eps*J1(A)/A");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -11,13 +11,14 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::FrequencyFormula), ..Options::default() };
-//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega^2 = cos(A/2)");
+//! assert_eq!(solve(&pendulum, &options)?.law.closed_form().unwrap().to_string(), "omega^2 = cos(A/2)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
+use crate::conservative::force::Force;
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -58,4 +59,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .validity
         .push("one line: exact for linear forces, and to first order for cubic ones alone".to_owned());
     Ok(solution)
+}
+
+/// `f'(A/2)` in numbers.
+pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<f64> {
+    Some(force.slope(0.5 * amplitude))
 }

@@ -15,7 +15,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
-//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega^2 = 2*J1(A)/A");
+//! assert_eq!(solve(&pendulum, &options)?.law.closed_form().unwrap().to_string(), "omega^2 = 2*J1(A)/A");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -15,7 +15,8 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::HarmonicBalance), order: Some(2), ..Options::default() };
-//! let system = solve(&duffing, &options)?.system.unwrap();
+//! let solution = solve(&duffing, &options)?;
+//! let system = solution.law.system().unwrap();
 //! assert_eq!(system.equations.len(), 3); // two harmonics and A = a1 + a3
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -33,7 +34,7 @@ use crate::exact::{Integer, Polynomial, Rational, Ring};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{Method, Solution, System};
+use crate::solution::{Law, Method, Solution, System};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
@@ -92,10 +93,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 solution.validity.push(format!("the arcs are written for {first} > 0"));
             }
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
-            solution.system = Some(System { unknowns, equations });
+            solution.law = Law::System(System { unknowns, equations });
         }
         None => {
-            solution.by_quadrature = Some(solution.derivation.clone());
+            solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
     solution.validity.push(format!(

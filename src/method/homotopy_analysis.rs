@@ -17,7 +17,7 @@
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::HomotopyAnalysis), ..Options::default() };
 //! let solution = solve(&duffing, &options)?;
-//! assert_eq!(solution.frequency.unwrap().to_string(), "w0 + 3*eps^2*hbar*A^4/(256*w0^3)");
+//! assert_eq!(solution.law.frequency().unwrap().to_string(), "w0 + 3*eps^2*hbar*A^4/(256*w0^3)");
 //! assert_eq!(solution.definitions[0].meaning.to_string(), "sqrt(4 + 3*eps*A^2)/2");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -25,6 +25,7 @@
 use num_traits::{One, Zero};
 
 use super::one_term::{conservative_force, cosine, unsolved};
+use super::secular::SecularError;
 use super::{Options, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
@@ -33,7 +34,7 @@ use crate::expr::{Expr, Node};
 use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::fourier::{linear_combination, sum_of_products};
-use crate::solution::{Definition, Method, Solution};
+use crate::solution::{Definition, Law, Method, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HomotopyAnalysis;
@@ -43,6 +44,10 @@ const HIGHEST: u32 = 20;
 
 /// The most terms of one coefficient before the derivation is given up.
 const MOST_TERMS: usize = 20_000;
+
+/// Above this power of the force, coefficients have hundreds of digits and are counted: so many products of them are the most.
+const HIGH_POWER: usize = 30;
+const MOST_PRODUCTS: usize = 1_000_000;
 
 /// The name of the convergence-control parameter, with underscores behind it where the equation uses the name.
 pub const HBAR: &str = "hbar";
@@ -86,7 +91,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let terms: Vec<_> = series.iter().map(|term| (1, term)).collect();
         linear_combination(&terms)
     };
-    solution.frequency = Some(constant(&sum(&series.frequency)));
+    solution.law = Law::Frequency(constant(&sum(&series.frequency)));
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
     solution.validity.push(match order {
@@ -139,7 +144,7 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
     let (control, mut start_name) = (convergence_control(solution), numbered(&w, 0));
     let mut lines = vec![Line::equation(numbered(&u, 0), displacement[0].clone())];
     for m in 1..=order {
-        extend_powers(&mut powers, &displacement, m - 1);
+        extend_powers(&mut powers, &displacement, m - 1)?;
         let mut right_side = powers[0][m - 1].product(&constant_series(linear.clone()));
         for term in &force.terms {
             let power = &powers[term.position as usize - 1][m - 1];
@@ -241,7 +246,32 @@ fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomial>, unknown: Ex
 }
 
 /// Adds the coefficient of q^k to every power of u.
-fn extend_powers(powers: &mut [Vec<FourierSeries<Polynomial>>], displacement: &[FourierSeries<Polynomial>], k: usize) {
+///
+/// # Errors
+/// A high power would take far more algebra than anyone waits for.
+fn extend_powers(
+    powers: &mut [Vec<FourierSeries<Polynomial>>],
+    displacement: &[FourierSeries<Polynomial>],
+    k: usize,
+) -> Result<(), SecularError> {
+    let size = |series: &FourierSeries<Polynomial>| {
+        let harmonics = series.harmonics();
+        harmonics.iter().map(|entry| entry.1.terms().len()).sum::<usize>()
+    };
+    if powers.len() > HIGH_POWER {
+        let products = |i: usize| {
+            size(&displacement[i])
+                * powers
+                    .iter()
+                    .map(|power| power.get(k - i).map_or(0, size))
+                    .sum::<usize>()
+        };
+        if (1..=k).map(products).sum::<usize>() > MOST_PRODUCTS {
+            let harmonics = displacement[k].highest_harmonic() + powers.len() - 1;
+            let degree = u32::try_from(powers.len()).unwrap_or(u32::MAX);
+            return Err(SecularError::TooManyHarmonics { degree, harmonics });
+        }
+    }
     for j in 0..powers.len() {
         let next = match j.checked_sub(1) {
             None => displacement[k].clone(),
@@ -252,6 +282,7 @@ fn extend_powers(powers: &mut [Vec<FourierSeries<Polynomial>>], displacement: &[
         };
         powers[j].push(next);
     }
+    Ok(())
 }
 
 /// The coefficient of `q^k` in `w^2 u''` without the term of the unknown `w_k`.

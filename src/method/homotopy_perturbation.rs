@@ -12,18 +12,20 @@
 //! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at order one, a square root at
 //! order two, implicit above. In units of omega^2 this is [`secular::expand`](super::secular::expand) with the corrections
 //! before `y` instead of `y''`. A force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`.
+//! Inertia that depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic at order one.
 //!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let cubic = Oscillator::parse("x'' + x - x^3/6 = 0")?;
 //! let options = Options { method: Some(Method::HomotopyPerturbation), order: Some(1), ..Options::default() };
-//! assert_eq!(solve(&cubic, &options)?.frequency_squared.unwrap().to_string(), "1 - A^2/8");
+//! assert_eq!(solve(&cubic, &options)?.law.frequency_squared().unwrap().to_string(), "1 - A^2/8");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use num_traits::{One, Zero};
 
 use super::expansion::expand_exactly;
+use super::inertia::VariableMass;
 use super::one_term::conservative_force;
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
 use super::{Options, Refusal};
@@ -33,13 +35,13 @@ use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter, Term};
-use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Root, Solution};
 use crate::symbol::{Symbol, fresh};
 
 /// Derives the relation between frequency and amplitude, and the motion, to an order in the bookkeeping parameter.
 ///
 /// # Errors
-/// Damping, forcing, velocities, or a force that cannot be expanded, each by name.
+/// Damping, forcing, velocities other than those of inertia, or a force that cannot be expanded, each by name.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     with_stiffness(oscillator, options, true)
 }
@@ -50,10 +52,17 @@ pub(super) fn solve_without_linear_part(oscillator: &Oscillator, options: &Optio
 }
 
 fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> Result<Solution, Refusal> {
-    conservative_force(oscillator, options, Method::HomotopyPerturbation)?;
+    const METHOD: Method = Method::HomotopyPerturbation;
+    let moving = VariableMass::of(oscillator)?.is_some();
+    if !moving {
+        conservative_force(oscillator, options, METHOD)?;
+    } else if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
+        return Err(Refusal::Convention { method: METHOD.title() });
+    }
     let order = options.order.unwrap_or(2);
     let degree = match oscillator.polynomial_degree()? {
-        Some(degree) if options.taylor.is_none() => degree,
+        // The degree counts velocities as well.
+        Some(degree) if options.taylor.is_none() => degree + if moving { 2 } else { 0 },
         _ => options.taylor.unwrap_or(2 * order + 1),
     };
     let force = match needed {
@@ -63,7 +72,9 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     let (amplitude, omega) = (Symbol::new("A"), Symbol::new("omega"));
     // Everything beside the linear force stands at p^1, in units of omega^2.
     let term = |term: &Term| {
-        let unit = Monomial::power_of(amplitude, term.position as i32 - 1).product(&Monomial::power_of(omega, -2));
+        let (position, velocity) = (term.position as i32, term.velocity as i32);
+        let unit = Monomial::power_of(amplitude, position + velocity - 1);
+        let unit = unit.product(&Monomial::power_of(omega, velocity - 2));
         Term {
             order: 1,
             coefficient: term.coefficient.times_monomial(&unit),
@@ -91,10 +102,9 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
     let relation = relation.times_monomial(&Monomial::power_of(omega, -lowest));
 
-    let frequency_squared = (lowest == 0).then_some(explicit);
-    let closed_form = match frequency_squared {
-        None => quadratic_root(&relation, omega)?.map(|value| ClosedForm { squared: true, value }),
-        Some(_) => None,
+    let root = match explicit.exponent_range(omega).is_none_or(|range| range == (0, 0)) {
+        true => Some(Root::Polynomial(explicit)),
+        false => root_in_closed_form(&relation, omega)?.map(|value| Root::Closed(ClosedForm { squared: true, value })),
     };
     let small = match oscillator.small_parameter(options.small.as_deref()) {
         Ok(SmallParameter::Parameter(name)) => name,
@@ -118,12 +128,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         parameters: oscillator.parameters.clone(),
         definitions: force.definitions,
         equilibrium: Expr::zero(),
-        frequency: None,
-        frequency_squared,
-        relation: Some(relation),
-        closed_form,
-        by_quadrature: None,
-        system: None,
+        law: Law::Relation { relation, root },
         displacement: series
             .displacement
             .map(|coefficient, _| coefficient.product(&Polynomial::symbol(amplitude))),
@@ -138,8 +143,9 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     })
 }
 
-/// The upper root of a relation that is quadratic in `omega^2`, as an expression; `None` where it is of higher degree.
-fn quadratic_root(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
+/// The root of a relation that is linear in `omega^2`, or the upper one where it is quadratic, as an expression; `None` where it
+/// is of higher degree.
+fn root_in_closed_form(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
     let coefficient = |power: i32| {
         let mut result = Polynomial::zero();
         for (monomial, number) in relation
@@ -150,16 +156,18 @@ fn quadratic_root(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, 
         }
         result
     };
-    if relation.exponent_range(omega).is_none_or(|range| range.1 != 4)
-        || coefficient(4).as_number() != Some(Rational::one())
-    {
-        return Ok(None);
-    }
-    // z^2 - b z + c = 0
-    let mut b = coefficient(2);
+    let (a, mut b, c) = (coefficient(4), coefficient(2), coefficient(0));
     b.negate();
+    match relation.exponent_range(omega) {
+        // b z = c
+        Some((0, 2)) => return Expr::divide(&Expr::from(&c), &Expr::from(&b)).map(Some),
+        Some((0, 4)) => {}
+        _ => return Ok(None),
+    }
+    // a z^2 - b z + c = 0, a = 1 at rest
     let mut discriminant = b.product(&b);
-    discriminant.accumulate(&coefficient(0).product(&Polynomial::constant(ratio(-4, 1))));
+    discriminant.accumulate(&a.product(&c).product(&Polynomial::constant(ratio(-4, 1))));
     let root = Expr::from(&discriminant).sqrt()?;
-    Ok(Some(Expr::divide(&(&Expr::from(&b) + &root), &Expr::from(2))?))
+    let twice = (Expr::from(2) * Expr::from(&a)).expand()?;
+    Ok(Some(Expr::divide(&(&Expr::from(&b) + &root), &twice)?))
 }

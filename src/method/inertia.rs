@@ -15,7 +15,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let oscillator = Oscillator::parse("(1 + x^2)*x'' + x*x'^2 + x = 0")?;
 //! let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
-//! assert_eq!(solve(&oscillator, &options)?.closed_form.unwrap().to_string(), "omega^2 = 2/(2 + A^2)");
+//! assert_eq!(solve(&oscillator, &options)?.law.closed_form().unwrap().to_string(), "omega^2 = 2/(2 + A^2)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -40,7 +40,7 @@ use crate::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
 use crate::period;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Method, Solution, System};
+use crate::solution::{AmplitudeConvention, Law, Method, Solution, System};
 use crate::symbol::{Symbol, fresh};
 
 /// The two functions of `x'' + g x'^2 + h = 0`, and what the energy is made of.
@@ -223,15 +223,19 @@ fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> R
         None => mass_lines(moving, oscillator)?.into_iter().take(1).collect(),
     };
     lines.extend([
-        Line::equal([work, Expr::zero().into()]).because(format!("the other turning point {turning_back} < 0")),
-        Line::equation(total, period).because("the period, from the energy"),
+        Line::equal([work, Expr::zero().into()]).because(format!(
+            "the other turning point {turning_back}, of the other sign than A"
+        )),
+        Line::equation(total, period).because(format!(
+            "the period, from the energy; for A < 0 from A to {turning_back}"
+        )),
         Line::equation("omega", frequency),
     ]);
     solution.derivation = mass_lines(moving, oscillator)?;
     solution
         .derivation
         .extend(lines.iter().skip(usize::from(moving.mass.is_none())).cloned());
-    solution.by_quadrature = Some(lines);
+    solution.law = Law::Quadrature(lines);
     solution
         .validity
         .push("exact wherever the motion is periodic, by quadrature of the energy".to_owned());
@@ -295,7 +299,7 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             };
             let line = Line::equation(quarter * squared * mass, work).because(words);
             solution.derivation.push(line);
-            solution.by_quadrature = Some(solution.derivation.clone());
+            solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
     solution
@@ -376,7 +380,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 "{} times the equation has no cos(theta) along A*cos(theta)",
                 mass_name(oscillator)
             )));
-            solution.by_quadrature = Some(solution.derivation.clone());
+            solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
     solution
@@ -489,7 +493,7 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
             let unknowns = std::iter::once(Symbol::new("omega"))
                 .chain(names.iter().copied())
                 .collect();
-            solution.system = Some(System { unknowns, equations });
+            solution.law = Law::System(System { unknowns, equations });
         }
         (None, names) => {
             let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
@@ -509,7 +513,7 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
             if names.len() > 1 {
                 solution.derivation.push(Line::equation("A", sum));
             }
-            solution.by_quadrature = Some(solution.derivation.clone());
+            solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();

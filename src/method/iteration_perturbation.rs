@@ -15,7 +15,7 @@
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::IterationPerturbation), ..Options::default() };
 //! let solution = solve(&pendulum, &options)?;
-//! assert_eq!(solution.closed_form.unwrap().to_string(), "omega^2 = 2*J1(A)/A");
+//! assert_eq!(solution.law.closed_form().unwrap().to_string(), "omega^2 = 2*J1(A)/A");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -33,7 +33,7 @@ use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
-use crate::solution::{Definition, Method, Solution};
+use crate::solution::{Definition, Law, Method, Solution};
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::IterationPerturbation;
@@ -158,7 +158,10 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     }
     let relation = secular.times_monomial(&Monomial::power_of(amplitude, -1));
     let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
-    solution.relation = Some(relation.times_monomial(&Monomial::power_of(omega, -lowest)));
+    solution.law = Law::Relation {
+        relation: relation.times_monomial(&Monomial::power_of(omega, -lowest)),
+        root: None,
+    };
     solution.displacement = motion;
     solution.derivation = lines;
     solution.validity.push(format!(

@@ -19,7 +19,8 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::LindstedtPoincare), order: Some(2), ..Options::default() };
-//! let law = solve(&duffing, &options)?.frequency.unwrap();
+//! let solution = solve(&duffing, &options)?;
+//! let law = solution.law.frequency().unwrap();
 //! assert_eq!(law.to_string(), "1 + 3*eps*A^2/8 - 21*eps^2*A^4/256");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -36,7 +37,7 @@ use crate::exact::{Polynomial, Ring};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
-use crate::solution::{AmplitudeConvention, Definition, LimitCycle, Method, Solution};
+use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Solution};
 use crate::symbol::{Symbol, fresh};
 
 const TITLE: &str = "the method of Lindstedt and Poincare";
@@ -225,12 +226,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         parameters: oscillator.parameters.clone(),
         definitions,
         equilibrium: Expr::zero(),
-        frequency: Some(times(series.frequency, &linear_frequency)),
-        frequency_squared: Some(times(series.frequency_squared, &squared_unit)),
-        relation: None,
-        closed_form: None,
-        by_quadrature: None,
-        system: None,
+        law: Law::Series {
+            squared: times(series.frequency_squared, &squared_unit),
+            frequency: Some(times(series.frequency, &linear_frequency)),
+        },
         displacement,
         limit_cycle,
         numerical: false,
@@ -415,7 +414,7 @@ mod tests {
             let laws = [quotient, series].map(|force| {
                 let oscillator = Oscillator::parse(&format!("x'' + {force} = 0")).unwrap();
                 let solution = crate::method::solve(&oscillator, &Options::default()).unwrap();
-                (solution.frequency_squared, solution.displacement)
+                (solution.law.frequency_squared().cloned(), solution.displacement)
             });
             assert_eq!(laws[0], laws[1], "{quotient}");
         }

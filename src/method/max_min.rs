@@ -16,7 +16,7 @@
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::MaxMin), ..Options::default() };
 //! let solution = solve(&duffing, &options)?;
-//! assert_eq!(solution.frequency_squared.unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! assert_eq!(solution.law.frequency_squared().unwrap().to_string(), "1 + 3*eps*A^2/4");
 //! let lines: Vec<String> = solution.derivation.iter().map(ToString::to_string).collect();
 //! assert_eq!(lines[2], "at x = A:  q_A = 1 + eps*A^2");
 //! assert_eq!(lines.last().unwrap(), "k = 3/4");

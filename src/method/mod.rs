@@ -1,7 +1,7 @@
 //! The methods: each takes an [`Oscillator`] and options, and gives a [`Solution`] or a [`Refusal`].
 //!
 //! One file per method, each opening with its reference and equations. To add one: write its file with a function
-//! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`], and add one line to [`solve`].
+//! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`] and a row in [`table::METHODS`].
 
 pub mod amplitude_frequency;
 pub mod balance;
@@ -26,11 +26,13 @@ pub mod pade;
 pub mod parameter_expansion;
 mod quotation;
 pub mod secular;
+pub mod table;
 pub mod variational_iteration;
 
 use std::collections::BTreeMap;
 
 use num_traits::{One, Zero};
+use table::{Choice, Entry, that_take};
 
 use crate::decimal::decimal;
 use crate::equilibrium::{Centred, centred};
@@ -159,6 +161,14 @@ pub enum Refusal {
         /// Its highest order.
         highest: u32,
     },
+    /// An option that says nothing to the method.
+    #[error("{method} takes no {}", choice.words())]
+    NoSuchChoice {
+        /// The method's name in running text.
+        method: &'static str,
+        /// The option.
+        choice: Choice,
+    },
     /// A force that is no polynomial, where one is needed.
     #[error("{method} needs a polynomial force at this order, not `{force}`")]
     PolynomialOnly {
@@ -246,6 +256,7 @@ impl Refusal {
             }
             Self::Velocity { .. } => Some("try --method lindstedt-poincare".to_owned()),
             Self::NotOdd { .. } | Self::NotOddAbout { .. } => Some("try --method harmonic-balance, which balances the drift as well".to_owned()),
+            Self::NoSuchChoice { choice, .. } => Some(format!("it belongs to {}", that_take(*choice))),
             Self::HighestOrder { highest, .. } => Some(format!("try --order {highest}")),
             Self::PolynomialOnly { method, .. } if *method == Method::IterationPerturbation.title() => {
                 Some("try --order 1, which takes any force, or --method homotopy-perturbation".to_owned())
@@ -288,7 +299,7 @@ impl Refusal {
 /// use lindstedt::{method::{Options, solve}, Oscillator};
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
-/// assert_eq!(solution.frequency_squared.unwrap().to_string(), "1 - A^2/8");
+/// assert_eq!(solution.law.frequency_squared().unwrap().to_string(), "1 - A^2/8");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
@@ -296,16 +307,22 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Err(Refusal::Order { asked });
     }
     let method = options.method.unwrap_or(Method::LindstedtPoincare);
+    let entry = Entry::of(method);
+    refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
     let polynomial = oscillator.polynomial_degree()?.is_some();
-    let degree = rounded_degree(method, options, polynomial);
+    let degree = (entry.rounded_degree)(options, polynomial);
     let centred = centred(oscillator, degree)?;
     let options = &about_a_load(&centred, options);
-    let mut solution = by_method(method, &centred.oscillator, options)
-        .map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
+    let answer = match inertia::solve(method, &centred.oscillator, options) {
+        Ok(Some(solution)) => Ok(solution),
+        Ok(None) => (entry.solve)(&centred.oscillator, options),
+        Err(refusal) => Err(refusal),
+    };
+    let mut solution = answer.map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
     // The first order of a force that is no polynomial projects the force as it is, corners and all.
-    let projected = method == Method::LindstedtPoincare && solution.frequency.is_none();
-    if expands(method) && !projected && has_corners(&oscillator.force) {
+    let projected = method == Method::LindstedtPoincare && solution.law.frequency().is_none();
+    if entry.expands() && !projected && has_corners(&oscillator.force) {
         solution
             .validity
             .push("the force has corners: the expansion holds for motions that stay before the nearest".to_owned());
@@ -320,13 +337,31 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         solution.equation = oscillator.equation();
         return Ok(solution);
     }
-    if let (Some(degree), true) = (degree, centred.numerical && !polynomial && by_taylor_polynomial(method)) {
+    if let (Some(degree), true) = (degree, centred.numerical && !polynomial && entry.takes(Choice::Taylor)) {
         solution
             .validity
             .push(format!("the force entered as its Taylor polynomial of degree {degree}"));
     }
     move_back(&mut solution, oscillator, &centred)?;
     Ok(solution)
+}
+
+/// An option that a method has no use for is a mistake, and never ignored.
+fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), Refusal> {
+    let given = [
+        (Choice::Order, options.order.is_some()),
+        (Choice::Degrees, options.pade.is_some()),
+        (Choice::Taylor, options.taylor.is_some()),
+        (Choice::Hbar, options.hbar.is_some()),
+        (Choice::Cycle, options.cycle.is_some()),
+    ];
+    match given.iter().find(|(choice, given)| *given && !entry.takes(*choice)) {
+        Some(&(choice, _)) => Err(Refusal::NoSuchChoice {
+            method: entry.method.title(),
+            choice,
+        }),
+        None => Ok(()),
+    }
 }
 
 /// A parameter that moves the equilibrium is no small one, unless it is asked for: the amplitude is.
@@ -375,70 +410,10 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     Ok(())
 }
 
-/// Whether a method sees of the force only its derivatives at the equilibrium.
-fn expands(method: Method) -> bool {
-    matches!(
-        method,
-        Method::LindstedtPoincare | Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::Pade
-    )
-}
-
 fn has_corners(force: &Expr) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     let corners = [Absolute, Maximum, Minimum, Sign, Step];
     corners.into_iter().any(|function| force.contains_function(function))
-}
-
-/// The one place that knows every method.
-fn by_method(method: Method, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    let solve = match method {
-        Method::LindstedtPoincare => lindstedt_poincare::solve,
-        Method::HomotopyPerturbation => homotopy_perturbation::solve,
-        Method::HomotopyAnalysis => homotopy_analysis::solve,
-        Method::IterationPerturbation => iteration_perturbation::solve,
-        Method::ParameterExpansion => parameter_expansion::solve,
-        Method::HarmonicBalance => harmonic_balance::solve,
-        Method::EnergyBalance => energy_balance::solve,
-        Method::MaxMin => max_min::solve,
-        Method::AmplitudeFrequency => amplitude_frequency::solve,
-        Method::Hamiltonian => hamiltonian::solve,
-        Method::VariationalIteration => variational_iteration::solve,
-        Method::FrequencyFormula => frequency_formula::solve,
-        Method::Pade => pade::solve,
-        Method::Exact => exact::solve,
-    };
-    match inertia::solve(method, oscillator, options)? {
-        Some(solution) => Ok(solution),
-        None => solve(oscillator, options),
-    }
-}
-
-/// Whether a method puts a Taylor polynomial of a chosen degree in place of the force.
-fn by_taylor_polynomial(method: Method) -> bool {
-    matches!(
-        method,
-        Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::ParameterExpansion
-    )
-}
-
-/// The degree of the polynomial with rounded coefficients that stands for the force about an equilibrium without a closed
-/// form; `None` for methods that take the force as it is. A polynomial force is kept whole.
-fn rounded_degree(method: Method, options: &Options, polynomial: bool) -> Option<u32> {
-    let twice = |order: u32| order.saturating_mul(2).saturating_add(1);
-    match method {
-        Method::LindstedtPoincare => Some(options.order.unwrap_or(4) + 1),
-        Method::HomotopyPerturbation | Method::HomotopyAnalysis => {
-            Some(options.taylor.unwrap_or(twice(options.order.unwrap_or(2))))
-        }
-        Method::Pade => {
-            let (numerator, denominator) = options.pade.unwrap_or((2, 1));
-            Some(twice(numerator.saturating_add(denominator)))
-        }
-        Method::ParameterExpansion if options.taylor.is_some() => options.taylor,
-        Method::ParameterExpansion => (polynomial && options.order != Some(1)).then_some(0),
-        Method::IterationPerturbation => (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0),
-        _ => None,
-    }
 }
 
 /// The term of a sum that a refusal names.

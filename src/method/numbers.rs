@@ -7,12 +7,13 @@ use std::collections::BTreeMap;
 
 use num_traits::One;
 
-use super::{balance, energy_balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
+use super::table::Entry;
+use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::exact::{Integer, Polynomial};
-use crate::expr::Rounded;
+use crate::expr::{EvaluationError, Rounded};
 use crate::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
 use crate::period::PeriodError;
@@ -23,15 +24,22 @@ use crate::symbol::Symbol;
 /// The relative rounding error above which a closed form is set aside for the integral it stands for.
 const LOST_DIGITS: f64 = 1e-13;
 
+/// The relative rounding error of omega^2 from which on a formula is refused: its terms cancel.
+const NO_DIGITS: f64 = 1e-6;
+
 /// An answer in numbers.
 #[derive(Clone, Debug)]
 pub struct Numbers {
     /// omega^2, of either sign.
     pub frequency_squared: f64,
+    /// How far rounding of the formula's coefficients may move omega^2, relatively; zero where omega^2 is solved for.
+    pub rounding: f64,
     /// The motion in theta; `None` where the frequency is not real.
     pub motion: Option<FourierSeries<f64>>,
     /// Values that were chosen or solved for: hbar, the coefficients of a balance.
     pub chosen: Vec<(Symbol, f64)>,
+    /// What a reader should know of these numbers beside them.
+    pub remark: Option<String>,
 }
 
 /// Why an answer has no numbers.
@@ -63,6 +71,15 @@ pub enum NoNumbers {
     /// The branch of a balance does not reach the amplitude asked for.
     #[error(transparent)]
     Balance(#[from] balance::Lost),
+    /// The terms of the formula cancel.
+    #[error(
+        "no digits: the terms of the formula cancel at this amplitude, and rounding moves omega^2 by {} of itself",
+        significant(*rounding, 2)
+    )]
+    Cancels {
+        /// The relative rounding error of omega^2.
+        rounding: f64,
+    },
     /// There is no motion whose frequency it could be.
     #[error(transparent)]
     Motion(#[from] PeriodError),
@@ -83,19 +100,24 @@ pub fn evaluate(
     let mut chosen = Vec::new();
     let mut numbers = numbers.clone();
     if let Some(hbar) = open_hbar(solution, &numbers) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar).ok_or(NoNumbers::NoValue)?;
+        let value = best_hbar(oscillator, solution, &numbers, hbar)?;
         numbers.insert(hbar, value);
         chosen.push((hbar, value));
     }
-    if solution.system.is_some() || solution.by_quadrature.is_some() {
-        let (frequency_squared, motion) = solve(oscillator, solution, &numbers)?;
+    if solution.law.is_solved_by_numbers() {
+        let (frequency_squared, motion, remark) = solve(oscillator, solution, &numbers)?;
         return Ok(Numbers {
             frequency_squared,
+            rounding: 0.0,
             chosen: balanced(solution, &motion, &numbers),
             motion: (frequency_squared > 0.0).then_some(motion),
+            remark,
         });
     }
-    let squared = frequency_squared(oscillator, solution, &numbers)?;
+    let (squared, rounding) = frequency_squared(oscillator, solution, &numbers)?;
+    if rounding > NO_DIGITS && squared != 0.0 {
+        return Err(NoNumbers::Cancels { rounding });
+    }
     let motion = match solution.method {
         Method::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).ok().map(|found| found.1),
         Method::Exact => None,
@@ -103,12 +125,15 @@ pub fn evaluate(
     };
     Ok(Numbers {
         frequency_squared: squared,
+        rounding,
         motion,
         chosen,
+        remark: None,
     })
 }
 
-/// omega^2 alone, without the motion where that costs more.
+/// omega^2 alone, without the motion where that costs more; where its terms cancel, with the digits that are left, so that
+/// its zeros can be looked for.
 ///
 /// # Errors
 /// As [`evaluate`].
@@ -119,12 +144,12 @@ pub fn frequency_squared_of(
 ) -> Result<f64, NoNumbers> {
     let mut numbers = numbers.clone();
     if let Some(hbar) = open_hbar(solution, &numbers) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar).ok_or(NoNumbers::NoValue)?;
+        let value = best_hbar(oscillator, solution, &numbers, hbar)?;
         numbers.insert(hbar, value);
     }
-    match solution.system.is_some() || solution.by_quadrature.is_some() {
+    match solution.law.is_solved_by_numbers() {
         true => solve(oscillator, solution, &numbers).map(|found| found.0),
-        false => frequency_squared(oscillator, solution, &numbers),
+        false => frequency_squared(oscillator, solution, &numbers).map(|found| found.0),
     }
 }
 
@@ -155,7 +180,11 @@ fn balanced(solution: &Solution, motion: &FourierSeries<f64>, numbers: &BTreeMap
 }
 
 fn contains(solution: &Solution, symbol: Symbol) -> bool {
-    let laws = solution.frequency.iter().chain(&solution.frequency_squared);
+    let laws = solution
+        .law
+        .frequency()
+        .into_iter()
+        .chain(solution.law.frequency_squared());
     laws.into_iter().any(|law| law.symbols().contains(&symbol))
         || solution
             .displacement
@@ -166,7 +195,7 @@ fn contains(solution: &Solution, symbol: Symbol) -> bool {
 
 /// Laws of one term are written for positive amplitudes: a negative one is half a period away.
 fn by_size(solution: &Solution) -> bool {
-    solution.relation.is_none()
+    solution.law.relation().is_none()
         && solution.amplitude == AmplitudeConvention::Initial
         && !matches!(
             solution.method,
@@ -178,12 +207,12 @@ fn by_size(solution: &Solution) -> bool {
 /// Whether an expansion stopped at the projection of a force that is no polynomial.
 fn is_first_order(solution: &Solution) -> bool {
     // The series itself always has omega beside omega^2.
-    solution.method == Method::LindstedtPoincare && solution.frequency.is_none()
+    solution.method == Method::LindstedtPoincare && solution.law.frequency().is_none()
 }
 
 /// Whether the law is that of a motion `A cos(theta)`.
 fn of_one_term(solution: &Solution) -> bool {
-    by_size(solution) && solution.method != Method::Exact && solution.system.is_none()
+    by_size(solution) && solution.method != Method::Exact && solution.law.system().is_none()
 }
 
 /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
@@ -202,11 +231,12 @@ fn amplitude_of(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> f64 {
     numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0)
 }
 
+/// omega^2, and how far rounding of the formula may move it, relatively.
 fn frequency_squared(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<f64, NoNumbers> {
+) -> Result<(f64, f64), NoNumbers> {
     let symbol = solution.amplitude.symbol();
     if of_one_term(solution) {
         stays_defined(oscillator, solution, numbers)?;
@@ -222,22 +252,22 @@ fn frequency_squared(
         let value = numbers.get(&name).copied()?;
         Some(if sized && name == symbol { value.abs() } else { value })
     };
-    if solution.frequency_squared.is_none() && solution.relation.is_some() {
+    if solution.law.frequency_squared().is_none() && solution.law.relation().is_some() {
         return match solution.branch_at(&value_of) {
-            Some(Branch::At(squared)) => Ok(squared),
+            Some(Branch::At { squared, rounding }) => Ok((squared, rounding)),
             Some(Branch::Ends(amplitude)) => Err(NoNumbers::BranchEnds { amplitude }),
             None => Err(NoNumbers::NoValue),
         };
     }
     let value = solution.frequency_squared_at(&value_of);
-    if let Some(form) = &solution.closed_form {
+    if let Some(form) = solution.law.closed_form() {
         let value_of = |name| rounded(solution, name, &value_of);
         let kept = form
             .value
             .evaluate_rounded(&value_of)
             .is_some_and(|(value, error)| value.is_finite() && error <= LOST_DIGITS * value.abs());
         if !kept && let Some(better) = by_definition(oscillator, solution, numbers) {
-            return Ok(better);
+            return Ok((better, 0.0));
         }
     }
     let undefined = || {
@@ -245,12 +275,13 @@ fn frequency_squared(
         let mut names = solution.definitions.iter().map(|definition| definition.symbol);
         names.find(|&name| value(name).is_err())
     };
-    value
+    let value = value
         .filter(|value| value.is_finite())
         .ok_or_else(|| match undefined() {
             Some(name) => NoNumbers::Undefined { name },
             None => NoNumbers::NoValue,
-        })
+        })?;
+    Ok((value, solution.rounding_at(&value_of).unwrap_or(0.0)))
 }
 
 /// The value of a symbol or of a definition, with its rounding error.
@@ -300,23 +331,8 @@ fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMa
     } else {
         force_of(oscillator, solution, numbers)?
     };
-    let law = match solution.method {
-        Method::EnergyBalance => energy_balance::by_quadrature(&force, size)?,
-        Method::AmplitudeFrequency => {
-            let place = 0.75_f64.sqrt() * size;
-            force.at(place) / place
-        }
-        Method::FrequencyFormula => force.slope(0.5 * size),
-        Method::Hamiltonian
-        | Method::MaxMin
-        | Method::VariationalIteration
-        | Method::IterationPerturbation
-        | Method::ParameterExpansion
-        | Method::LindstedtPoincare
-        | Method::HarmonicBalance => one_term::coefficient(&force, size, 1).0 / size,
-        _ => return None,
-    };
-    law.is_finite().then_some(law)
+    let definition = Entry::of(solution.method).definition?;
+    definition(&force, size).filter(|law| law.is_finite())
 }
 
 /// Whether the equation changes its sign with the coordinate.
@@ -367,7 +383,7 @@ fn iterate_by_definition(
     if !matches!(
         solution.method,
         Method::IterationPerturbation | Method::VariationalIteration
-    ) || solution.relation.is_some()
+    ) || solution.law.relation().is_some()
     {
         return None;
     }
@@ -402,12 +418,12 @@ fn iterate_by_definition(
     finite.then(|| FourierSeries::from_parts(cosine, vec![], Integer::one()))
 }
 
-/// What has to be solved: balances, integrals, the exact motion.
+/// What has to be solved: balances, integrals, the exact motion; and a remark.
 fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<(f64, FourierSeries<f64>), NoNumbers> {
+) -> Result<(f64, FourierSeries<f64>, Option<String>), NoNumbers> {
     if oscillator.force.contains(oscillator.velocity()) {
         let found = || {
             let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
@@ -415,12 +431,13 @@ fn solve(
             Some((
                 squared,
                 motion.sum(&FourierSeries::constant(equilibrium, Integer::one())),
+                None,
             ))
         };
         return found().ok_or(NoNumbers::NoValue);
     }
     if solution.method == Method::Exact {
-        return exact_motion(oscillator, solution, numbers);
+        return exact_motion(oscillator, solution, numbers).map(|(squared, motion)| (squared, motion, None));
     }
     let given = || {
         let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
@@ -434,12 +451,16 @@ fn solve(
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
         let found = balance::balance(&force, degree, &harmonics, amplitude)?;
-        return Ok((found.frequency_squared, found.motion.sum(&shift)));
+        let remark = found.rest_ends_at.map(|end| {
+            let end = significant(end, 6);
+            format!("a balance about several wells: the one that continues from rest ends at A = {end}")
+        });
+        return Ok((found.frequency_squared, found.motion.sum(&shift), remark));
     }
     stays_defined(oscillator, solution, numbers)?;
     let squared = by_definition(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let motion = FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one());
-    Ok((squared, motion.sum(&shift)))
+    Ok((squared, motion.sum(&shift), None))
 }
 
 /// omega^2 and the motion by quadrature of the energy.
@@ -463,10 +484,10 @@ fn best_hbar(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     hbar: Symbol,
-) -> Option<f64> {
+) -> Result<f64, NoNumbers> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
-    let force = force_of(oscillator, solution, numbers)?;
+    let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     // What does not depend on hbar is computed once.
     let mut numbers = numbers.clone();
     let fixed = solution
@@ -474,9 +495,15 @@ fn best_hbar(
         .iter()
         .take_while(|definition| !definition.meaning.contains(hbar));
     for definition in fixed {
-        if let Ok(value) = definition.meaning.evaluate(&numbers) {
-            numbers.insert(definition.symbol, value);
-        }
+        // Without a first frequency there is none for any hbar.
+        let undefined = |error| match error {
+            EvaluationError::MissingSymbol(_) => NoNumbers::NoValue,
+            EvaluationError::Undefined { .. } => NoNumbers::Undefined {
+                name: definition.symbol,
+            },
+        };
+        let value = definition.meaning.evaluate(&numbers).map_err(undefined)?;
+        numbers.insert(definition.symbol, value);
     }
     let circle: [(f64, f64); SAMPLES] = std::array::from_fn(|k| {
         let theta = std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64;
@@ -485,7 +512,7 @@ fn best_hbar(
     let squared_residual = |value: f64| {
         let mut numbers = numbers.clone();
         numbers.insert(hbar, value);
-        let squared = frequency_squared(oscillator, solution, &numbers).unwrap_or(f64::NAN);
+        let squared = frequency_squared(oscillator, solution, &numbers).map_or(f64::NAN, |found| found.0);
         let Some(motion) = formula_motion(oscillator, solution, &numbers, squared) else {
             return f64::INFINITY;
         };
@@ -498,7 +525,8 @@ fn best_hbar(
         if sum.is_finite() { sum } else { f64::INFINITY }
     };
     let place = |k: usize| -2.0 * k as f64 / TRIALS as f64;
-    let best = (1..=TRIALS).min_by(|&a, &b| squared_residual(place(a)).total_cmp(&squared_residual(place(b))))?;
+    let best = (1..=TRIALS).min_by(|&a, &b| squared_residual(place(a)).total_cmp(&squared_residual(place(b))));
+    let best = best.ok_or(NoNumbers::NoValue)?;
     let (value, least) = find_minimum(squared_residual, place(best + 1), place(best - 1));
-    least.is_finite().then_some(value)
+    least.is_finite().then_some(value).ok_or(NoNumbers::NoValue)
 }

@@ -27,7 +27,7 @@ use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Solution};
 use crate::symbol::Symbol;
 
 /// The force of an oscillator that is conservative: no damping, forcing or velocities.
@@ -109,12 +109,8 @@ pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Metho
         parameters: oscillator.parameters.clone(),
         definitions: vec![],
         equilibrium: Expr::zero(),
-        frequency: None,
-        frequency_squared: None,
-        relation: None,
-        closed_form: None,
-        by_quadrature: None,
-        system: None,
+        // Every method puts its own in place of this.
+        law: Law::Quadrature(vec![]),
         displacement: cosine(Polynomial::symbol(amplitude)),
         limit_cycle: None,
         numerical: false,
@@ -131,15 +127,13 @@ pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomial> {
 
 /// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form otherwise.
 pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal> {
-    match law.to_polynomial(&mut |_| None)? {
-        Some(polynomial) => solution.frequency_squared = Some(polynomial),
-        None => {
-            solution.closed_form = Some(ClosedForm {
-                squared: true,
-                value: law.clone(),
-            });
-        }
-    }
+    solution.law = match law.to_polynomial(&mut |_| None)? {
+        Some(polynomial) => Law::squared(polynomial),
+        None => Law::Closed(ClosedForm {
+            squared: true,
+            value: law.clone(),
+        }),
+    };
     Ok(())
 }
 
@@ -166,7 +160,7 @@ pub(super) fn solve_by_integral(
         None => {
             let squared = Expr::symbol("omega").integer_power(2)?;
             let integral = first_projection(oscillator, &force)?;
-            solution.by_quadrature = Some(vec![Line::equation(squared, integral)]);
+            solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
     solution
@@ -215,11 +209,16 @@ pub(super) fn integral_law(oscillator: &Oscillator, force: &Expr, solution: &Sol
 
 /// omega^2 of an answer that has it as a polynomial or in closed form.
 pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
-    let polynomial = solution.frequency_squared.as_ref().map(Expr::from);
+    let polynomial = solution.law.frequency_squared().map(Expr::from);
     polynomial.or_else(|| {
-        let form = solution.closed_form.as_ref().filter(|form| form.squared)?;
+        let form = solution.law.closed_form().filter(|form| form.squared)?;
         Some(form.value.clone())
     })
+}
+
+/// `c_1/A` of a force by numbers: what defines the methods whose law is the shared integral.
+pub(super) fn first_projection_over_amplitude(force: &Force, amplitude: f64) -> Option<f64> {
+    Some(coefficient(force, amplitude, 1).0 / amplitude)
 }
 
 /// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its error: the midpoint

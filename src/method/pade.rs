@@ -15,7 +15,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::Pade), pade: Some((1, 1)), ..Options::default() };
-//! assert_eq!(solve(&pendulum, &options)?.closed_form.unwrap().to_string(), "omega^2 = (192 - 17*A^2)/(192 + 7*A^2)");
+//! assert_eq!(solve(&pendulum, &options)?.law.closed_form().unwrap().to_string(), "omega^2 = (192 - 17*A^2)/(192 + 7*A^2)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -33,7 +33,7 @@ use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Solution};
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::Pade;
@@ -80,7 +80,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return refused("the amplitude is not free");
     }
     let small = solution.small_parameter;
-    let law = solution.frequency_squared.clone().unwrap_or_else(Polynomial::zero);
+    let law = solution
+        .law
+        .frequency_squared()
+        .cloned()
+        .unwrap_or_else(Polynomial::zero);
     let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
     let step = if in_amplitude && even { 2 } else { 1 };
     let coefficient = |power: i64| match u32::try_from(power) {
@@ -122,9 +126,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.method = METHOD;
     solution.order = order;
     solution.degrees = Some((numerator_degree, denominator_degree));
-    solution.frequency = None;
-    solution.frequency_squared = None;
-    solution.closed_form = Some(ClosedForm { squared: true, value });
+    solution.law = Law::Closed(ClosedForm { squared: true, value });
     solution.steps = vec![];
     solution.displacement = first_correction(&solution.displacement, small, step);
     solution.validity = vec![
@@ -395,7 +397,7 @@ fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<f64>)> {
 /// Real roots by the eigenvalues of the companion matrix.
 fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let degree = coefficients.len().saturating_sub(1);
-    let Some(&leading) = coefficients.last().filter(|leading| **leading != 0.0) else {
+    let Some(&leading) = coefficients.last().filter(|leading| degree > 0 && **leading != 0.0) else {
         return vec![];
     };
     let companion = DMatrix::from_fn(degree, degree, |row, column| {
@@ -422,10 +424,8 @@ mod tests {
             pade: Some(degrees),
             ..Options::default()
         };
-        Ok(solve(&Oscillator::parse(equation).unwrap(), &options)?
-            .closed_form
-            .unwrap()
-            .value)
+        let solution = solve(&Oscillator::parse(equation).unwrap(), &options)?;
+        Ok(solution.law.closed_form().unwrap().value.clone())
     }
 
     /// omega of the pendulum is pi/(2 K(sin(A/2)^2)), by the arithmetic-geometric mean 1/agm(1, cos(A/2)) of half its period.
@@ -477,6 +477,37 @@ mod tests {
         let law = approximant("x'' + x + eps*x^3 = 0", (12, 12)).unwrap();
         let found = law.evaluate(&[("A".into(), 2.0), ("eps".into(), 1.0)].into()).unwrap();
         assert!((found.sqrt() / (f64::sqrt(5.0) * a) - 1.0).abs() < 1e-9, "{found}");
+    }
+
+    #[test]
+    fn poles_are_the_real_zeros_alone() {
+        let named = |terms: &[(i32, f64)]| {
+            let term = |&(power, value): &(i32, f64)| {
+                let unit = Monomial::power_of("k".into(), power).product(&Monomial::power_of("A".into(), 2 * power));
+                Polynomial::term(unit, Rational::from_float(value).unwrap())
+            };
+            poles(&terms.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term))
+        };
+        // (1 - z/2)(1 + z^n): of the circle only -1 is real, and for even n none.
+        let product = |n: i32| named(&[(0, 1.0), (1, -0.5), (n, 1.0), (n + 1, -0.5)]);
+        assert!(product(19).starts_with("poles at k*A^2 = -1, 2:"), "{}", product(19));
+        assert!(product(18).starts_with("poles at k*A^2 = 2:"), "{}", product(18));
+        // Beyond the highest degree nothing is listed.
+        assert!(
+            product(20).starts_with("where its denominator vanishes"),
+            "{}",
+            product(20)
+        );
+        // A pair of zeros next to the axis is none on it, at any scale; a double zero is two.
+        for unit in [1.0, 1e3, 1e-3] {
+            let near = |distance: f64| real_roots(&[unit * unit * (1.0 + distance), -2.0 * unit, 1.0]).len();
+            assert_eq!((near(1e-8), near(-1e-8)), (0, 2), "{unit}");
+        }
+        assert_eq!(
+            named(&[(0, 1.0), (1, 0.5), (2, 1.0)]),
+            "its denominator has no real zero"
+        );
+        assert!(real_roots(&[3.0]).is_empty() && real_roots(&[]).is_empty());
     }
 
     #[test]

@@ -17,7 +17,7 @@
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let quadratic = Oscillator::parse("x'' + x*abs(x) = 0")?;
 //! let options = Options { method: Some(Method::ParameterExpansion), order: Some(1), ..Options::default() };
-//! assert_eq!(solve(&quadratic, &options)?.frequency_squared.unwrap().to_string(), "8*A/(3*pi)");
+//! assert_eq!(solve(&quadratic, &options)?.law.frequency_squared().unwrap().to_string(), "8*A/(3*pi)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

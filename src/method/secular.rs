@@ -26,7 +26,8 @@ pub struct ForceTerm<C> {
     pub order: usize,
     /// Power of `y`.
     pub position: u32,
-    /// Power of `y'` (derivative in the time of the linear frequency).
+    /// Power of `y'` (derivative in the time of the linear frequency; of the frequency itself where the detuning stands
+    /// before `y`).
     pub velocity: u32,
     /// A constant series.
     pub coefficient: FourierSeries<C>,
@@ -378,12 +379,18 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         let detuned = self.detuned(&displacement);
         self.detuned.push(detuned);
         self.convolutions.push(self.position, displacement.clone());
-        self.result.displacement.push(displacement);
-        let derivatives: Vec<_> = self.result.displacement.iter().map(FourierSeries::derivative).collect();
-        let products: Vec<_> = (0..=order)
-            .map(|i| (1, &self.result.frequency[i], &derivatives[order - i]))
-            .collect();
-        let velocity = sum_of_products(&products);
+        self.result.displacement.push(displacement.clone());
+        let velocity = match self.scheme.detuning {
+            // Time is measured in the frequency itself, none of it expanded.
+            Detuning::Displacement => displacement.derivative(),
+            Detuning::Acceleration => {
+                let derivatives: Vec<_> = self.result.displacement.iter().map(FourierSeries::derivative).collect();
+                let products: Vec<_> = (0..=order)
+                    .map(|i| (1, &self.result.frequency[i], &derivatives[order - i]))
+                    .collect();
+                sum_of_products(&products)
+            }
+        };
         self.convolutions.push(self.velocity, velocity);
         self.convolutions.advance(order);
     }

@@ -14,7 +14,7 @@
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::VariationalIteration), ..Options::default() };
 //! let solution = solve(&duffing, &options)?;
-//! assert_eq!(solution.frequency_squared.as_ref().unwrap().to_string(), "1 + 3*eps*A^2/4");
+//! assert_eq!(solution.law.frequency_squared().unwrap().to_string(), "1 + 3*eps*A^2/4");
 //! assert_eq!(solution.displacement.harmonics()[1].1.to_string(), "eps*A^3/(32*omega^2)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -1,4 +1,4 @@
-//! Events: zeros of a function of (t, x, v), found inside a step.
+//! Events: zeros of a function of (t, x, v), or of all values, found inside a step.
 //!
 //! Within a step the motion is a polynomial of degree 8, so the event function is sampled at 17 Chebyshev points, and
 //! each pair of neighbouring samples of opposite sign brackets a crossing, which is then located to rounding
@@ -10,14 +10,16 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use super::State;
+use super::moment::Moment;
 use super::root::{find_minimum, find_root};
 use super::trajectory::Step;
 
-/// A function of (t, x, v) whose zero matters, the direction of crossing that counts, and what is to happen there.
-pub struct Event<'a> {
-    pub(super) function: Box<dyn Fn(f64, f64, f64) -> f64 + 'a>,
+/// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that counts, and what is to happen
+/// there.
+pub struct Event<'a, S = State> {
+    pub(super) function: Box<dyn Fn(&S) -> f64 + 'a>,
     pub(super) direction: Direction,
-    pub(super) action: Action<'a>,
+    pub(super) action: Action<'a, S>,
 }
 
 /// Which crossings of zero count.
@@ -32,7 +34,7 @@ pub enum Direction {
 }
 
 /// What happens at an event.
-pub enum Action<'a> {
+pub enum Action<'a, S = State> {
     /// It is listed in the trajectory; the run goes on.
     Record,
     /// It is listed and the run ends there.
@@ -40,35 +42,37 @@ pub enum Action<'a> {
     /// It is listed, and the run restarts with another right side and possibly another state: the closure gets the
     /// state at the event and answers the index of the phase to go on with and the state to go on from (its time is
     /// not used).
-    Switch(Box<dyn Fn(State) -> (usize, State) + 'a>),
+    Switch(Box<dyn Fn(S) -> (usize, S) + 'a>),
 }
 
 impl<'a> Event<'a> {
     /// An event that is only listed. Counts in both directions until told otherwise.
     pub fn record(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
-        Self {
-            function: Box::new(function),
-            direction: Direction::Either,
-            action: Action::Record,
-        }
+        Self::new(move |state| function(state.t, state.x, state.v), Action::Record)
     }
 
     /// An event that ends the run. Counts in both directions until told otherwise.
     pub fn stop(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
-        Self {
-            function: Box::new(function),
-            direction: Direction::Either,
-            action: Action::Stop,
-        }
+        Self::new(move |state| function(state.t, state.x, state.v), Action::Stop)
     }
 
     /// An event that switches the right side, see [`Action::Switch`]. Let `next` put the state exactly on the surface
     /// (`x = barrier`), so that the surface just left is not met again by rounding.
     pub fn switch(function: impl Fn(f64, f64, f64) -> f64 + 'a, next: impl Fn(State) -> (usize, State) + 'a) -> Self {
+        Self::new(
+            move |state| function(state.t, state.x, state.v),
+            Action::Switch(Box::new(next)),
+        )
+    }
+}
+
+impl<'a, S> Event<'a, S> {
+    /// An event of any equations. Counts in both directions until told otherwise.
+    pub fn new(function: impl Fn(&S) -> f64 + 'a, action: Action<'a, S>) -> Self {
         Self {
             function: Box::new(function),
             direction: Direction::Either,
-            action: Action::Switch(Box::new(next)),
+            action,
         }
     }
 
@@ -101,10 +105,6 @@ impl<'a> Event<'a> {
     fn leaves_at_once(&self, rising: bool) -> bool {
         matches!(self.action, Action::Switch(_)) && self.direction != Direction::Either && self.counts(rising)
     }
-
-    fn value(&self, state: State) -> f64 {
-        (self.function)(state.t, state.x, state.v)
-    }
 }
 
 /// An event function without a finite value.
@@ -120,13 +120,20 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// The fractions of the step at which the event happens, in order. `first` is true for the first step of a phase.
+    /// The fractions of the step at which the event happens, in order, and whether its function rises there. `moved` is given
+    /// for the first step of a phase: its start, moved on at the rates that the values have there.
     ///
     /// A start on the surface is no crossing, reaching zero is one, and leaving it again is none. One exception:
     /// where a phase starts on the surface of a switch and moves through it in the direction that counts, it is left
     /// at once.
-    pub(super) fn crossings(&mut self, step: &Step, event: &Event, first: bool) -> Result<Vec<f64>, NotFinite> {
-        let value_at = |fraction: f64| event.value(step.state_at(fraction));
+    pub(super) fn crossings<S: Moment>(
+        &mut self,
+        step: &Step<S>,
+        event: &Event<S>,
+        moved: Option<&S>,
+    ) -> Result<Vec<(f64, bool)>, NotFinite> {
+        let value_at = |fraction: f64| (event.function)(&step.state_at(fraction));
+        let first = moved.is_some();
         let mut samples = Vec::with_capacity(SAMPLES.len() + NEAR_START);
         for fraction in sample_fractions(first) {
             let value = value_at(fraction);
@@ -136,8 +143,9 @@ impl Watch {
             samples.push((fraction, value));
         }
         let mut starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
-        if starts_on_surface && step.state_at(0.0).v == 0.0 {
-            // From rest it leaves as a square of time at least; a slope there is the error of the polynomial, and has any sign.
+        if starts_on_surface && moved.is_some_and(|moved| (event.function)(moved) == 0.0) {
+            // What it depends on is at rest: it leaves as a square of time at least; a slope there is the error of the polynomial,
+            // and has any sign.
             let largest = samples
                 .iter()
                 .fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
@@ -178,11 +186,8 @@ impl Watch {
             }
             before = fraction;
         }
-        Ok(found
-            .into_iter()
-            .filter(|&(_, rising)| event.counts(rising))
-            .map(|(fraction, _)| fraction)
-            .collect())
+        found.retain(|&(_, rising)| event.counts(rising));
+        Ok(found)
     }
 }
 
@@ -254,7 +259,7 @@ mod tests {
     use super::*;
 
     /// A step of length 1 with x from `from` to `to` in a straight line.
-    fn line(from: f64, to: f64) -> Step {
+    fn line(from: f64, to: f64) -> Step<State> {
         let start = State {
             t: 0.0,
             x: from,
@@ -264,7 +269,7 @@ mod tests {
             0,
             start,
             1.0,
-            &FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]),
+            FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]),
         )
     }
 
@@ -272,8 +277,13 @@ mod tests {
     fn crossings(steps: &[(f64, f64)]) -> Vec<Vec<f64>> {
         let event = Event::record(|_, x, _| x);
         let mut watch = Watch::default();
-        let follow = |(index, &(from, to))| watch.crossings(&line(from, to), &event, index == 0).unwrap();
-        steps.iter().enumerate().map(follow).collect()
+        let mut follow = |(index, &(from, to)): (usize, &(f64, f64))| {
+            let step = line(from, to);
+            let moved = (index == 0).then(|| step.state_at(1.0));
+            let found = watch.crossings(&step, &event, moved.as_ref()).unwrap();
+            found.into_iter().map(|(fraction, _)| fraction).collect()
+        };
+        steps.iter().enumerate().map(&mut follow).collect()
     }
 
     #[test]
@@ -300,11 +310,10 @@ mod tests {
             (Event::switch(|_, x, _| x, next), 0),
             (Event::stop(|_, x, _| x).falling(), 0),
         ] {
+            let step = line(0.0, -1.0);
+            let moved = step.state_at(1.0);
             assert_eq!(
-                Watch::default()
-                    .crossings(&line(0.0, -1.0), &event, true)
-                    .unwrap()
-                    .len(),
+                Watch::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
                 found
             );
         }

@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use super::State;
 use super::event::{Action, Event, Watch};
+use super::moment::{Moment, Point, Values};
 use super::scheme::{Scheme, explicit, implicit};
 use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
 use crate::interrupt::Interrupt;
@@ -19,9 +20,9 @@ use crate::interrupt::Interrupt;
 /// How closely and how long to integrate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Error allowed per step relative to the size of x and of v.
+    /// Error allowed per step relative to the size of each value.
     pub relative_tolerance: f64,
-    /// Error allowed per step beside it, in the units of x and v: choose it well below the amplitude.
+    /// Error allowed per step beside it, in the units of the values: choose it well below their size.
     pub absolute_tolerance: f64,
     /// Steps, rejected ones included, after which the run gives up. Each accepted step keeps about 200 bytes.
     pub maximum_steps: usize,
@@ -55,19 +56,25 @@ impl Options {
 }
 
 /// A smooth right side and the events to look for while it is in force.
-pub struct Phase<'a> {
-    acceleration: Box<dyn Fn(f64, f64, f64) -> f64 + 'a>,
-    events: Vec<Event<'a>>,
+pub struct Phase<'a, S: Moment = State> {
+    rates: Box<Rates<'a, S>>,
+    events: Vec<Event<'a, S>>,
 }
+
+/// Writes the rates of the values at a time.
+type Rates<'a, S> = dyn Fn(f64, &<S as Moment>::Values, &mut <S as Moment>::Values) + 'a;
 
 impl<'a> Phase<'a> {
     /// The acceleration g(t, x, v) and the events of this phase.
     pub fn new(acceleration: impl Fn(f64, f64, f64) -> f64 + 'a, events: Vec<Event<'a>>) -> Self {
-        Self {
-            acceleration: Box::new(acceleration),
-            events,
-        }
+        let rates = Box::new(first_order(acceleration));
+        Self { rates, events }
     }
+}
+
+/// x'' = g(t, x, v) as x' = v, v' = g.
+fn first_order(acceleration: impl Fn(f64, f64, f64) -> f64) -> impl Fn(f64, &[f64; 2], &mut [f64; 2]) {
+    move |t, &[x, v], rates| *rates = [v, acceleration(t, x, v)]
 }
 
 /// What makes a run impossible from the outset. A run that began keeps what it has, see [`StopReason`].
@@ -94,6 +101,22 @@ pub enum IntegrationError {
         x: f64,
         /// Velocity at the start.
         v: f64,
+    },
+    /// A value at the start of first-order equations, or the end time, is not a finite number.
+    #[error("the start (t = {start_time}), its values and the end time {end_time} must be finite numbers")]
+    ValuesNotFinite {
+        /// Time of the start.
+        start_time: f64,
+        /// End time asked for.
+        end_time: f64,
+    },
+    /// A rate of first-order equations has no finite value at the start.
+    #[error("rate {index}, counted from 0, has no finite value at the start (t = {t}): start inside its domain")]
+    RateNotFinite {
+        /// Which.
+        index: usize,
+        /// Time of the start.
+        t: f64,
     },
     /// The end lies before the start.
     #[error("the end time {end_time} lies before the start {start_time}: motions are followed forward only")]
@@ -133,7 +156,8 @@ pub fn integrate<'a>(
     events: &[Event<'a>],
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
-    run(&[(&acceleration, events)], 0, start, end_time, options)
+    let rates = first_order(acceleration);
+    run(&[(&rates, events)], 0, start, end_time, options).map_err(|error| of_motion(error, start))
 }
 
 /// The motion through several smooth right sides: begins in phase `first`, goes on as the switches of the events say.
@@ -148,38 +172,76 @@ pub fn integrate_phases(
     end_time: f64,
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
-    let parts: Vec<Part> = phases
+    let parts: Vec<Part<State>> = phases
         .iter()
-        .map(|phase| (&*phase.acceleration as _, phase.events.as_slice()))
+        .map(|phase| (&*phase.rates as _, phase.events.as_slice()))
         .collect();
-    run(&parts, first, start, end_time, options)
+    run(&parts, first, start, end_time, options).map_err(|error| of_motion(error, start))
 }
 
-type Part<'r, 'a> = (&'r dyn Fn(f64, f64, f64) -> f64, &'r [Event<'a>]);
+/// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
+///
+/// ```
+/// use lindstedt::ode::{Action, Event, Options, Point, integrate_first_order};
+///
+/// // Euler's equations of a body that turns freely: energy and angular momentum are kept.
+/// let spin = |_t: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[2] * w[0], -w[0] * w[1]];
+/// let start = Point { t: 0.0, y: [0.1, 1.0, 0.2] };
+/// let turned = Event::new(|point: &Point<[f64; 3]>| point.y[1], Action::Record).falling();
+/// let path = integrate_first_order(spin, start, 20.0, &[turned], &Options::with_tolerance(1e-12))?;
+/// let energy = |w: [f64; 3]| 2.0 * w[0] * w[0] + 2.0 * w[1] * w[1] + 2.0 * w[2] * w[2];
+/// assert!(path.samples(100).all(|point| (energy(point.y) - energy(start.y)).abs() < 1e-10));
+/// assert!(!path.occurrences().is_empty());
+/// # Ok::<(), lindstedt::ode::IntegrationError>(())
+/// ```
+///
+/// # Errors
+/// As [`integrate`].
+pub fn integrate_first_order<'a, Y: Values>(
+    rates: impl Fn(f64, &Y, &mut Y) + 'a,
+    start: Point<Y>,
+    end_time: f64,
+    events: &[Event<'a, Point<Y>>],
+    options: &Options,
+) -> Result<Trajectory<Point<Y>>, IntegrationError> {
+    run(&[(&rates, events)], 0, start, end_time, options)
+}
+
+/// The error in the words of displacement and velocity.
+fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
+    match error {
+        IntegrationError::ValuesNotFinite { end_time, .. } => IntegrationError::NotFinite { t, x, v, end_time },
+        IntegrationError::RateNotFinite { .. } => IntegrationError::AccelerationNotFinite { t, x, v },
+        other => other,
+    }
+}
+
+type Part<'r, 'a, S> = (&'r Rates<'r, S>, &'r [Event<'a, S>]);
 
 /// Switches in a row without progress of time (beyond rounding) after which the run is called stalled.
 const MAXIMUM_IDLE_SWITCHES: usize = 16;
 
-fn run(
-    parts: &[Part],
+fn run<S: Moment>(
+    parts: &[Part<S>],
     first: usize,
-    start: State,
+    start: S,
     end_time: f64,
     options: &Options,
-) -> Result<Trajectory, IntegrationError> {
-    check(start, end_time, options)?;
+) -> Result<Trajectory<S>, IntegrationError> {
+    check(&start, end_time, options)?;
     let unknown = |phase: usize| IntegrationError::UnknownPhase {
         phase,
         count: parts.len(),
     };
-    let &(acceleration, _) = parts.get(first).ok_or(unknown(first))?;
-    let State { t, x, v } = start;
-    if !acceleration(t, x, v).is_finite() {
-        return Err(IntegrationError::AccelerationNotFinite { t, x, v });
+    let &(rates, _) = parts.get(first).ok_or(unknown(first))?;
+    let mut at_start = start.values();
+    rates(start.time(), &start.values(), &mut at_start);
+    if let Some(index) = at_start.as_ref().iter().position(|rate| !rate.is_finite()) {
+        return Err(IntegrationError::RateNotFinite { index, t: start.time() });
     }
     let evaluations = Cell::new(0);
     let mut trajectory = Trajectory {
-        start,
+        start: start.clone(),
         end: start,
         steps: Vec::new(),
         occurrences: Vec::new(),
@@ -190,23 +252,23 @@ fn run(
     let mut attempts = 0;
     let mut idle_switches = 0;
     loop {
-        let &(acceleration, events) = parts.get(phase).ok_or(unknown(phase))?;
-        let system = System {
-            acceleration,
+        let &(rates, events) = parts.get(phase).ok_or(unknown(phase))?;
+        let equations = Counted::<S> {
+            rates,
             evaluations: &evaluations,
             non_finite: Cell::new(false),
         };
-        let begin = trajectory.end;
+        let begin = trajectory.end.time();
         let leg = Leg {
-            system,
+            equations,
             phase,
             events,
             end_time,
             options,
         };
         let end = match options.stiff {
-            false => leg.run(&explicit(), &mut trajectory, &mut attempts),
-            true => leg.run(&implicit(), &mut trajectory, &mut attempts),
+            false => leg.run(&explicit::<S::Values>(), &mut trajectory, &mut attempts),
+            true => leg.run(&implicit::<S>(), &mut trajectory, &mut attempts),
         };
         match end {
             LegEnd::Stopped(reason) => {
@@ -214,10 +276,10 @@ fn run(
                 break;
             }
             LegEnd::Switched(next_phase, next) => {
-                let time = trajectory.end.t;
-                let idle = time - begin.t <= 256.0 * f64::EPSILON * time.abs();
+                let time = trajectory.end.time();
+                let idle = time - begin <= 256.0 * f64::EPSILON * time.abs();
                 idle_switches = if idle { idle_switches + 1 } else { 0 };
-                trajectory.end = State { t: time, ..next };
+                trajectory.end = S::new(time, &next.values());
                 if !trajectory.end.is_finite() {
                     trajectory.stop_reason = StopReason::NonFinite { time };
                     break;
@@ -234,16 +296,13 @@ fn run(
     Ok(trajectory)
 }
 
-fn check(start: State, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
-    let State { t, x, v } = start;
+fn check(start: &impl Moment, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
+    let start_time = start.time();
     if !(start.is_finite() && end_time.is_finite()) {
-        return Err(IntegrationError::NotFinite { t, x, v, end_time });
+        return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
     }
-    if end_time < t {
-        return Err(IntegrationError::EndBeforeStart {
-            start_time: t,
-            end_time,
-        });
+    if end_time < start_time {
+        return Err(IntegrationError::EndBeforeStart { start_time, end_time });
     }
     if !(1e-15..=0.1).contains(&options.relative_tolerance) {
         return Err(IntegrationError::Tolerance(options.relative_tolerance));
@@ -258,102 +317,104 @@ fn check(start: State, end_time: f64, options: &Options) -> Result<(), Integrati
     Ok(())
 }
 
-/// The first-order system, counting its evaluations and remembering whether one of them was not finite.
-struct System<'r> {
-    acceleration: &'r dyn Fn(f64, f64, f64) -> f64,
+/// The right side, counting its evaluations and remembering whether one of them was not finite.
+struct Counted<'r, S: Moment> {
+    rates: &'r Rates<'r, S>,
     evaluations: &'r Cell<usize>,
     non_finite: Cell<bool>,
 }
 
-impl ODE<f64, [f64; 2]> for System<'_> {
-    fn diff(&self, t: f64, state: &[f64; 2], derivative: &mut [f64; 2]) {
-        let acceleration = (self.acceleration)(t, state[0], state[1]);
+impl<S: Moment> ODE<f64, S::Values> for Counted<'_, S> {
+    fn diff(&self, t: f64, values: &S::Values, derivative: &mut S::Values) {
+        (self.rates)(t, values, derivative);
         self.evaluations.set(self.evaluations.get() + 1);
-        if !(acceleration.is_finite() && state[1].is_finite()) {
+        if !derivative.as_ref().iter().all(|rate| rate.is_finite()) {
             self.non_finite.set(true);
         }
-        *derivative = [state[1], acceleration];
     }
 }
 
 /// The part of a run with one right side.
-struct Leg<'r, 'a> {
-    system: System<'r>,
+struct Leg<'r, 'a, S: Moment> {
+    equations: Counted<'r, S>,
     phase: usize,
-    events: &'r [Event<'a>],
+    events: &'r [Event<'a, S>],
     end_time: f64,
     options: &'r Options,
 }
 
-enum LegEnd {
+enum LegEnd<S> {
     Stopped(StopReason),
-    Switched(usize, State),
+    Switched(usize, S),
 }
 
-impl Leg<'_, '_> {
-    fn run<M: OrdinaryNumericalMethod<f64, [f64; 2]>>(
+impl<S: Moment> Leg<'_, '_, S> {
+    fn run<M: OrdinaryNumericalMethod<f64, S::Values>>(
         &self,
-        scheme: &Scheme<M>,
-        trajectory: &mut Trajectory,
+        scheme: &Scheme<M, S::Values>,
+        trajectory: &mut Trajectory<S>,
         attempts: &mut usize,
-    ) -> LegEnd {
-        let mut state = trajectory.end;
-        let Some(mut solver) = self.solver(scheme, state, 0.0) else {
-            return LegEnd::Stopped(self.failure(state.t));
+    ) -> LegEnd<S> {
+        let mut state = trajectory.end.clone();
+        let Some(mut solver) = self.solver(scheme, &state, 0.0) else {
+            return LegEnd::Stopped(self.failure(state.time()));
         };
         let mut watches = vec![Watch::default(); self.events.len()];
         let mut first = true;
         loop {
-            let remaining = self.end_time - state.t;
+            let time = state.time();
+            let remaining = self.end_time - time;
             if remaining <= 2.0 * f64::EPSILON * self.end_time.abs() {
-                trajectory.end.t = self.end_time;
+                trajectory.end = S::new(self.end_time, &trajectory.end.values());
                 return LegEnd::Stopped(StopReason::EndReached);
             }
             if *attempts >= self.options.maximum_steps {
-                return LegEnd::Stopped(StopReason::MaximumSteps { time: state.t });
+                return LegEnd::Stopped(StopReason::MaximumSteps { time });
             }
             if self.options.interrupt.is_requested() {
-                return LegEnd::Stopped(StopReason::Interrupted { time: state.t });
+                return LegEnd::Stopped(StopReason::Interrupted { time });
             }
             *attempts += 1;
             let wanted = solver.h().min(self.options.maximum_step).min(remaining);
             solver.set_h(wanted);
-            self.system.non_finite.set(false);
-            let outcome = solver.step(&self.system);
-            if self.system.non_finite.get() {
+            self.equations.non_finite.set(false);
+            let outcome = solver.step(&self.equations);
+            if self.equations.non_finite.get() {
                 // The step reached outside the domain of the equation: try again, a fifth as long.
                 let shorter = 0.2 * wanted;
-                if state.t + shorter <= state.t {
-                    return LegEnd::Stopped(StopReason::NonFinite { time: state.t });
+                if time + shorter <= time {
+                    return LegEnd::Stopped(StopReason::NonFinite { time });
                 }
-                match self.solver(scheme, state, shorter) {
+                match self.solver(scheme, &state, shorter) {
                     Some(smaller) => solver = smaller,
-                    None => return LegEnd::Stopped(self.failure(state.t)),
+                    None => return LegEnd::Stopped(self.failure(time)),
                 }
                 continue;
             }
             if outcome.is_err() {
-                return LegEnd::Stopped(StopReason::StepTooSmall { time: state.t });
+                return LegEnd::Stopped(StopReason::StepTooSmall { time });
             }
             if matches!(solver.status(), Status::RejectedStep) {
-                if state.t + solver.h() <= state.t {
-                    return LegEnd::Stopped(StopReason::StepTooSmall { time: state.t });
+                if time + solver.h() <= time {
+                    return LegEnd::Stopped(StopReason::StepTooSmall { time });
                 }
                 continue;
             }
-            let Some((step, next)) = self.accepted(scheme, &mut solver, state) else {
-                return LegEnd::Stopped(StopReason::NonFinite { time: state.t });
+            let Some((step, next)) = self.accepted(scheme, &mut solver, &state) else {
+                return LegEnd::Stopped(StopReason::NonFinite { time });
             };
-            let Some(happenings) = self.happenings(&step, &mut watches, first) else {
-                return LegEnd::Stopped(StopReason::NonFinite { time: state.t });
+            let moved = first.then(|| self.moved(&state, step.length));
+            let Some(happenings) = self.happenings(&step, &mut watches, moved.as_ref()) else {
+                return LegEnd::Stopped(StopReason::NonFinite { time });
             };
             trajectory.steps.push(step);
-            trajectory.end = next;
-            for (happening, event) in happenings {
+            trajectory.end = next.clone();
+            for (happening, event, rising) in happenings {
                 trajectory.occurrences.push(Occurrence {
                     phase: self.phase,
                     event,
-                    state: happening,
+                    state: happening.clone(),
+                    rising,
                 });
                 match &self.events[event].action {
                     Action::Record => {}
@@ -365,7 +426,7 @@ impl Leg<'_, '_> {
                         });
                     }
                     Action::Switch(next_state) => {
-                        trajectory.end = happening;
+                        trajectory.end = happening.clone();
                         let (phase, changed) = next_state(happening);
                         return LegEnd::Switched(phase, changed);
                     }
@@ -377,32 +438,28 @@ impl Leg<'_, '_> {
     }
 
     /// A fresh solver at this state, with this first step (0: of its own choice).
-    fn solver<M: OrdinaryNumericalMethod<f64, [f64; 2]>>(
+    fn solver<M: OrdinaryNumericalMethod<f64, S::Values>>(
         &self,
-        scheme: &Scheme<M>,
-        state: State,
+        scheme: &Scheme<M, S::Values>,
+        state: &S,
         first_step: f64,
     ) -> Option<M> {
-        let remaining = self.end_time - state.t;
+        let (time, values) = (state.time(), state.values());
+        let remaining = self.end_time - time;
         let longest = self.options.maximum_step.min(remaining);
         if longest <= 0.0 {
             // Nothing left to do: the solver will not be asked for a step.
             return Some((scheme.fresh)(self.options, 0.0, f64::INFINITY));
         }
-        let mut derivative = [0.0; 2];
-        self.system.non_finite.set(false);
-        self.system.diff(state.t, &[state.x, state.v], &mut derivative);
-        if self.system.non_finite.get() {
+        self.equations.non_finite.set(false);
+        self.equations.diff(time, &values, &mut values.clone());
+        if self.equations.non_finite.get() {
             return None;
         }
         for step in [first_step, 1e-6 * longest] {
             let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
             // The trial steps by which a first step is chosen may leave the domain: then a short one is prescribed.
-            if solver
-                .init(&self.system, state.t, self.end_time, &[state.x, state.v])
-                .is_ok()
-                && solver.h() > 0.0
-            {
+            if solver.init(&self.equations, time, self.end_time, &values).is_ok() && solver.h() > 0.0 {
                 return Some(solver);
             }
         }
@@ -410,41 +467,57 @@ impl Leg<'_, '_> {
     }
 
     fn failure(&self, time: f64) -> StopReason {
-        if self.system.non_finite.get() {
+        if self.equations.non_finite.get() {
             StopReason::NonFinite { time }
         } else {
             StopReason::StepTooSmall { time }
         }
     }
 
-    /// The step just taken, as polynomials, and the state at its end.
-    fn accepted<M: OrdinaryNumericalMethod<f64, [f64; 2]>>(
-        &self,
-        scheme: &Scheme<M>,
-        solver: &mut M,
-        start: State,
-    ) -> Option<(Step, State)> {
-        let (from, to) = (solver.t_prev(), solver.t());
-        let length = to - from;
-        let mut values = [[0.0; 2]; TERMS];
-        for (value, fraction) in values.iter_mut().zip(FRACTIONS.iter()) {
-            *value = (scheme.inside)(solver, (from + fraction * length).min(to))?;
+    /// The start of a step, moved on for so long at the rates that it has: what is at rest stays where it is.
+    fn moved(&self, start: &S, length: f64) -> S {
+        let mut values = start.values();
+        let mut rates = values.clone();
+        (self.equations.rates)(start.time(), &values, &mut rates);
+        for (value, rate) in values.as_mut().iter_mut().zip(rates.as_ref()) {
+            *value += length * rate;
         }
-        let [x, v] = *solver.y();
-        let next = State { t: to, x, v };
-        let finite = next.is_finite() && values.iter().flatten().all(|value| value.is_finite());
-        finite.then(|| (Step::new(self.phase, start, length, &values), next))
+        S::new(start.time() + length, &values)
     }
 
-    /// The events inside the step in the order of time, as states; `None` where an event function is not finite.
-    fn happenings(&self, step: &Step, watches: &mut [Watch], first: bool) -> Option<Vec<(State, usize)>> {
+    /// The step just taken, as polynomials, and the state at its end.
+    fn accepted<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        solver: &mut M,
+        start: &S,
+    ) -> Option<(Step<S>, S)> {
+        let (from, to) = (solver.t_prev(), solver.t());
+        let length = to - from;
+        let mut values: [S::Values; TERMS] = std::array::from_fn(|_| start.values());
+        for (values, fraction) in values.iter_mut().zip(FRACTIONS.iter()) {
+            *values = (scheme.inside)(solver, (from + fraction * length).min(to))?;
+        }
+        let next = S::new(to, solver.y());
+        let finite = |values: &S::Values| values.as_ref().iter().all(|value| value.is_finite());
+        let finite = next.is_finite() && values.iter().all(finite);
+        finite.then(|| (Step::new(self.phase, start.clone(), length, values), next))
+    }
+
+    /// The events inside the step in the order of time, as states, and whether they rise; `None` where an event function is not
+    /// finite.
+    fn happenings(&self, step: &Step<S>, watches: &mut [Watch], moved: Option<&S>) -> Option<Vec<(S, usize, bool)>> {
         let mut found = Vec::new();
         for (index, (event, watch)) in self.events.iter().zip(watches).enumerate() {
-            let fractions = watch.crossings(step, event, first).ok()?;
-            found.extend(fractions.into_iter().map(|fraction| (step.state_at(fraction), index)));
+            let crossings = watch.crossings(step, event, moved).ok()?;
+            found.extend(
+                crossings
+                    .into_iter()
+                    .map(|(fraction, rising)| (step.state_at(fraction), index, rising)),
+            );
         }
         // A stable sort: of two events at the same time the one listed first comes first.
-        found.sort_by(|one, other| one.0.t.total_cmp(&other.0.t));
+        found.sort_by(|one, other| one.0.time().total_cmp(&other.0.time()));
         Some(found)
     }
 }

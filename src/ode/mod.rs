@@ -1,13 +1,15 @@
-//! The numerical judge: x'' = g(t, x, v) integrated by an adaptive Runge-Kutta method, with the whole path kept.
+//! The numerical judge: x'' = g(t, x, v), or any first-order equations, integrated by an adaptive Runge-Kutta method, with the
+//! whole path kept.
 //!
-//! In: the acceleration as a closure, a start, an end time, the events to look for. Out: a [`Trajectory`] that
-//! answers x and v at any time between, lists the events it met, and says why it stopped. Pure numbers: nothing here
+//! In: the right side as a closure, a start, an end time, the events to look for. Out: a [`Trajectory`] that
+//! answers x and v, or all values, at any time between, lists the events it met, and says why it stopped. Pure numbers: nothing here
 //! knows where the equation came from, so what is judged and the judge share nothing.
 //!
 //! - [`integrate`] follows one smooth right side; [`integrate_phases`] follows several and switches between them at
 //!   located events: a step is never trusted across a kink such as the first touch of a barrier, the run
 //!   restarts there.
-//! - [`Event`] is a function of (t, x, v) whose zero matters: [`Event::record`], [`Event::stop`], [`Event::switch`].
+//! - [`integrate_first_order`] follows y' = f(t, y) with any number of values.
+//! - [`Event`] is a function of time and values whose zero matters: [`Event::record`], [`Event::stop`], [`Event::switch`].
 //! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima.
 //!
 //! ```
@@ -26,18 +28,21 @@
 //! ```
 //!
 //! The method is Verner's most efficient 9(8) pair with its own 8th-order interpolant (J. H. Verner, *Numer.
-//! Algorithms* 53 (2010) 383), as in the crate `differential-equations`; for stiff motions its Radau IIA of order 5. The tolerance bounds the error of one step,
-//! not of the run: on the pendulum the error after a hundred time units is some 60 times the tolerance.
+//! Algorithms* 53 (2010) 383), as in the crate `differential-equations`; for stiff motions its Radau IIA of order 5. The tolerance
+//! bounds the error of one step, not of the run: on the pendulum the error after a hundred time units is some 60 times the
+//! tolerance. Where the values are an array nothing is allocated in a step but for what is kept of it.
 
 mod event;
 mod integrate;
+mod moment;
 pub mod quadrature;
 pub mod root;
 mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
-pub use integrate::{IntegrationError, Options, Phase, integrate, integrate_phases};
+pub use integrate::{IntegrationError, Options, Phase, integrate, integrate_first_order, integrate_phases};
+pub use moment::{Moment, Point, Values};
 pub use trajectory::{Occurrence, StopReason, Trajectory};
 
 /// A point of the motion: time, displacement, velocity. Also the initial condition.
@@ -49,12 +54,6 @@ pub struct State {
     pub x: f64,
     /// Velocity x'.
     pub v: f64,
-}
-
-impl State {
-    fn is_finite(&self) -> bool {
-        self.t.is_finite() && self.x.is_finite() && self.v.is_finite()
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
-//! The path of a run: x and v at every time between its ends, the events it met, and why it stopped.
+//! The path of a run: its values at every time between its ends, the events it met, and why it stopped.
 //!
-//! Each accepted step is kept as two polynomials in the fraction s of the step, written `x(s) = x0 + s q(s)`, so
+//! Each accepted step is kept as one polynomial for each value in the fraction s of the step, written `x(s) = x0 + s q(s)`, so
 //! that a motion that starts on a surface leaves it with the right sign however small s is. `q` is a Chebyshev
 //! series through the values of the method's own interpolant.
 
@@ -9,6 +9,7 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use super::State;
+use super::moment::Moment;
 
 /// Terms of the Chebyshev series of a step: the interpolant has degree 8 in s, its quotient by s has degree 7.
 pub(super) const TERMS: usize = 8;
@@ -17,26 +18,28 @@ pub(super) const TERMS: usize = 8;
 pub(super) static FRACTIONS: LazyLock<[f64; TERMS]> =
     LazyLock::new(|| std::array::from_fn(|index| 0.5 * (1.0 - (PI * (index as f64 + 0.5) / TERMS as f64).cos())));
 
-/// The numerical solution of x'' = g(t, x, v) on an interval of time, as a function.
+/// The numerical solution of x'' = g(t, x, v), or of any first-order equations, on an interval of time, as a function.
 #[derive(Debug, Clone)]
-pub struct Trajectory {
-    pub(super) start: State,
-    pub(super) end: State,
-    pub(super) steps: Vec<Step>,
-    pub(super) occurrences: Vec<Occurrence>,
+pub struct Trajectory<S: Moment = State> {
+    pub(super) start: S,
+    pub(super) end: S,
+    pub(super) steps: Vec<Step<S>>,
+    pub(super) occurrences: Vec<Occurrence<S>>,
     pub(super) stop_reason: StopReason,
     pub(super) evaluations: usize,
 }
 
 /// An event that was met.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Occurrence {
+pub struct Occurrence<S = State> {
     /// Index of the phase whose right side was in force (0 for [`integrate`](super::integrate)).
     pub phase: usize,
     /// Index of the event in that phase's list.
     pub event: usize,
     /// The state at the event, before a switch changed it.
-    pub state: State,
+    pub state: S,
+    /// Whether the function grew through zero.
+    pub rising: bool,
 }
 
 /// Why a run ended. Everything before that moment is kept.
@@ -111,57 +114,63 @@ impl Trajectory {
     /// Displacement and velocity at time `t`; `None` outside the time covered. Where a switch changed the state, the
     /// value after the switch.
     pub fn at(&self, t: f64) -> Option<(f64, f64)> {
-        if t == self.end.t {
-            return Some((self.end.x, self.end.v));
+        self.state_at(t).map(|state| (state.x, state.v))
+    }
+}
+
+impl<S: Moment> Trajectory<S> {
+    /// The state at time `t`; `None` outside the time covered. Where a switch changed the state, the one after the switch.
+    pub fn state_at(&self, t: f64) -> Option<S> {
+        if t == self.end.time() {
+            return Some(self.end.clone());
         }
-        if !(self.start.t..self.end.t).contains(&t) {
+        if !(self.start.time()..self.end.time()).contains(&t) {
             return None;
         }
         let step = self.steps.get(self.step_index(t)?)?;
-        Some(step.at((t - step.start.t) / step.length))
+        Some(S::new(t, &step.at((t - step.start.time()) / step.length)))
     }
 
     /// The initial state.
-    pub fn start(&self) -> State {
-        self.start
+    pub fn start(&self) -> S {
+        self.start.clone()
     }
 
     /// The last state reached.
-    pub fn end(&self) -> State {
-        self.end
+    pub fn end(&self) -> S {
+        self.end.clone()
     }
 
     /// The states between which the method stepped, first and last included. A switch that changed the state shows
     /// the state after it.
-    pub fn knots(&self) -> impl Iterator<Item = State> + '_ {
+    pub fn knots(&self) -> impl Iterator<Item = S> + '_ {
         self.steps
             .iter()
-            .map(|step| step.start)
-            .chain(std::iter::once(self.end))
+            .map(|step| step.start.clone())
+            .chain(std::iter::once(self.end.clone()))
     }
 
     /// `count` states at equal distances of time, both ends included (for `count` of at least 2).
-    pub fn samples(&self, count: usize) -> impl Iterator<Item = State> + '_ {
-        let (from, to) = (self.start.t, self.end.t);
+    pub fn samples(&self, count: usize) -> impl Iterator<Item = S> + '_ {
+        let (from, to) = (self.start.time(), self.end.time());
         (0..count).filter_map(move |index| {
             let fraction = index as f64 / (count.max(2) - 1) as f64;
-            let t = if index + 1 == count {
+            self.state_at(if index + 1 == count {
                 to
             } else {
                 from + fraction * (to - from)
-            };
-            self.at(t).map(|(x, v)| State { t, x, v })
+            })
         })
     }
 
     /// The events met, in the order of time.
-    pub fn occurrences(&self) -> &[Occurrence] {
+    pub fn occurrences(&self) -> &[Occurrence<S>] {
         &self.occurrences
     }
 
     /// Index of the phase in force at time `t`; `None` outside the time covered.
     pub fn phase_at(&self, t: f64) -> Option<usize> {
-        if !(self.start.t..=self.end.t).contains(&t) {
+        if !(self.start.time()..=self.end.time()).contains(&t) {
             return None;
         }
         self.steps.get(self.step_index(t)?).map(|step| step.phase)
@@ -182,59 +191,59 @@ impl Trajectory {
         self.steps.len()
     }
 
-    /// Number of times the acceleration was evaluated.
+    /// Number of times the right side was evaluated.
     pub fn evaluations(&self) -> usize {
         self.evaluations
     }
 
     fn step_index(&self, t: f64) -> Option<usize> {
-        self.steps.partition_point(|step| step.start.t <= t).checked_sub(1)
+        self.steps.partition_point(|step| step.start.time() <= t).checked_sub(1)
     }
 }
 
 /// One accepted step, or the part of it before an event.
 #[derive(Debug, Clone)]
-pub(super) struct Step {
+pub(super) struct Step<S: Moment> {
     pub(super) phase: usize,
-    pub(super) start: State,
+    pub(super) start: S,
     /// The length of the whole step: the unit of the fraction s.
     pub(super) length: f64,
-    displacement: [f64; TERMS],
-    velocity: [f64; TERMS],
+    /// The coefficients of `q`, term by term.
+    quotient: [S::Values; TERMS],
 }
 
-impl Step {
-    /// From the values of x and v at [`FRACTIONS`].
-    pub(super) fn new(phase: usize, start: State, length: f64, values: &[[f64; 2]; TERMS]) -> Self {
-        let quotient = |component: usize, origin: f64| -> [f64; TERMS] {
-            std::array::from_fn(|index| (values[index][component] - origin) / FRACTIONS[index])
-        };
-        let displacement = chebyshev_coefficients(&quotient(0, start.x));
-        let velocity = chebyshev_coefficients(&quotient(1, start.v));
+impl<S: Moment> Step<S> {
+    /// From the values at [`FRACTIONS`].
+    pub(super) fn new(phase: usize, start: S, length: f64, values: [S::Values; TERMS]) -> Self {
+        let origin = start.values();
+        let mut quotient = values;
+        for (component, origin) in origin.as_ref().iter().enumerate() {
+            let samples: [f64; TERMS] =
+                std::array::from_fn(|index| (quotient[index].as_ref()[component] - origin) / FRACTIONS[index]);
+            for (term, coefficient) in quotient.iter_mut().zip(chebyshev_coefficients(&samples)) {
+                term.as_mut()[component] = coefficient;
+            }
+        }
         Self {
             phase,
             start,
             length,
-            displacement,
-            velocity,
+            quotient,
         }
     }
 
-    /// Displacement and velocity at the fraction s of the step.
-    pub(super) fn at(&self, fraction: f64) -> (f64, f64) {
-        let x = self.start.x + fraction * clenshaw(&self.displacement, fraction);
-        let v = self.start.v + fraction * clenshaw(&self.velocity, fraction);
-        (x, v)
+    /// The values at the fraction s of the step.
+    pub(super) fn at(&self, fraction: f64) -> S::Values {
+        let mut values = self.start.values();
+        for (component, value) in values.as_mut().iter_mut().enumerate() {
+            *value += fraction * clenshaw(|term| self.quotient[term].as_ref()[component], fraction);
+        }
+        values
     }
 
     /// The state at the fraction s of the step.
-    pub(super) fn state_at(&self, fraction: f64) -> State {
-        let (x, v) = self.at(fraction);
-        State {
-            t: self.start.t + fraction * self.length,
-            x,
-            v,
-        }
+    pub(super) fn state_at(&self, fraction: f64) -> S {
+        S::new(self.start.time() + fraction * self.length, &self.at(fraction))
     }
 }
 
@@ -258,13 +267,14 @@ fn chebyshev_coefficients(values: &[f64; TERMS]) -> [f64; TERMS] {
 }
 
 /// Sum of the Chebyshev series in `2 fraction - 1` (Clenshaw 1955).
-fn clenshaw(coefficients: &[f64; TERMS], fraction: f64) -> f64 {
+#[inline]
+fn clenshaw(coefficient: impl Fn(usize) -> f64, fraction: f64) -> f64 {
     let argument = 2.0 * fraction - 1.0;
     let (mut newer, mut older) = (0.0, 0.0);
-    for &coefficient in coefficients[1..].iter().rev() {
-        (newer, older) = (2.0 * argument * newer - older + coefficient, newer);
+    for term in (1..TERMS).rev() {
+        (newer, older) = (2.0 * argument * newer - older + coefficient(term), newer);
     }
-    argument * newer - older + coefficients[0]
+    argument * newer - older + coefficient(0)
 }
 
 #[cfg(test)]
@@ -282,15 +292,15 @@ mod tests {
             v: -1.0,
         };
         let values = FRACTIONS.map(|s| [start.x + s * p(s), start.v + s * r(s)]);
-        let step = Step::new(0, start, 0.5, &values);
+        let step = Step::new(0, start, 0.5, values);
         for index in 0..=50 {
             let s = f64::from(index) / 50.0;
-            let (x, v) = step.at(s);
+            let [x, v] = step.at(s);
             assert!((x - start.x - s * p(s)).abs() < 1e-14, "x at {s}");
             assert!((v - start.v - s * r(s)).abs() < 1e-14, "v at {s}");
         }
-        assert_eq!(step.at(0.0), (0.3, -1.0));
+        assert_eq!(step.at(0.0), [0.3, -1.0]);
         // Next to the start the sign of x - x0 is that of s P(0), down to the last bit.
-        assert!(step.at(1e-15).0 > 0.3);
+        assert!(step.at(1e-15)[0] > 0.3);
     }
 }

@@ -1,9 +1,9 @@
 //! Series with exact coefficients: [`taylor`] of a function, [`fourier`] in `theta = omega t`, and running [`convolution`]s
-//! of powers, order by order.
+//! of powers, order by order; with floating-point ones by [`recurrence`].
 
 pub mod convolution;
 pub mod fourier;
-pub mod numeric;
+pub mod recurrence;
 pub mod taylor;
 pub mod terms;
 

@@ -11,7 +11,8 @@
 //! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
 //! ```
 //!
-//! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots.
+//! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots, at
+//! its end and, along the tangent there, back at its beginning: a prediction alone may fall beside another root by chance.
 //! Mantissa and binary exponent are kept apart ([`Scaled`]): at order 20 the terms span far more than the range of doubles.
 
 use crate::exact::scaled::Scaled;
@@ -26,14 +27,20 @@ pub(super) struct Term {
 /// The branch at an amplitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branch {
-    /// omega^2 there.
-    At(f64),
+    /// omega^2 there, and how far the rounding of the coefficients may move it, relatively.
+    At {
+        /// omega^2.
+        squared: f64,
+        /// Its relative rounding error.
+        rounding: f64,
+    },
     /// The branch goes no farther than this amplitude: it turns back there, or its frequency reaches zero.
     Ends(f64),
 }
 
-/// Follows the branch from rest to `amplitude`; `None` where it has no start, or a value is not finite.
-pub(super) fn follow(terms: &[Term], amplitude: f64) -> Option<Branch> {
+/// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively; `None` where it has no
+/// start, or a value is not finite.
+pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
     const LONGEST: f64 = 0.5;
     const SHORTEST: f64 = 1e-11;
     if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
@@ -54,10 +61,14 @@ pub(super) fn follow(terms: &[Term], amplitude: f64) -> Option<Branch> {
         } else {
             at.product(Scaled::new(step.exp()))
         };
-        let predicted = relation
-            .tangent(at, z)
-            .map(|slope| z.product(Scaled::new((slope * step).exp())));
-        match predicted.and_then(|predicted| relation.corrected(next, predicted)) {
+        let onward = relation
+            .extrapolated(at, z, step)
+            .and_then(|predicted| relation.corrected(next, predicted));
+        let returns = |found: &Scaled| {
+            let back = relation.extrapolated(next, *found, -step);
+            back.is_some_and(|back| relation.is_near(at, back, z))
+        };
+        match onward.filter(returns) {
             Some(found) => {
                 (at, z) = (next, found);
                 if step == left {
@@ -71,7 +82,9 @@ pub(super) fn follow(terms: &[Term], amplitude: f64) -> Option<Branch> {
             return Some(Branch::Ends(at.in_units(0)));
         }
     }
-    Some(Branch::At(z.in_units(0))).filter(|branch| matches!(branch, Branch::At(z) if z.is_finite()))
+    let squared = z.in_units(0);
+    let rounding = relation.rounding(target, z, precision);
+    (squared.is_finite() && rounding.is_finite()).then_some(Branch::At { squared, rounding })
 }
 
 struct Relation<'a> {
@@ -227,10 +240,21 @@ impl Relation<'_> {
         Some(-above / below).filter(|slope| slope.is_finite())
     }
 
+    /// The branch through a root, straight on in the logarithms.
+    fn extrapolated(&self, amplitude: Scaled, z: Scaled, step: f64) -> Option<Scaled> {
+        let slope = self.tangent(amplitude, z)?;
+        Some(z.product(Scaled::new((slope * step).exp())))
+    }
+
     /// The root nearest to a prediction, where the way to it is short beside the distance to any other root.
     fn corrected(&self, amplitude: Scaled, predicted: Scaled) -> Option<Scaled> {
-        const SHARE: f64 = 0.2;
         let root = self.newton(amplitude, predicted)?;
+        self.is_near(amplitude, predicted, root).then_some(root)
+    }
+
+    /// Whether a place is near to a root, beside the distance from there to any other root.
+    fn is_near(&self, amplitude: Scaled, place: Scaled, root: Scaled) -> bool {
+        const SHARE: f64 = 0.2;
         let mut polynomial = self.polynomial(&self.values(amplitude, root.exponent));
         // Derivatives over factorials at the root, by repeated division, then in units of the root.
         let mut derivatives = Vec::with_capacity(polynomial.len());
@@ -240,15 +264,29 @@ impl Relation<'_> {
             }
             derivatives.push(polynomial.remove(0) * root.mantissa.powi(derivatives.len() as i32));
         }
-        let slope = *derivatives.get(1)?;
+        let Some(&slope) = derivatives.get(1) else {
+            return false;
+        };
         let gamma = derivatives
             .iter()
             .enumerate()
             .skip(2)
             .map(|(k, value)| (value / slope).abs().powf(1.0 / (k as f64 - 1.0)))
             .fold(0.0, f64::max);
-        let way = (predicted.product(root.inverse()).in_units(0) - 1.0).abs();
-        (way <= SHARE * f64::min(0.5 / gamma, 1.0)).then_some(root)
+        let way = (place.product(root.inverse()).in_units(0) - 1.0).abs();
+        way <= SHARE * f64::min(0.5 / gamma, 1.0)
+    }
+
+    /// How far a root moves, relatively, where every term is changed by `precision` of itself.
+    fn rounding(&self, amplitude: Scaled, z: Scaled, precision: f64) -> f64 {
+        let values = self.values(amplitude, z.exponent);
+        let (mut sizes, mut slope) = (0.0, 0.0);
+        for (term, value) in self.terms.iter().zip(&values) {
+            let value = value * z.mantissa.powi(term.frequency);
+            sizes += value.abs();
+            slope += f64::from(term.frequency) * value;
+        }
+        precision * sizes / slope.abs()
     }
 }
 
@@ -280,8 +318,8 @@ mod tests {
     fn the_linear_branch_is_followed_past_others() {
         for power in -160..=150 {
             let amplitude = 10.0_f64.powi(power);
-            let found = follow(&three_branches(), -amplitude);
-            let Some(Branch::At(z)) = found else {
+            let found = follow(&three_branches(), -amplitude, f64::EPSILON);
+            let Some(Branch::At { squared: z, .. }) = found else {
                 panic!("lost at {amplitude:e}: {found:?}");
             };
             let exact = 1.0 + amplitude * amplitude;
@@ -298,13 +336,75 @@ mod tests {
             frequency,
         };
         let circle = [term(1.0, 0, 2), term(-1.0, 0, 1), term(1.0, 2, 0)];
-        let found = follow(&circle, 0.49);
+        let found = follow(&circle, 0.49, f64::EPSILON);
         let upper = 0.5 + 0.0099_f64.sqrt();
         assert!(
-            matches!(found, Some(Branch::At(z)) if (z - upper).abs() < 1e-14),
+            matches!(found, Some(Branch::At { squared, .. }) if (squared - upper).abs() < 1e-14),
             "{found:?} {upper}"
         );
-        assert!(matches!(follow(&circle, 3.0), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8));
-        assert!(matches!(follow(&circle, -3.0), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8));
+        assert!(matches!(follow(&circle, 3.0, f64::EPSILON), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8));
+        assert!(matches!(follow(&circle, -3.0, f64::EPSILON), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8));
+    }
+
+    #[test]
+    fn a_bend_is_not_cut_short_onto_another_root() {
+        // z^2 - 2 L z + L^2 - D/4 = 0 of order 2 for x - 1.9 x^3 + 1.17 x^5: the roots L +- sqrt(D)/2 come close and part again.
+        let l = |s: f64| 0.5 - 57.0 / 80.0 * s + 117.0 / 320.0 * s * s;
+        let d = [
+            1.0,
+            -57.0 / 20.0,
+            2019.0 / 640.0,
+            -24453.0 / 16000.0,
+            77571.0 / 256000.0,
+        ];
+        let term = |coefficient: f64, amplitude, frequency| Term {
+            coefficient: Scaled::new(coefficient),
+            amplitude,
+            frequency,
+        };
+        let terms = [
+            term(1.0, 0, 2),
+            term(-1.0, 0, 1),
+            term(57.0 / 40.0, 2, 1),
+            term(-117.0 / 160.0, 4, 1),
+            term(1083.0 / 12800.0, 4, 0),
+            term(-2223.0 / 16000.0, 6, 0),
+            term(59319.0 / 1024000.0, 8, 0),
+        ];
+        for k in 1..400 {
+            let amplitude = 0.01 * f64::from(k);
+            let s = amplitude * amplitude;
+            let root = l(s) + 0.5 * d.iter().rev().fold(0.0, |sum, c| sum * s + c).sqrt();
+            let found = follow(&terms, amplitude, f64::EPSILON);
+            assert!(
+                matches!(found, Some(Branch::At { squared, .. }) if (squared / root - 1.0).abs() < 1e-9),
+                "{amplitude}: {found:?} {root}"
+            );
+        }
+    }
+
+    #[test]
+    fn rounding_says_what_rounded_coefficients_leave() {
+        // z - (1 - s + s^2/3) by its terms, s = A^2: the root itself, against coefficients changed in the twelfth digit.
+        let law = |factor: f64| {
+            let term = |coefficient: f64, amplitude, frequency| Term {
+                coefficient: Scaled::new(coefficient),
+                amplitude,
+                frequency,
+            };
+            [
+                term(1.0, 0, 1),
+                term(-1.0 - factor, 0, 0),
+                term(1.0 - factor, 2, 0),
+                term(-1.0 / 3.0 - factor, 4, 0),
+            ]
+        };
+        let at = |factor| match follow(&law(factor), 1.2, 1e-12) {
+            Some(Branch::At { squared, rounding }) => (squared, rounding),
+            other => panic!("{other:?}"),
+        };
+        let ((exact, rounding), (changed, _)) = (at(0.0), at(1e-12));
+        let moved = (changed / exact - 1.0).abs();
+        assert!(moved < 5.0 * rounding && rounding < 100.0 * moved, "{moved} {rounding}");
     }
 }

@@ -10,9 +10,7 @@ pub(super) fn value(series: &[f64], s: f64) -> f64 {
 /// By bounds: where the constant outweighs all that is added there is no root, where the slope keeps its sign there is at most
 /// one, and everything else is halved.
 pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, bool)> {
-    // So close to where the last root was, the sign is rounding.
-    let apart = 1e-14 * (to.abs() + from.abs());
-    let mut open = vec![(from + apart, to)];
+    let mut open = vec![(from + apart(from, to), to)];
     let mut looked_at = 0;
     while let Some((low, high)) = open.pop() {
         const MOST: usize = 4000;
@@ -37,7 +35,7 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
             continue;
         }
         let (at_low, at_high) = (value(series, low), value(series, high));
-        if at_low == 0.0 || at_low.signum() == at_high.signum() {
+        if at_low == 0.0 || (at_high != 0.0 && at_low.signum() == at_high.signum()) {
             continue;
         }
         let (mut good, mut bad) = (low, high);
@@ -51,9 +49,26 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
                 false => bad = middle,
             }
         }
-        return Some((bad, at_high > 0.0));
+        return Some((bad, at_low < 0.0));
     }
     None
+}
+
+/// So close to where the last root was, the sign is rounding.
+fn apart(from: f64, to: f64) -> f64 {
+    1e-14 * (to.abs() + from.abs())
+}
+
+/// The sign with which the search for roots begins on a step of this length; 0 for nothing but zeros.
+pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
+    let here = value(series, apart(0.0, length));
+    let leading = series.iter().find(|value| **value != 0.0);
+    match (here, leading) {
+        (0.0, None) => 0.0,
+        // Underflow, or no step at all.
+        (0.0, Some(leading)) => leading.signum(),
+        _ => here.signum(),
+    }
 }
 
 /// The same polynomial about another centre, by Horner's scheme.
@@ -89,5 +104,8 @@ mod tests {
         let near = first_root(&[0.25 - 2.5e-13, -1.0, 1.0], 0.0, 1.0).expect("a root");
         assert!((near.0 - (0.5 - 5e-7)).abs() < 1e-9 && !near.1);
         assert_eq!(first_root(&[0.0, 1.0], 0.0, 1.0), None);
+        // One at the very end, where the value is exactly zero.
+        assert_eq!(first_root(&[-1.0, 1.0], 0.0, 1.0), Some((1.0, true)));
+        assert_eq!(first_root(&[1.0, -1.0], 0.0, 1.0), Some((1.0, false)));
     }
 }

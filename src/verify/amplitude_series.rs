@@ -117,7 +117,7 @@ mod tests {
                 ..Options::default()
             };
             let exact = solve(&Oscillator::parse(equation).unwrap(), &options).unwrap();
-            let law = exact.frequency_squared.unwrap();
+            let law = exact.law.frequency_squared().unwrap();
             let series = amplitude_series(&force).unwrap();
             for (power, found) in series.iter().enumerate() {
                 let terms = law.terms();

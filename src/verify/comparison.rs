@@ -116,6 +116,10 @@ pub fn compare(
     small: Option<&str>,
     tolerance: f64,
 ) -> Result<Comparison, ComparisonError> {
+    // A force too long to be written out stops every method at the same place: once is enough.
+    if let Err(error) = oscillator.parts() {
+        return Err(ComparisonError::NoMethod(Box::new(error.into())));
+    }
     let (mut solutions, mut refused) = (Vec::new(), Vec::new());
     for options in variants(small) {
         match (solve(oscillator, &options), options.method) {

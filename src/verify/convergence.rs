@@ -23,7 +23,7 @@ use crate::expr::Expr;
 use crate::method::secular::{Amplitude, Detuning, ForceTerm, Normalisation, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::series::numeric::numeric_taylor;
+use crate::series::recurrence::numeric_taylor;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
 

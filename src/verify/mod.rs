@@ -12,6 +12,7 @@
 //! ```
 
 mod amplitude_series;
+mod bounds;
 pub mod comparison;
 pub mod convergence;
 mod reach;
@@ -26,7 +27,7 @@ use crate::conservative::force::Force as RestForce;
 use crate::decimal::decimal;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
-use crate::method::numbers::{Numbers, evaluate, frequency_squared_of};
+use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of};
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::period::{self, PeriodError, Swing};
@@ -212,6 +213,7 @@ impl VerificationError {
                 error,
                 PeriodError::NoReturn(_)
                     | PeriodError::Pole { .. }
+                    | PeriodError::Overflow { .. }
                     | PeriodError::Quadrature(_)
                     | PeriodError::Root(_)
                     | PeriodError::Integration(_)
@@ -260,6 +262,8 @@ pub fn judge(
         .as_ref()
         .map(|(frequency, motion)| residual(&physics, *frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
+    let remark = found.as_ref().and_then(|found| found.remark.clone());
+    let remark = remark.map(|text| validity::Range { text, outside: false });
     Ok(Verification {
         at: at.clone(),
         frequency,
@@ -275,6 +279,7 @@ pub fn judge(
             .about_the_cycle(solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
+            .chain(remark)
             .chain(validity::ranges(oscillator, solution, &numbers, tolerance))
             .collect(),
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
@@ -363,16 +368,33 @@ fn numbers_or_reason(
     match evaluate(oscillator, solution, numbers) {
         Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => (Some(found), None),
         Ok(_) => (None, Some("not real: omega^2 <= 0".to_owned())),
+        Err(NoNumbers::NoValue | NoNumbers::Undefined { .. }) if law_overflows(solution, numbers) => {
+            let law = judged_on(solution);
+            let reason = format!("{law} is beyond the range of double precision, 1.8e308");
+            (None, Some(reason))
+        }
         Err(reason) => (None, Some(reason.to_string())),
     }
+}
+
+/// Whether the law has no value because a part of it is larger than any number.
+fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
+    let law = match (solution.law.closed_form(), solution.law.frequency_squared()) {
+        (Some(form), _) => form.value.clone(),
+        (None, Some(squared)) => Expr::from(squared),
+        (None, None) => return false,
+    };
+    law.overflow(numbers).is_some()
 }
 
 /// The law that [`formula_frequency`] takes.
 fn judged_on(solution: &Solution) -> &'static str {
     // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
-    let by_integral = solution.by_quadrature.is_some() && solution.method != Method::Exact;
-    match &solution.closed_form {
-        _ if solution.frequency_squared.is_some() || solution.relation.is_some() || by_integral => "omega^2",
+    let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
+    match solution.law.closed_form() {
+        _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
+            "omega^2"
+        }
         Some(form) => form.name(),
         None => "omega",
     }
@@ -380,8 +402,8 @@ fn judged_on(solution: &Solution) -> &'static str {
 
 /// omega by its own series, where the formula has one of omega^2 as well.
 fn series_of_omega(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    solution.frequency_squared.as_ref()?;
-    let series = solution.frequency.as_ref()?;
+    solution.law.frequency_squared()?;
+    let series = solution.law.frequency()?;
     solution.evaluate(series, &|symbol| numbers.get(&symbol).copied()).ok()
 }
 
@@ -751,7 +773,7 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         let error = (formula / truth - 1.0).abs();
         // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of the last bits does
         // to it is no error of the formula.
-        let shakes = if solution.closed_form.is_some() { 4 } else { 0 };
+        let shakes = if solution.law.closed_form().is_some() { 4 } else { 0 };
         let shaken = (1..=shakes).filter_map(|k| formula_at(factor * (1.0 + f64::from(k) * 1e-14)));
         let noise = shaken
             .map(|(shaken, _)| (shaken / formula - 1.0).abs())
@@ -786,7 +808,7 @@ fn with_small_parameter(
     let known = known
         .map(|definition| (definition.symbol, definition.meaning.clone()))
         .collect();
-    let stiffness = Expr::from(&solution.leading(solution.frequency_squared.as_ref()?));
+    let stiffness = Expr::from(&solution.leading(solution.law.frequency_squared()?));
     let stiffness = stiffness.substitute_all(&known).ok()?;
     let linear = &stiffness * &(&Expr::from(oscillator.coordinate) - &solution.equilibrium);
     let factor = Expr::divide(&Expr::from(delta), &own.meaning).ok()?;

@@ -132,7 +132,7 @@ impl<'a> Truth<'a> {
 /// Sizes of the amplitude at which a law may turn fast: the poles and narrow places of its closed form.
 pub(super) fn places_of_law(solution: &Solution, numbers: &BTreeMap<Symbol, f64>, to: f64) -> Vec<f64> {
     let symbol = solution.amplitude.symbol();
-    let Some(form) = &solution.closed_form else {
+    let Some(form) = solution.law.closed_form() else {
         return vec![];
     };
     let mut law: Expr = form.value.clone();

@@ -3,12 +3,14 @@
 
 use std::collections::BTreeMap;
 
+use super::bounds::bounds;
 use super::convergence::convergence;
 use super::reach::{self, Truth};
 use super::well::Well;
 use crate::decimal::significant;
 use crate::method::numbers::{force_of, frequency_squared_of};
 use crate::method::one_term::coefficient_by_quadrature;
+use crate::method::table::{Entry, Sees};
 use crate::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -40,9 +42,10 @@ pub(super) fn ranges(
         return ranges;
     };
     ranges.extend(integral_error(oscillator, solution, numbers));
+    ranges.extend(bounds(oscillator, solution, numbers));
     let truth = Truth::new(oscillator, solution, numbers);
     ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude()));
-    if matches!(solution.method, Method::LindstedtPoincare | Method::Pade) {
+    if Entry::of(solution.method).sees == Sees::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
     if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {
@@ -79,7 +82,7 @@ pub(super) fn of_equation(
 
 /// How good the integral of a law by quadrature is.
 fn integral_error(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
-    let one_term = solution.by_quadrature.is_some()
+    let one_term = solution.law.quadrature().is_some()
         && !matches!(
             solution.method,
             Method::Exact | Method::HarmonicBalance | Method::EnergyBalance
@@ -122,7 +125,7 @@ fn vanishing(
     const FARTHEST: f64 = 100.0;
     let symbol = solution.amplitude.symbol();
     let amplitude = *numbers.get(&symbol)?;
-    if solution.method == Method::Exact || solution.system.is_some() || solution.by_quadrature.is_some() {
+    if solution.method == Method::Exact || solution.law.is_solved_by_numbers() {
         return None;
     }
     // A law beyond the escape of the true motion is of no use, but where it ends is still its own affair.

@@ -136,10 +136,34 @@ fn rise(force: &Force, to: f64) -> Option<f64> {
             Err(QuadratureError::NotConverged {
                 value, error_estimate, ..
             }) if error_estimate < 1e-6 * value.abs() => value,
+            Err(_) if pair[0] == to => towards_the_end(force, pair[1], to)?,
+            Err(_) if pair[1] == to => towards_the_end(force, pair[0], to)?,
             Err(_) => return None,
         };
     }
     Some(if to < 0.0 { -sum } else { sum })
+}
+
+/// The work towards a place where the force is infinite but its potential is not, as that of `1/sqrt(1 - x)` at 1, counted from
+/// the left: with the distance from there as the sixth power of a variable the integrand is bounded. `None` at a pole.
+fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
+    /// Closer than this, relatively, the distance is rounding, and what it would add below the tolerance.
+    const CLOSEST: f64 = 1e-15;
+    if force.is_pole(force.equilibrium() + to, to.abs()) {
+        return None;
+    }
+    let integrand = |s: f64| match s.powi(6) {
+        distance if distance < CLOSEST => 0.0,
+        distance => 6.0 * s.powi(5) * force.at(to + (from - to) * distance),
+    };
+    let work = match integrate_smooth(integrand, 0.0, 1.0, 1e-10) {
+        Ok((value, _)) => value,
+        Err(QuadratureError::NotConverged {
+            value, error_estimate, ..
+        }) if error_estimate < 1e-6 * value.abs() => value,
+        Err(_) => return None,
+    };
+    Some(work * (from - to).abs())
 }
 
 /// The first place on one side where the force turns its sign or ends.
@@ -184,7 +208,7 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
             }
         }
         // A force that has grown beyond all numbers goes on, only not in numbers.
-        if !there.is_finite() && strongest > 1e250 {
+        if !there.is_finite() && (strongest > 1e250 || force.overflow(side * next).is_some()) {
             return None;
         }
         if !there.is_finite() {
@@ -273,6 +297,49 @@ mod tests {
         assert!(words.contains("periodic for A < 1: the force ends at x = 1"), "{words}");
         assert_eq!(ends("x + x^3", 1.0), (None, None, String::new()));
         assert_eq!(ends("x*exp(-x^2)", 1.0).2, "");
+    }
+
+    #[test]
+    fn both_ends_are_in_the_words() {
+        for (text, amplitude, words) in [
+            ("x/(1 - x^2)^2", 0.5, "periodic for |A| < 1: the force ends at x = 1"),
+            (
+                "sin(3*x)",
+                -0.1,
+                "periodic for |A| < 1.0472: the separatrix passes the unstable equilibrium x = 1.0472",
+            ),
+            ("x/(1 + x)^2", 0.1, "periodic for A > -1: the force ends at x = -1"),
+            // V = 4/3 - 2 u + 2 u^3/3 with u^2 = 1 - x: the end at 1 is reached from u^2 = 3.
+            (
+                "x/(1 - x)^(1/2)",
+                0.5,
+                "periodic for -2 < A < 1: the force ends at x = 1",
+            ),
+            (
+                "x/(1 + x)^(1/2)",
+                -0.5,
+                "periodic for -1 < A < 2: the force ends at x = -1",
+            ),
+        ] {
+            assert!(
+                ends(text, amplitude).2.starts_with(words),
+                "{text}: {}",
+                ends(text, amplitude).2
+            );
+        }
+    }
+
+    /// A force that has grown beyond all numbers has not ended: no rim is claimed where double precision gives out.
+    #[test]
+    fn an_overflow_is_no_end() {
+        for (text, amplitude) in [
+            ("exp(x) - 1", -1e5),
+            ("exp(x) - 1", -2.5e11),
+            ("x + x^99", 1e30),
+            ("sinh(x)", 1e4),
+        ] {
+            assert_eq!(ends(text, amplitude), (None, None, String::new()), "{text}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::definitions::{Answer, Question};
 use crate::force::{Shape, Term};
-use crate::quadrature::{integrate, solve};
+use crate::quadrature::{bisect, integrate, solve};
 
 impl Question<'_> {
     /// How many waves of sines and exponents of exponentials the motion runs through: beyond a few, sums over points say
@@ -34,20 +34,30 @@ impl Question<'_> {
         if let Some(degree) = self.force.degree() {
             points = (degree + 1) * (harmonics.last().expect("a harmonic") + 1) + 4;
         }
-        // Once on a branch, more points only move the answer a little.
+        // Once on a branch, more points only move the answer a little; a branch that ends may be the fault of too few.
+        let polynomial = self.force.degree().is_some();
         let mut current = None;
         loop {
             let Some(found) = self.balance(&harmonics, points, current.as_deref()) else {
-                return match current {
-                    None => Answer::Nothing("the balance has no branch from rest to this amplitude"),
-                    Some(_) => Answer::Unknown,
-                };
+                if current.is_some() || points > 3000 {
+                    return Answer::Unknown;
+                }
+                if polynomial {
+                    return Answer::Nothing("the balance has no branch from rest to this amplitude");
+                }
+                points *= 4;
+                continue;
             };
             let change = current
                 .as_ref()
                 .map_or(1.0, |before: &Vec<f64>| (before[0] / found[0] - 1.0).abs());
-            if self.force.degree().is_some() || change < 1e-12 {
+            if polynomial {
                 return self.given(found[0], 1e4);
+            }
+            if change < 1e-12 {
+                // Even points may miss a narrow place of the force, however many agree: the defect is measured beside this.
+                let narrow = !self.force.places().is_empty();
+                return self.given(found[0], if narrow { 1e8 } else { 1e4 });
             }
             if points > 3000 || (current.is_some() && change > 0.05) {
                 return Answer::Unknown;
@@ -70,6 +80,8 @@ impl Question<'_> {
     fn meets_equilibria(&self) -> bool {
         const SAMPLES: u32 = 2000;
         let even = (1..=SAMPLES).map(|k| 1.5 * self.size() * f64::from(k) / f64::from(SAMPLES));
+        // Wells may be far smaller than the motion.
+        let even = even.chain((0..4 * SAMPLES).map(|k| 1.5 * self.size() * (-f64::from(k) / 200.0).exp()));
         let places = self.force.places().into_iter().map(|place| (place - self.origin).abs());
         let mut sizes = even.chain(places.filter(|size| *size > 0.0 && *size < 1.5 * self.size()));
         sizes.any(|y| self.f(y) <= 0.0 || self.f(-y) >= 0.0)
@@ -79,11 +91,22 @@ impl Question<'_> {
     /// `None` where the integrals do not settle.
     pub fn defect_of_balance(&self, squared: f64, coefficients: &[f64], order: usize) -> Option<f64> {
         const PANELS: i32 = 64;
-        let panels: Vec<f64> = (0..=PANELS).map(|k| PI * f64::from(k) / f64::from(PANELS)).collect();
+        let mut panels: Vec<f64> = (0..=PANELS).map(|k| PI * f64::from(k) / f64::from(PANELS)).collect();
         let distance = |theta: f64| -> f64 {
             let wave = |(k, a): (usize, &f64)| a * (k as f64 * theta).cos();
             coefficients.iter().enumerate().map(wave).sum()
         };
+        // Where the motion passes the places at which the force turns fast.
+        for place in self.force.places() {
+            let excess = |theta: f64| distance(theta) - (place - self.origin);
+            let crossed: Vec<f64> = panels
+                .windows(2)
+                .filter(|pair| excess(pair[0]) * excess(pair[1]) < 0.0)
+                .map(|pair| bisect(&excess, pair[0], pair[1]))
+                .collect();
+            panels.extend(crossed);
+            panels.sort_by(f64::total_cmp);
+        }
         let mut largest = (coefficients.iter().sum::<f64>() / self.amplitude - 1.0).abs();
         for k in self.balanced(order) {
             let integrand = |theta: f64| self.f(distance(theta)) * (k as f64 * theta).cos();

@@ -67,6 +67,9 @@ impl Question<'_> {
     pub fn given(&self, squared: f64, noise: f64) -> Answer {
         if squared.is_finite() && noise.is_finite() {
             Answer::Value(squared, ROUNDING * (10.0 + noise))
+        } else if squared.is_finite() {
+            // All that is left of its terms is rounding.
+            Answer::Unknown
         } else {
             Answer::Nothing("the force overflows")
         }

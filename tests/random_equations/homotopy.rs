@@ -32,8 +32,18 @@ impl Question<'_> {
         } else {
             follow(&relation, &g)
         };
+        // What rounding of the terms, even powers included, moves the root by.
+        let rounding = |omega: f64| {
+            let sizes: f64 = g[1..].iter().map(|value| (value / g[1]).abs()).sum();
+            let (h, terms) = (
+                1e-6 * omega,
+                (1..=order).map(|k| (sizes / omega.abs()).powi(k as i32)).sum::<f64>(),
+            );
+            let slope = (relation(1.0, omega + h) - relation(1.0, omega - h)) / (2.0 * h);
+            1e2 * terms / slope.abs()
+        };
         match root {
-            Some(omega) => self.given(g[1] * omega, 1e3),
+            Some(omega) => self.given(g[1] * omega, 1e3 + rounding(omega)),
             None => Answer::Nothing("the branch from the linear frequency ends before this amplitude"),
         }
     }
@@ -48,6 +58,8 @@ impl Question<'_> {
         let wave = Waves::for_degree(degree, order);
         let mut motions: Vec<Vec<f64>> = vec![wave.cosine(1)];
         let mut frequencies: Vec<f64> = Vec::new();
+        // Rounding of the projections, even powers included.
+        let mut rounding = 0.0;
         for m in 1..=order {
             // R_m without the frequency that it fixes.
             let forces = powers_of_series(&motions, m, &g);
@@ -65,7 +77,11 @@ impl Question<'_> {
                 }
             }
             let secular = wave.coefficient(&right, 1);
+            let size = right.iter().map(|value| value.abs()).sum::<f64>() / right.len() as f64;
             if m == 1 {
+                if secular.abs() <= 1e-12 * size {
+                    return Answer::Unknown;
+                }
                 if secular <= 0.0 || secular.is_nan() {
                     return Answer::Value(scale * secular, 1e-9);
                 }
@@ -73,6 +89,7 @@ impl Question<'_> {
             } else {
                 frequencies.push(secular / (2.0 * frequencies[0]));
             }
+            rounding += size / (2.0 * frequencies[0]);
             if m == order {
                 break;
             }
@@ -93,7 +110,7 @@ impl Question<'_> {
         if omega <= 0.0 {
             return Answer::Value(-1.0, 1e-9);
         }
-        self.given(scale * omega * omega, 1e3 * terms / omega)
+        self.given(scale * omega * omega, 1e3 * (terms + rounding) / omega)
     }
 
     /// The second pass of iteration perturbation: no secular term in `Om x_1 - f(x_1)`, on the branch from rest.

@@ -26,6 +26,7 @@ mod motion;
 mod quadrature;
 mod random;
 mod velocities;
+mod wells;
 
 use std::collections::BTreeMap;
 
@@ -33,7 +34,8 @@ use definitions::{Answer, Question};
 use families::Case;
 use force::Shape;
 use lindstedt::expr::Expr;
-use lindstedt::method::{Options, Refusal, numbers, solve};
+use lindstedt::method::numbers::{self, NoNumbers};
+use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::solution::Method;
 use lindstedt::verify::Values;
 use lindstedt::{Oscillator, Symbol};
@@ -41,6 +43,15 @@ use random::Random;
 
 /// Agreement asked for, relatively, of omega^2, beyond what rounding explains.
 const AGREEMENT: f64 = 1e-9;
+
+/// Seeds at which the program, or this test, was once wrong.
+const FOUND: [u64; 53] = [
+    1000030, 1000224, 1000258, 1000281, 1000337, 1000464, 1000556, 1000572, 1000576, 1000587, 1000699, 1000726,
+    1000782, 1000865, 1001033, 1001308, 1001339, 1001447, 1001611, 1001698, 1001964, 1002105, 1002301, 1002676,
+    1002706, 1002907, 1003020, 1003039, 1003059, 1003064, 1003243, 1003288, 1003381, 1003414, 1010185, 1010488,
+    1010590, 1010769, 1010893, 1010979, 1011360, 1011435, 1011480, 1011570, 1011723, 1012170, 1012249, 1012298,
+    1012458, 1012489, 1012516, 1012565, 1012566,
+];
 
 fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name)
@@ -243,9 +254,17 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
                 format!("refused though it applies: {reason}")
             }),
             Ok(solution) => {
-                let found = numbers::evaluate(&oscillator, &solution, &numbers)
-                    .ok()
-                    .filter(|found| found.frequency_squared > 0.0);
+                let found = numbers::evaluate(&oscillator, &solution, &numbers);
+                // Coefficients about an equilibrium that is no fraction are rounded: where their terms cancel to less than
+                // six digits an answer is refused, and before that it says how many are lost.
+                let expected = match (&found, expected) {
+                    (Err(NoNumbers::Cancels { .. }), _) if origin != 0.0 => Answer::Unknown,
+                    // A balance about several wells says so, and is no branch from rest.
+                    (Ok(found), _) if found.remark.is_some() => Answer::Unknown,
+                    (Ok(found), Answer::Value(squared, noise)) => Answer::Value(squared, noise + found.rounding),
+                    (_, expected) => expected,
+                };
+                let found = found.ok().filter(|found| found.frequency_squared > 0.0);
                 let squared = found.as_ref().map(|found| found.frequency_squared / unit);
                 let motion = found
                     .and_then(|found| found.motion)
@@ -306,7 +325,9 @@ fn every_method_gives_what_its_definition_gives() {
     let first = setting("LINDSTEDT_RANDOM_SEED", 1);
     let mut counts: BTreeMap<(&str, &str), (usize, usize)> = BTreeMap::new();
     let mut complaints = Vec::new();
-    for seed in first..first + count {
+    // A run by hand asks for its own seeds alone.
+    let found = FOUND.into_iter().filter(|_| first == 1);
+    for seed in (first..first + count).chain(found) {
         let (case, described, comparisons) = run(seed);
         for comparison in comparisons {
             let entry = counts.entry((case.family, comparison.method)).or_default();

@@ -5,6 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::definitions::{Answer, Question};
 use crate::quadrature::{Integrals, bisect, integrate};
 
+/// The work of the force along a motion is not known.
+pub struct Unsettled;
+
 impl Question<'_> {
     /// The true frequency, squared: twice the time between the turning points, by the energy integral.
     pub fn truth(&self) -> Answer {
@@ -12,12 +15,15 @@ impl Question<'_> {
         if self.waves() > 300.0 {
             return Answer::Unknown;
         }
-        let Some(end) = self.far_turning_point() else {
+        let Ok(end) = self.far_turning_point() else {
+            return Answer::Unknown;
+        };
+        let Some(end) = end else {
             return Answer::Nothing("the motion does not come back");
         };
         let (left, right) = (start.min(end), start.max(end));
         let force = |y: f64| self.f(y);
-        let Some(work) = Integrals::new(&force, &self.stops(left, right)) else {
+        let Some(work) = Integrals::new(&force, &self.stops(left, right), self.precision()) else {
             return Answer::Unknown;
         };
         let (middle, radius) = (0.5 * (left + right), 0.5 * (right - left));
@@ -71,12 +77,24 @@ impl Question<'_> {
         stops
     }
 
+    /// To how many digits the work of the force can be summed: about an equilibrium that is no fraction, small distances are
+    /// differences.
+    fn precision(&self) -> f64 {
+        match self.origin == 0.0 {
+            true => 1e-16,
+            false => 1e-15 * (1.0 + self.noise(self.amplitude)),
+        }
+    }
+
     /// Where the motion turns back; `None` where it leaves.
-    pub fn far_turning_point(&self) -> Option<f64> {
+    ///
+    /// # Errors
+    /// The force overflows on the way, or its work cannot be summed.
+    pub fn far_turning_point(&self) -> Result<Option<f64>, Unsettled> {
         let start = self.amplitude;
         let (low, high) = self.force.domain(self.origin);
         if self.origin + start <= low || self.origin + start >= high || self.f(start) == 0.0 {
-            return None;
+            return Ok(None);
         }
         // The side it comes from.
         let side = self.f(start).signum();
@@ -84,14 +102,15 @@ impl Question<'_> {
         if self.is_odd() && side == start.signum() {
             // By symmetry, if nothing is in the way: the energy stays positive in between.
             let size = self.size();
-            let work = Integrals::new(&force, &self.stops(0.0, size))?;
+            let work = Integrals::new(&force, &self.stops(0.0, size), self.precision()).ok_or(Unsettled)?;
             let mut places: Vec<f64> = (0..1000).map(|k| size * f64::from(k) / 1000.0).collect();
             places.extend(self.stops(0.0, size).into_iter().filter(|place| *place < size));
-            return places.iter().all(|y| work.beyond(*y) > 0.0).then_some(-start);
+            return Ok(places.iter().all(|y| work.beyond(*y) > 0.0).then_some(-start));
         }
         let work = |from: f64, to: f64| -> f64 {
             let stops = self.stops(from.min(to), from.max(to));
-            integrate(&force, &stops, 1e-15).map_or(f64::NAN, |value| value * (to - from).signum())
+            integrate(&force, &stops, self.precision().max(1e-15))
+                .map_or(f64::NAN, |value| value * (to - from).signum())
         };
         let places = self
             .force
@@ -118,17 +137,17 @@ impl Question<'_> {
             }
             let after = left + work(next, y);
             if !after.is_finite() {
-                return None;
+                return Err(Unsettled);
             }
             if after <= 0.0 {
-                return Some(bisect(&|z| left + work(z, y), next, y));
+                return Ok(Some(bisect(&|z| left + work(z, y), next, y)));
             }
             travelled += (y - next).abs();
             (y, left) = (next, after);
             if travelled > 1e9 * start.abs() {
-                return None;
+                return Ok(None);
             }
         }
-        None
+        Ok(None)
     }
 }

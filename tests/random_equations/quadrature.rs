@@ -84,8 +84,8 @@ pub struct Integrals<'a> {
 }
 
 impl<'a> Integrals<'a> {
-    pub fn new(f: &'a dyn Fn(f64) -> f64, places: &[f64]) -> Option<Self> {
-        let panels = panels(f, places, 1e-16)?;
+    pub fn new(f: &'a dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<Self> {
+        let panels = panels(f, places, tolerance)?;
         let sums = |values: &mut dyn Iterator<Item = f64>| {
             let mut sum = 0.0;
             values

@@ -1,0 +1,211 @@
+//! Free flight: what ends a step of it, a touch at the barrier, a lean from rest into it, a turning point.
+
+use super::{Event, LIGHT, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
+use crate::damper::model::Side;
+use crate::damper::path::State;
+use crate::damper::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
+use crate::damper::taylor::{End, HIGHEST_ORDER};
+use crate::damper::{Turn, enter};
+
+impl Runner {
+    /// Takes a whole step of free flight if its ends show that nothing happens in it and nobody wants to see it.
+    pub(super) fn fly_on(&mut self, end: End) -> bool {
+        let turns = self.velocity.abs() <= end.variation;
+        let beyond = |side: Side| {
+            self.model
+                .barrier(side)
+                .is_some_and(|barrier| side.sign() * (end.place - barrier) > 0.0)
+        };
+        if turns
+            || self.options.keep_path
+            || self.released
+            || self.state != State::Free
+            || beyond(Side::Left)
+            || beyond(Side::Right)
+        {
+            return false;
+        }
+        let (sine, cosine) = end.place.sin_cos();
+        if self.is_calm(end.velocity, cosine) {
+            return false;
+        }
+        self.t = if self.last {
+            self.options.duration
+        } else {
+            self.t + self.length * self.unit
+        };
+        (self.place, self.velocity, self.sine, self.cosine) = (end.place, end.velocity, sine, cosine);
+        self.adapt();
+        true
+    }
+
+    /// Takes a step of free flight up to what ends it, and goes on from there.
+    pub(super) fn advance_flight(&mut self, whole: End, x: &[f64], v: &[f64]) {
+        let (x, v) = (&x[..=self.order], &v[..=self.order]);
+        let h = self.length;
+        let (mut end, mut event) = match self.state {
+            State::Detached(side) => self.detached_event(side, x, v, h),
+            _ => self.flight_event(x, v, h, whole),
+        };
+        let energy = |u: f64| self.model.energy(value(x, u), value(v, u));
+        let (mut x_end, mut v_end) = if end == h {
+            (whole.place, whole.velocity)
+        } else {
+            (value(x, end), value(v, end))
+        };
+        let (mut sine, mut cosine) = x_end.sin_cos();
+        if let Some(calm) = self.options.rest_energy
+            && self.is_calm(v_end, cosine)
+            && matches!(self.state, State::Free)
+        {
+            end = crossing_of(|u| energy(u) - calm, 0.0, end);
+            event = Some(Event::Calm);
+            (x_end, v_end) = (value(x, end), value(v, end));
+            (sine, cosine) = x_end.sin_cos();
+        }
+        let start = self.t;
+        self.t = if self.last && end == h {
+            self.options.duration
+        } else {
+            start + end * self.unit
+        };
+        if self.options.keep_path {
+            let state = match event {
+                Some(Event::Lean(side)) => State::Contact(side),
+                _ => self.state,
+            };
+            self.path.push_flight([start, self.t], state, self.unit, x, v);
+        }
+        (self.place, self.velocity, self.sine, self.cosine) = (x_end, v_end, sine, cosine);
+        self.adapt();
+        match event {
+            None => {}
+            Some(Event::Turn) => {
+                self.velocity = 0.0;
+                self.turn();
+            }
+            Some(Event::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => self.touch(side, side.sign() * v_end),
+            Some(Event::Lean(side)) => {
+                let depth = side.sign() * rise(x, end);
+                enter(&mut self.impacts, (&self.model, &self.options), side, start, [0.0, 0.0]);
+                self.lean(side, end * self.unit, [depth, side.sign() * v_end]);
+            }
+            Some(Event::Touch(side) | Event::Settle(side)) => {
+                (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
+                self.fly();
+            }
+            Some(Event::Release) => self.leave(v_end),
+            Some(Event::Reattach) => {
+                if let State::Detached(side) = self.state {
+                    let barrier = self.model.barrier(side).unwrap_or_default();
+                    self.press(
+                        side,
+                        (side.sign() * (self.place - barrier)).max(0.0).sqrt(),
+                        side.sign() * v_end,
+                    );
+                }
+            }
+            Some(Event::Calm) => self.calm(),
+            Some(Event::Detach) => {}
+        }
+    }
+
+    /// What ends a free flight before `h`, and where. Turning points on the way are noted.
+    fn flight_event(&mut self, x: &[f64], v: &[f64], h: f64, end: End) -> (f64, Option<Event>) {
+        let turns = turning_points(v, h, end);
+        let (mut from, mut x_from) = (0.0, x[0]);
+        let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
+        for (to, turning) in ends {
+            let x_to = if turning { value(x, to) } else { end.place };
+            for side in [Side::Right, Side::Left] {
+                let sign = side.sign();
+                // At rest on the barrier: which way it goes is in the change of x alone, not in x - x_r.
+                if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
+                    if sign * rise(x, to) > 0.0 {
+                        return (self.onset(side, x, v, to), Some(Event::Lean(side)));
+                    }
+                    continue;
+                }
+                if let Some(barrier) = self.model.barrier(side)
+                    && sign * (x_to - barrier) > 0.0
+                {
+                    let touch = if sign * (x_from - barrier) < 0.0 {
+                        bracketed(x, barrier, (from, x_from - barrier), (to, x_to - barrier))
+                    } else {
+                        from
+                    };
+                    if sign * value(v, touch) > 0.0 {
+                        return (touch, Some(Event::Touch(side)));
+                    }
+                    // Beyond it by more than rounding, and yet no speed: it turned on the barrier and is pushed in.
+                    if sign * (x_to - barrier) > 8.0 * f64::EPSILON * barrier.abs().max(1.0) {
+                        return (touch, Some(Event::Settle(side)));
+                    }
+                }
+            }
+            if turning {
+                self.turns.push(Turn {
+                    t: self.t + to * self.unit,
+                    x: x_to,
+                });
+                if self.model.sticks() {
+                    return (to, Some(Event::Turn));
+                }
+            }
+            (from, x_from) = (to, x_to);
+        }
+        (h, None)
+    }
+
+    /// What ends the flight away from a barrier that is still behind: back in place, or as fast as the barrier.
+    fn detached_event(&mut self, side: Side, x: &[f64], v: &[f64], h: f64) -> (f64, Option<Event>) {
+        let barrier = self.model.barrier(side).unwrap_or_default();
+        let sign = side.sign();
+        let mut excess = [0.0; HIGHEST_ORDER + 1];
+        for (entry, coefficient) in excess.iter_mut().zip(v) {
+            *entry = sign * coefficient;
+        }
+        // It begins at the level or below it, whatever rounding says.
+        excess[0] = (excess[0] + self.model.gamma / self.model.mu).min(0.0);
+        let catches = sign_changes(&excess[..=self.order], h);
+        let catch = catches.as_slice().first().copied().unwrap_or(h);
+        // Until then it moves away from the barrier all the time.
+        if sign * (value(x, catch) - barrier) <= 0.0 {
+            let release = level_crossing(x, barrier, 0.0, catch);
+            return (release, Some(Event::Release));
+        }
+        (catch, catches.as_slice().first().map(|_| Event::Reattach))
+    }
+
+    /// How far a motion that moves into the barrier from rest on it, and does so at least until `to`, may go before the
+    /// contact force counts.
+    fn onset(&self, side: Side, x: &[f64], v: &[f64], to: f64) -> f64 {
+        let mut u = to;
+        // Each time the part of the force shrinks by 4^4 or more.
+        for _ in 0..MOST_IDLE {
+            let (depth, speed) = (side.sign() * rise(x, u), side.sign() * value(v, u));
+            if self.model.contact(depth, speed) * u * self.unit <= LIGHT * speed {
+                break;
+            }
+            u *= 0.25;
+        }
+        u
+    }
+
+    pub(super) fn fly(&mut self) {
+        self.look(self.place);
+        self.fly_in_state();
+    }
+
+    pub(super) fn fly_in_state(&mut self) {
+        self.unit = 1.0 / self.velocity.abs().max(self.model.frequency_ratio).max(1.0);
+    }
+}
+
+/// How far x has risen since the start of the step: to more digits than x has.
+fn rise(x: &[f64], u: f64) -> f64 {
+    match x.split_first() {
+        Some((_, rest)) => u * value(rest, u),
+        None => 0.0,
+    }
+}

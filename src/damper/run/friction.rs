@@ -1,0 +1,52 @@
+//! Coulomb friction at a turning point: it lets the motion go on, or holds it until the excitation tears it loose.
+
+use super::Runner;
+use crate::damper::path::State;
+use crate::damper::{Stop, Turn};
+
+impl Runner {
+    /// The acceleration by all but friction at rest, now.
+    fn force_at_rest(&self) -> f64 {
+        let (t, x, _) = self.now();
+        let contact = match self.side() {
+            Some((side, _)) if matches!(self.state, State::Contact(_)) => {
+                side.sign() * self.model.contact(self.place * self.place, 0.0)
+            }
+            _ => 0.0,
+        };
+        self.model.field(t, x) - contact
+    }
+
+    /// At rest under Coulomb friction: which way it goes on, if at all.
+    pub(super) fn turn(&mut self) {
+        let force = self.force_at_rest();
+        if force.abs() <= self.model.alpha * (1.0 + 4.0 * f64::EPSILON) {
+            self.wait();
+        } else {
+            self.direction = force.signum();
+        }
+    }
+
+    /// Held by friction until the excitation tears it loose, or to the end.
+    fn wait(&mut self) {
+        let (start, x, _) = self.now();
+        let field = self.force_at_rest() - self.model.field(start, x) - x.sin();
+        let (release, direction) = self.model.release(start, x, field).unwrap_or((f64::INFINITY, 0.0));
+        let end = release.min(self.options.duration);
+        if self.options.keep_path && end > start {
+            self.path.push_rest([start, end], x);
+        }
+        if end > start {
+            self.turns.push(Turn { t: end, x });
+        }
+        self.t = end;
+        self.velocity = 0.0;
+        if release < self.options.duration {
+            self.direction = direction;
+            self.released = true;
+        } else {
+            self.direction = 0.0;
+            self.stop = Some(Stop::Duration);
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! The terms of one side of an equation as they were typed, those inside scaled brackets one by one: of
+//! `2*(x'' + x + 0.5*x')` a message quotes `0.5*x'`.
+//!
+//! A bracket is opened where all else in its term is free of the motion: numbers and parameters. `-mu*(1 - x^2)*x'` is one term.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::lexer::{Kind, Token};
+use super::parse_expression;
+use crate::expr::Expr;
+use crate::expr::typed::{Around, TypedTerm};
+use crate::symbol::Symbol;
+
+/// The deepest bracket in a bracket that is opened, and the most terms of one: what is typed by hand has fewer, and reading the
+/// text of a bracket again for each level costs little.
+const DEEPEST: usize = 8;
+const MOST_TERMS: usize = 256;
+
+/// The terms of one side: for each the value that it adds there and its tokens, signs included.
+pub(super) fn typed_terms(
+    text: &str,
+    tokens: &[Token],
+    shown: Vec<(Expr, Range<usize>)>,
+    right: bool,
+    coordinate: Symbol,
+) -> Vec<TypedTerm> {
+    let terms = shown.into_iter().map(|(value, range)| {
+        let tokens = &tokens[range];
+        (typed_term(value, tokens, right, None), tokens)
+    });
+    let mut open: Vec<(TypedTerm, &[Token])> = terms.collect();
+    for _ in 0..DEEPEST {
+        let pieces = open
+            .into_iter()
+            .flat_map(|(term, tokens)| opened(text, &term, tokens, coordinate).unwrap_or_else(|| vec![(term, tokens)]));
+        open = pieces.collect();
+    }
+    open.into_iter().map(|(term, _)| term).collect()
+}
+
+fn typed_term(value: Expr, tokens: &[Token], right: bool, around: Option<Arc<Around>>) -> TypedTerm {
+    let (negative, rest) = unsigned(tokens);
+    TypedTerm {
+        value,
+        span: span(rest),
+        negative,
+        right,
+        around,
+    }
+}
+
+/// The terms inside the one bracket of a term that the rest of it scales; `None` where there is no such bracket.
+fn opened<'a>(
+    text: &str,
+    term: &TypedTerm,
+    tokens: &'a [Token],
+    coordinate: Symbol,
+) -> Option<Vec<(TypedTerm, &'a [Token])>> {
+    let (negative, rest) = unsigned(tokens);
+    let moves = |token: &Token| {
+        let name = text[token.span()].trim_end_matches('\'');
+        token.kind == Kind::Name && (name == coordinate.name() || name == "t")
+    };
+    let factors = split(rest, |kind| matches!(kind, Kind::Times | Kind::Divide));
+    let mut moving = factors
+        .iter()
+        .filter(|factor| rest[(*factor).clone()].iter().any(moves));
+    let (factor, None) = (moving.next()?, moving.next()) else {
+        return None;
+    };
+    let divides = factor.start > 0 && rest[factor.start - 1].kind == Kind::Divide;
+    let (_, bracket) = unsigned(&rest[factor.clone()]);
+    let [first, inner @ .., last] = bracket else {
+        return None;
+    };
+    if divides || first.kind != Kind::Open || last.kind != Kind::Close || closes_before_its_end(bracket) {
+        return None;
+    }
+    let whole = span(rest);
+    let (before, after) = (&text[whole.start..first.start], &text[last.end..whole.end]);
+    let scale = parse_expression(&format!("{before}1{after}")).ok()?;
+    let scale = if negative { -scale } else { scale };
+    // What stands around the bracket multiplies it, and so does what stands around the term in its turn.
+    let (scale, outer) = match &term.around {
+        Some(outer) => (
+            &scale * &outer.scale,
+            (&*outer.opening, &*outer.closing, outer.negative),
+        ),
+        None => (scale, ("", "", false)),
+    };
+    let bare = before.is_empty() && after.is_empty();
+    let around = Arc::new(Around {
+        opening: format!("{}{before}{}", outer.0, if bare { "" } else { "(" }),
+        closing: format!("{}{after}{}", if bare { "" } else { ")" }, outer.1),
+        negative: outer.2 ^ negative,
+        scale,
+    });
+    let inner_terms = split(inner, |kind| matches!(kind, Kind::Plus | Kind::Minus));
+    if inner_terms.len() > MOST_TERMS {
+        return None;
+    }
+    let pieces = inner_terms.into_iter().map(|range| {
+        // The sign between two terms belongs to the second.
+        let tokens = &inner[range.start.saturating_sub(1)..range.end];
+        let value = parse_expression(&text[span(tokens)]).ok()?;
+        let term = typed_term(&around.scale * &value, tokens, term.right, Some(around.clone()));
+        Some((term, tokens))
+    });
+    pieces.collect()
+}
+
+/// The signs before a term or a factor, whether they are a minus together, and what follows them.
+fn unsigned(tokens: &[Token]) -> (bool, &[Token]) {
+    let signs = tokens
+        .iter()
+        .take_while(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
+    let minuses = signs.clone().filter(|sign| sign.kind == Kind::Minus).count();
+    (minuses % 2 == 1, &tokens[signs.count()..])
+}
+
+fn span(tokens: &[Token]) -> Range<usize> {
+    tokens.first().map_or(0, |token| token.start)..tokens.last().map_or(0, |token| token.end)
+}
+
+/// The ranges between the operators outside all brackets; a sign that stands where an operand is expected is none.
+fn split(tokens: &[Token], operator: impl Fn(Kind) -> bool) -> Vec<Range<usize>> {
+    let (mut depth, mut start) = (0_usize, 0);
+    let mut ranges = Vec::new();
+    for (number, token) in tokens.iter().enumerate() {
+        match token.kind {
+            Kind::Open => depth += 1,
+            Kind::Close => depth = depth.saturating_sub(1),
+            kind if depth == 0 && operator(kind) && number > 0 && ends_operand(tokens[number - 1].kind) => {
+                ranges.push(start..number);
+                start = number + 1;
+            }
+            _ => {}
+        }
+    }
+    ranges.push(start..tokens.len());
+    ranges
+}
+
+fn ends_operand(kind: Kind) -> bool {
+    matches!(kind, Kind::Number | Kind::Name | Kind::Close)
+}
+
+/// Whether the bracket that the first token opens is closed before the last: `(1 + x)^(2)`.
+fn closes_before_its_end(tokens: &[Token]) -> bool {
+    let mut depth = 0_usize;
+    tokens[..tokens.len() - 1].iter().any(|token| {
+        match token.kind {
+            Kind::Open => depth += 1,
+            Kind::Close => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0
+    })
+}

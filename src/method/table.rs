@@ -1,0 +1,241 @@
+//! The table of methods: a row each, with what the rest of the program needs to know of it.
+
+use super::{
+    Options, Refusal, amplitude_frequency, energy_balance, exact, frequency_formula, hamiltonian, harmonic_balance,
+    homotopy_analysis, homotopy_perturbation, iteration_perturbation, lindstedt_poincare, max_min, one_term, pade,
+    parameter_expansion, variational_iteration,
+};
+use crate::conservative::force::Force;
+use crate::oscillator::Oscillator;
+use crate::solution::{Method, Solution};
+
+/// A row of [`METHODS`].
+pub struct Entry {
+    /// The method.
+    pub method: Method,
+    /// Derives its answer for an oscillator that swings about zero.
+    pub solve: fn(&Oscillator, &Options) -> Result<Solution, Refusal>,
+    /// What a user may choose, beside the meaning of the amplitude and the small parameter.
+    pub takes: &'static [Choice],
+    /// What it sees of the force.
+    pub sees: Sees,
+    /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded coefficients that stands
+    /// for the force, zero for a polynomial force kept whole; `None` where the force is taken as it is. The flag says whether
+    /// the force is a polynomial.
+    pub rounded_degree: fn(&Options, bool) -> Option<u32>,
+    /// omega^2 of a motion `A cos(theta)` by what defines it, in numbers, for methods of one term: the force about the
+    /// equilibrium and the size of the amplitude.
+    pub definition: Option<fn(&Force, f64) -> Option<f64>>,
+}
+
+/// What a user may choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// An order: a power of the small parameter, a number of harmonics or of passes.
+    Order,
+    /// Two degrees, of numerator and denominator.
+    Degrees,
+    /// The degree of a Taylor polynomial in place of the force.
+    Taylor,
+    /// The convergence-control parameter.
+    Hbar,
+    /// One of several limit cycles.
+    Cycle,
+}
+
+impl Choice {
+    /// In running text.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Order => "order",
+            Self::Degrees => "degrees of numerator and denominator",
+            Self::Taylor => "Taylor polynomial in place of the force",
+            Self::Hbar => "convergence-control parameter",
+            Self::Cycle => "choice among limit cycles",
+        }
+    }
+}
+
+/// What a method sees of the force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sees {
+    /// Its derivatives at the equilibrium.
+    Derivatives,
+    /// Its derivatives, as a Taylor polynomial of a chosen degree.
+    TaylorPolynomial,
+    /// The force as it is, unless its Taylor polynomial is asked for.
+    Force,
+}
+
+/// Every method, in the order of [`Method::ALL`].
+pub const METHODS: [Entry; Method::ALL.len()] = [
+    Entry {
+        method: Method::LindstedtPoincare,
+        solve: lindstedt_poincare::solve,
+        takes: &[Choice::Order, Choice::Cycle],
+        sees: Sees::Derivatives,
+        rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::HomotopyPerturbation,
+        solve: homotopy_perturbation::solve,
+        takes: &[Choice::Order, Choice::Taylor],
+        sees: Sees::TaylorPolynomial,
+        rounded_degree: |options, _| Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2)))),
+        definition: None,
+    },
+    Entry {
+        method: Method::HomotopyAnalysis,
+        solve: homotopy_analysis::solve,
+        takes: &[Choice::Order, Choice::Taylor, Choice::Hbar],
+        sees: Sees::TaylorPolynomial,
+        rounded_degree: |options, _| Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2)))),
+        definition: None,
+    },
+    Entry {
+        method: Method::IterationPerturbation,
+        solve: iteration_perturbation::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |options, polynomial| (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0),
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::ParameterExpansion,
+        solve: parameter_expansion::solve,
+        takes: &[Choice::Order, Choice::Taylor],
+        sees: Sees::Force,
+        rounded_degree: |options, polynomial| match options.taylor {
+            Some(degree) => Some(degree),
+            None => (polynomial && options.order != Some(1)).then_some(0),
+        },
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::HarmonicBalance,
+        solve: harmonic_balance::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::EnergyBalance,
+        solve: energy_balance::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(energy_balance::by_quadrature),
+    },
+    Entry {
+        method: Method::MaxMin,
+        solve: max_min::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::AmplitudeFrequency,
+        solve: amplitude_frequency::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(amplitude_frequency::by_definition),
+    },
+    Entry {
+        method: Method::Hamiltonian,
+        solve: hamiltonian::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::VariationalIteration,
+        solve: variational_iteration::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(one_term::first_projection_over_amplitude),
+    },
+    Entry {
+        method: Method::FrequencyFormula,
+        solve: frequency_formula::solve,
+        takes: &[Choice::Order],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: Some(frequency_formula::by_definition),
+    },
+    Entry {
+        method: Method::Pade,
+        solve: pade::solve,
+        takes: &[Choice::Degrees, Choice::Cycle],
+        sees: Sees::Derivatives,
+        rounded_degree: |options, _| {
+            let (numerator, denominator) = options.pade.unwrap_or((2, 1));
+            Some(beyond_twice(numerator.saturating_add(denominator)))
+        },
+        definition: None,
+    },
+    Entry {
+        method: Method::Exact,
+        solve: exact::solve,
+        takes: &[],
+        sees: Sees::Force,
+        rounded_degree: |_, _| None,
+        definition: None,
+    },
+];
+
+impl Entry {
+    /// The row of a method.
+    pub fn of(method: Method) -> &'static Self {
+        // The order is that of `Method::ALL`, which is that of the variants; a test holds it.
+        &METHODS[method as usize]
+    }
+
+    /// Whether a user may choose this.
+    pub fn takes(&self, choice: Choice) -> bool {
+        self.takes.contains(&choice)
+    }
+
+    /// Whether it sees of the force only its derivatives at the equilibrium.
+    pub fn expands(&self) -> bool {
+        matches!(self.sees, Sees::Derivatives | Sees::TaylorPolynomial)
+    }
+}
+
+/// The names of the methods that take a choice, in words: `lindstedt-poincare and pade`.
+pub fn that_take(choice: Choice) -> String {
+    let names: Vec<&str> = METHODS
+        .iter()
+        .filter(|entry| entry.takes(choice))
+        .map(|entry| entry.method.name())
+        .collect();
+    match names.split_last() {
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// The degree to which an expansion of this order reaches in an odd force.
+fn beyond_twice(order: u32) -> u32 {
+    order.saturating_mul(2).saturating_add(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_has_its_row() {
+        for method in Method::ALL {
+            assert_eq!(Entry::of(method).method, method);
+        }
+        assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
+        assert_eq!(that_take(Choice::Cycle), "lindstedt-poincare and pade");
+    }
+}

@@ -1,0 +1,93 @@
+//! What is followed: values at a time, as first-order equations have them or as the displacement and velocity of one coordinate.
+
+use std::fmt::Debug;
+
+use super::State;
+
+/// The values of first-order equations: an array, with which a step allocates nothing, or a vector where their number is known
+/// at run time only.
+pub trait Values: differential_equations::traits::State<f64> + AsRef<[f64]> + AsMut<[f64]> {}
+
+impl<const N: usize> Values for [f64; N] {}
+
+impl Values for Vec<f64> {}
+
+/// A point of a motion.
+pub trait Moment: Clone + Debug {
+    /// What changes in time.
+    type Values: Values;
+
+    /// From a time and the values at it.
+    fn new(t: f64, values: &Self::Values) -> Self;
+
+    /// The time.
+    fn time(&self) -> f64;
+
+    /// The values at it.
+    fn values(&self) -> Self::Values;
+
+    /// The values at `t` within a step of the implicit method, from those at its ends, where that is better than the method's
+    /// own interpolant.
+    fn between(_from: (f64, &Self::Values), _to: (f64, &Self::Values), _t: f64) -> Option<Self::Values> {
+        None
+    }
+
+    /// Whether all of it is finite.
+    fn is_finite(&self) -> bool {
+        self.time().is_finite() && self.values().as_ref().iter().all(|value| value.is_finite())
+    }
+}
+
+/// A point of the motion of any first-order equations. Also the initial condition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point<Y> {
+    /// Time.
+    pub t: f64,
+    /// The values, in the order of the equations.
+    pub y: Y,
+}
+
+impl<Y: Values> Moment for Point<Y> {
+    type Values = Y;
+
+    fn new(t: f64, values: &Y) -> Self {
+        Self { t, y: values.clone() }
+    }
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn values(&self) -> Y {
+        self.y.clone()
+    }
+}
+
+impl Moment for State {
+    type Values = [f64; 2];
+
+    fn new(t: f64, &[x, v]: &[f64; 2]) -> Self {
+        Self { t, x, v }
+    }
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn values(&self) -> [f64; 2] {
+        [self.x, self.v]
+    }
+
+    /// The cubic that has displacement and velocity of both ends of a step. The accelerations stay out of it: where the motion
+    /// is stiff they magnify every error of the velocity.
+    fn between((from, [x, v]): (f64, &[f64; 2]), (to, [x1, v1]): (f64, &[f64; 2]), t: f64) -> Option<[f64; 2]> {
+        let length = to - from;
+        // In units of the step.
+        let (v, v1, rise) = (length * v, length * v1, x1 - x);
+        let s = (t - from) / length;
+        let (c2, c3) = (3.0 * rise - 2.0 * v - v1, v + v1 - 2.0 * rise);
+        let position = x + s * (v + s * (c2 + s * c3));
+        let velocity = (v + s * (2.0 * c2 + s * 3.0 * c3)) / length;
+        (position.is_finite() && velocity.is_finite()).then_some([position, velocity])
+    }
+}

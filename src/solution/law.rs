@@ -1,0 +1,184 @@
+//! The law of the frequency: one kind for each form in which methods give it.
+
+use std::fmt;
+
+use crate::derivation::Line;
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::symbol::Symbol;
+
+/// What ties the frequency to the amplitude. Polynomials and expressions are in the parameters of the equation, the amplitude
+/// symbol and the symbols of the definitions of the solution.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// omega^2 as a polynomial, and omega itself beside it where the method expands both.
+    Series {
+        /// omega^2.
+        squared: Polynomial,
+        /// omega, cut at the same order.
+        frequency: Option<Polynomial>,
+    },
+    /// omega alone as a polynomial.
+    Frequency(Polynomial),
+    /// A polynomial in even powers of `omega`, equal to zero, and its root where that can be written down.
+    Relation {
+        /// Zero on the branch that starts at the linear frequency.
+        relation: Polynomial,
+        /// The relation solved for omega^2.
+        root: Option<Root>,
+    },
+    /// An expression that is no polynomial.
+    Closed(ClosedForm),
+    /// A law that only numbers solve: `omega^2 = (2/(pi*A)) int_0^pi ...`; the lines say which.
+    Quadrature(Vec<Line>),
+    /// The equations of a balance of several harmonics, solved by numbers.
+    System(System),
+}
+
+/// A relation solved for omega^2.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Root {
+    /// As a polynomial: the relation is linear in omega^2.
+    Polynomial(Polynomial),
+    /// With a root in it.
+    Closed(ClosedForm),
+}
+
+/// A law that is no polynomial: `omega^2 = 2*J1(A)/A`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedForm {
+    /// Whether the value is omega^2; otherwise omega.
+    pub squared: bool,
+    /// The right side.
+    pub value: Expr,
+}
+
+/// Algebraic equations that determine frequency and coefficients together, solved by numbers alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct System {
+    /// What is solved for: `omega` and the coefficients of the motion.
+    pub unknowns: Vec<Symbol>,
+    /// Each is equal to zero.
+    pub equations: Vec<Expr>,
+}
+
+impl Law {
+    /// omega^2 alone, as a polynomial.
+    pub fn squared(value: Polynomial) -> Self {
+        Self::Series {
+            squared: value,
+            frequency: None,
+        }
+    }
+
+    /// omega, where the law gives it as a polynomial.
+    pub fn frequency(&self) -> Option<&Polynomial> {
+        match self {
+            Self::Series { frequency, .. } => frequency.as_ref(),
+            Self::Frequency(frequency) => Some(frequency),
+            _ => None,
+        }
+    }
+
+    /// omega^2, likewise.
+    pub fn frequency_squared(&self) -> Option<&Polynomial> {
+        match self {
+            Self::Series { squared, .. } => Some(squared),
+            Self::Relation {
+                root: Some(Root::Polynomial(squared)),
+                ..
+            } => Some(squared),
+            _ => None,
+        }
+    }
+
+    /// The relation of an implicit law.
+    pub fn relation(&self) -> Option<&Polynomial> {
+        match self {
+            Self::Relation { relation, .. } => Some(relation),
+            _ => None,
+        }
+    }
+
+    /// The expression for omega or omega^2 that is no polynomial.
+    pub fn closed_form(&self) -> Option<&ClosedForm> {
+        match self {
+            Self::Closed(form)
+            | Self::Relation {
+                root: Some(Root::Closed(form)),
+                ..
+            } => Some(form),
+            _ => None,
+        }
+    }
+
+    /// The lines of a law that only numbers solve.
+    pub fn quadrature(&self) -> Option<&[Line]> {
+        match self {
+            Self::Quadrature(lines) => Some(lines),
+            _ => None,
+        }
+    }
+
+    /// The equations of a balance.
+    pub fn system(&self) -> Option<&System> {
+        match self {
+            Self::System(system) => Some(system),
+            _ => None,
+        }
+    }
+
+    /// Whether omega^2 is not evaluated but solved for: a balance, an integral, the exact motion.
+    pub fn is_solved_by_numbers(&self) -> bool {
+        matches!(self, Self::Quadrature(_) | Self::System(_))
+    }
+
+    /// Every polynomial in it.
+    pub fn polynomials(&self) -> impl Iterator<Item = &Polynomial> {
+        [self.frequency(), self.frequency_squared(), self.relation()]
+            .into_iter()
+            .flatten()
+    }
+
+    /// The law with every polynomial changed.
+    #[must_use]
+    pub fn map(&self, change: impl Fn(&Polynomial) -> Polynomial) -> Self {
+        match self {
+            Self::Series { squared, frequency } => Self::Series {
+                squared: change(squared),
+                frequency: frequency.as_ref().map(change),
+            },
+            Self::Frequency(frequency) => Self::Frequency(change(frequency)),
+            Self::Relation { relation, root } => Self::Relation {
+                relation: change(relation),
+                root: root.as_ref().map(|root| match root {
+                    Root::Polynomial(squared) => Root::Polynomial(change(squared)),
+                    Root::Closed(form) => Root::Closed(form.clone()),
+                }),
+            },
+            other => other.clone(),
+        }
+    }
+
+    /// Whether a symbol stands in it; integrals are taken along the motion, so the amplitude stands in each.
+    pub fn contains(&self, symbol: Symbol) -> bool {
+        let equations = self.system().into_iter().flat_map(|system| &system.equations);
+        let forms = self.closed_form().map(|form| &form.value).into_iter().chain(equations);
+        self.quadrature().is_some()
+            || self.polynomials().any(|law| law.symbols().contains(&symbol))
+            || forms.into_iter().any(|form| form.contains(symbol))
+    }
+}
+
+impl ClosedForm {
+    /// The left side: `omega^2` or `omega`.
+    pub fn name(&self) -> &'static str {
+        if self.squared { "omega^2" } else { "omega" }
+    }
+}
+
+impl fmt::Display for ClosedForm {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} = {}", self.name(), self.value)
+    }
+}

@@ -1,0 +1,329 @@
+//! The same equations by Runge-Kutta: the right sides are evaluated, never expanded, so that it is a check of the series.
+//!
+//! ```text
+//! abs(u) -> s u,   sgn(u) -> sgn(s),   H(u) -> H(s),   max(u, w) -> H(s) u + H(-s) w      s = 1 or -1: the side of a corner
+//! ```
+//!
+//! A side is a value of the run beside the states, with rate zero: the right sides are smooth in every step, and where `s u` falls
+//! through zero the run starts anew with the other side. What rounding has left of u there is kept beside it and taken off, so that
+//! the motion stands on its corner and is seen to leave it on either side. States are counted in their own sizes and
+//! time from the start in the length of the first step, so that one tolerance and one guess of a step suit all.
+
+use std::cell::RefCell;
+
+use super::{End, Event, Occurrence, Options, Path, System, SystemError, taylor};
+use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
+use crate::ode::{self, Action, Point, StopReason, Trajectory, integrate_first_order};
+use crate::symbol::{Symbol, fresh_stem};
+
+/// No step can be held to less: an estimate of its error is rounding below that.
+const SMALLEST_TOLERANCE: f64 = 1e-14;
+
+/// Crossings in the same direction that lie closer together, in first steps, are one.
+const SAME_PLACE: f64 = 1e-10;
+
+/// A trajectory in the units of the run.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    trajectory: Trajectory<Point<Vec<f64>>>,
+    units: Units,
+}
+
+impl Motion {
+    /// All states at a time within the path.
+    pub(super) fn at(&self, time: f64) -> Option<Vec<f64>> {
+        let scaled = self.units.count(time).min(self.trajectory.end().t);
+        let point = self.trajectory.state_at(scaled)?;
+        // Sides and what goes with them stand behind the states.
+        let states = point.y.iter().zip(&self.units.sizes);
+        Some(states.map(|(value, size)| value * size).collect())
+    }
+
+    pub(super) fn step_count(&self) -> usize {
+        self.trajectory.step_count()
+    }
+}
+
+/// What states and time are counted in.
+#[derive(Clone, Debug)]
+struct Units {
+    /// The size of every state: what it reaches on the first step of its series. One that stays zero there is taken to be as
+    /// large as the smallest of the others.
+    sizes: Vec<f64>,
+    start: f64,
+    time: f64,
+}
+
+impl Units {
+    fn new(system: &System, [start, end]: [f64; 2], values: &[f64], events: &[Event]) -> Self {
+        // Without a series there, the values themselves must do.
+        let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
+        let (reach, mut sizes): (f64, Vec<f64>) =
+            taylor::first_step(system, start, values, events).unwrap_or_else(alone);
+        let smallest = sizes
+            .iter()
+            .copied()
+            .filter(|size| *size > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        let other = if smallest.is_finite() { smallest } else { 1.0 };
+        sizes
+            .iter_mut()
+            .filter(|size| **size == 0.0)
+            .for_each(|size| *size = other);
+        let time = reach.min(end - start);
+        let time = if time > 0.0 { time } else { 1.0 };
+        Self { sizes, start, time }
+    }
+
+    /// A time in the units of the run.
+    fn count(&self, time: f64) -> f64 {
+        (time - self.start) / self.time
+    }
+
+    /// A time of the run as it is.
+    fn time(&self, counted: f64) -> f64 {
+        self.start + counted * self.time
+    }
+}
+
+/// The path between two times from these values.
+pub(super) fn follow(
+    system: &System,
+    [start, end]: [f64; 2],
+    values: &[f64],
+    events: &[Event],
+    options: &Options,
+) -> Result<Path, SystemError> {
+    let states = values.len();
+    // What cannot be expanded is refused by either integrator.
+    taylor::expansion(system, events, 1)?;
+    let smooth = Smooth::new(system, events)?;
+    let units = Units::new(system, [start, end], values, events);
+    let sizes = &units.sizes;
+    let scratch = RefCell::new(smooth.arguments(system));
+    let corners = smooth.corners.len();
+    // The arguments of every function: states, sides, time, numbers.
+    let with = |t: f64, scaled: &[f64], functions: &[CompiledFunction], out: &mut dyn FnMut(usize, f64)| {
+        let mut arguments = scratch.borrow_mut();
+        for (index, argument) in arguments.iter_mut().take(states + corners).enumerate() {
+            *argument = scaled[index] * sizes.get(index).copied().unwrap_or(1.0);
+        }
+        arguments[states + corners] = units.time(t);
+        for (index, function) in functions.iter().enumerate() {
+            out(index, function.call(&arguments));
+        }
+    };
+    let value_of = |t: f64, scaled: &[f64], function: &CompiledFunction| {
+        let mut value = f64::NAN;
+        with(t, scaled, std::slice::from_ref(function), &mut |_, found| value = found);
+        value
+    };
+    let rates = |t: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
+        rates.fill(0.0);
+        with(t, scaled, &smooth.rates, &mut |state, rate| {
+            rates[state] = units.time * (rate / sizes[state])
+        });
+    };
+    let mut first: Vec<f64> = values.iter().zip(sizes).map(|(value, size)| value / size).collect();
+    first.resize(states + corners, 1.0);
+    first.resize(states + 2 * corners, 0.0);
+    // The argument of a corner contains the sides of earlier ones alone. One that begins at zero is left on its own side, or at once.
+    for (corner, argument) in smooth.corners.iter().enumerate() {
+        if value_of(0.0, &first, argument) < 0.0 {
+            first[states + corner] = -1.0;
+        }
+    }
+    // As typed, a sign without a value is none, whatever side it might have.
+    for (state, rate) in smooth.typed.iter().enumerate() {
+        if !value_of(0.0, &first, rate).is_finite() {
+            return Err(SystemError::Start(system.state[state]));
+        }
+    }
+    for (event, function) in smooth.events.iter().enumerate() {
+        if !value_of(0.0, &first, function).is_finite() {
+            return Err(SystemError::Event(event));
+        }
+    }
+    let event = |event: usize, function| {
+        let action = match events[event].stops {
+            true => Action::Stop,
+            false => Action::Record,
+        };
+        ode::Event::new(
+            move |point: &Point<Vec<f64>>| value_of(point.t, &point.y, function),
+            action,
+        )
+    };
+    let corner = |corner: usize, argument| {
+        let (side, left_over) = (states + corner, states + corners + corner);
+        let cross = move |mut point: Point<Vec<f64>>| {
+            point.y[left_over] = value_of(point.t, &point.y, argument);
+            point.y[side] = -point.y[side];
+            (0, point)
+        };
+        let height =
+            move |point: &Point<Vec<f64>>| point.y[side] * (value_of(point.t, &point.y, argument) - point.y[left_over]);
+        ode::Event::new(height, Action::Switch(Box::new(cross))).falling()
+    };
+    let mut watched: Vec<ode::Event<Point<Vec<f64>>>> = Vec::new();
+    for (index, function) in smooth.events.iter().enumerate() {
+        watched.push(event(index, function));
+    }
+    for (index, argument) in smooth.corners.iter().enumerate() {
+        watched.push(corner(index, argument));
+    }
+    let begin = Point { t: 0.0, y: first };
+    let settings = ode::Options {
+        maximum_steps: options.step_limit,
+        // What is looked for may vary faster than the motion: no more than a series of it could tell.
+        maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
+        interrupt: options.interrupt,
+        ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
+    };
+    let run = integrate_first_order(rates, begin, units.count(end), &watched, &settings);
+    let trajectory = run.map_err(|error| match error {
+        ode::IntegrationError::RateNotFinite { index, .. } => SystemError::Start(system.state[index]),
+        _ => SystemError::Bounds,
+    })?;
+    drop(watched);
+    let reason = reason(trajectory.stop_reason());
+    let mut occurrences: Vec<Occurrence> = Vec::new();
+    for found in trajectory
+        .occurrences()
+        .iter()
+        .filter(|found| found.event < events.len())
+    {
+        let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
+        // Where a corner lies at the same place, rounding may show the crossing before and behind it.
+        let same = |met: &&Occurrence| met.event == event && met.rising == rising;
+        let again = occurrences.iter().rev().find(same);
+        if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
+            occurrences.push(Occurrence { event, time, rising });
+        }
+    }
+    Ok(Path {
+        end: match reason {
+            End::Reached => end,
+            _ => units.time(trajectory.end().t),
+        },
+        reason,
+        occurrences,
+        motion: super::Motion::RungeKutta(Motion { trajectory, units }),
+    })
+}
+
+fn reason(stopped: StopReason) -> End {
+    match stopped {
+        StopReason::EndReached => End::Reached,
+        StopReason::Event { event, .. } => End::Event(event),
+        StopReason::MaximumSteps { .. } => End::StepLimit,
+        StopReason::Interrupted { .. } => End::Interrupted,
+        StopReason::SwitchingStalled { .. } => End::Sticks,
+        StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => End::Singular,
+    }
+}
+
+/// Right sides, events and the arguments of the corners, as functions of states, sides, time and numbers.
+struct Smooth {
+    /// The right sides with their corners.
+    typed: Vec<CompiledFunction>,
+    rates: Vec<CompiledFunction>,
+    events: Vec<CompiledFunction>,
+    corners: Vec<CompiledFunction>,
+}
+
+impl Smooth {
+    fn new(system: &System, events: &[Event]) -> Result<Self, SystemError> {
+        let events: Vec<Expr> = events.iter().map(|event| event.expression.clone()).collect();
+        let known = || {
+            system
+                .state
+                .iter()
+                .chain([&system.time])
+                .chain(system.numbers.keys())
+                .copied()
+        };
+        let mut corners = Corners {
+            stem: fresh_stem("side", &known().collect::<Vec<_>>()),
+            arguments: Vec::new(),
+        };
+        let rates: Vec<Expr> = system
+            .right
+            .iter()
+            .map(|right| corners.smooth(right))
+            .collect::<Result<_, _>>()?;
+        let states = system.state.iter().copied();
+        let sides = (0..corners.arguments.len()).map(|index| corners.side(index));
+        let names: Vec<Symbol> = states
+            .chain(sides)
+            .chain([system.time])
+            .chain(system.numbers.keys().copied())
+            .collect();
+        let compiled = |expressions: &[Expr]| {
+            let compiled = expressions
+                .iter()
+                .map(|expression| CompiledFunction::new(expression, &names));
+            compiled.collect::<Result<Vec<_>, EvaluationError>>()
+        };
+        Ok(Self {
+            typed: compiled(&system.right)?,
+            rates: compiled(&rates)?,
+            events: compiled(&events)?,
+            corners: compiled(&corners.arguments)?,
+        })
+    }
+
+    /// Room for the arguments, with the numbers in their places.
+    fn arguments(&self, system: &System) -> Vec<f64> {
+        let before = self.rates.len() + self.corners.len() + 1;
+        let numbers = system.numbers.values().copied();
+        std::iter::repeat_n(0.0, before).chain(numbers).collect()
+    }
+}
+
+/// The corners met so far: the arguments whose signs choose, which may contain the sides of earlier ones.
+struct Corners {
+    stem: String,
+    arguments: Vec<Expr>,
+}
+
+impl Corners {
+    fn side(&self, index: usize) -> Symbol {
+        Symbol::new(&format!("{}{index}", self.stem))
+    }
+
+    /// The side of the corner with this argument.
+    fn of(&mut self, argument: &Expr) -> Expr {
+        let known = self.arguments.iter().position(|known| known == argument);
+        let index = known.unwrap_or(self.arguments.len());
+        if known.is_none() {
+            self.arguments.push(argument.clone());
+        }
+        Expr::from(self.side(index))
+    }
+
+    /// The same expression with the sides in place of the signs.
+    fn smooth(&mut self, expression: &Expr) -> Result<Expr, ExprError> {
+        expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
+            (Node::Function(Function::Absolute, _), [u]) => Ok(Expr::product([self.of(u), u.clone()])),
+            (Node::Function(function @ (Function::Sign | Function::Step), _), [u]) => {
+                Expr::function(*function, vec![self.of(u)])
+            }
+            (Node::Function(function @ (Function::Maximum | Function::Minimum), _), [u, w]) => {
+                let minus = |expr: &Expr| Expr::product([Expr::from(-1), expr.clone()]);
+                let side = self.of(&Expr::sum([u.clone(), minus(w)]));
+                let [above, below] =
+                    [side.clone(), minus(&side)].map(|side| Expr::function(Function::Step, vec![side]));
+                let (larger, smaller) = match function {
+                    Function::Maximum => (u, w),
+                    _ => (w, u),
+                };
+                Ok(Expr::sum([
+                    Expr::product([above?, larger.clone()]),
+                    Expr::product([below?, smaller.clone()]),
+                ]))
+            }
+            _ => expr.with_children(children),
+        })
+    }
+}

@@ -1,0 +1,364 @@
+//! The states by their Taylor series: coefficients, how far they reach, and the corners and events on the way.
+//!
+//! References: A. Jorba, M. Zou, *Experimental Mathematics* 14 (2005) 99 (order and step from the series); R. E. Moore, *Methods
+//! and Applications of Interval Analysis*, SIAM 1979, section 3.4 (coefficients by recurrences along the expression).
+//!
+//! ```text
+//! y(t + s) = sum_n y_n s^n,   (n + 1) y_(n+1) = F_n      F_n: coefficient of s^n along the expression, each part once
+//! step: the largest h with |y_p| h^p <= tolerance * size of y on the step, for the last orders p; events and corners alike
+//! event: g(t, y) = 0, found on the series of g itself, so that two crossings in one step are two
+//! ```
+//!
+//! Time is counted from the start, so that a late start costs no digits.
+
+use super::polynomial::{first_root, sign_at_start, value};
+use super::{End, Event, Motion, Occurrence, Options, Path, System, SystemError};
+use crate::series::recurrence::{RecurrenceError, Recurrences};
+use crate::symbol::Symbol;
+
+/// One step: the Taylor polynomials of all states about its beginning.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    /// Since the start of the path.
+    start: f64,
+    order: usize,
+    /// State by state, the coefficients of `s^0, s^1, ...`.
+    coefficients: Vec<f64>,
+}
+
+/// All states at a time since the start, before the end of the last step; `None` before the first.
+pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
+    let after = steps.partition_point(|step| step.start <= time);
+    let step = steps.get(after.checked_sub(1)?)?;
+    let polynomials = step.coefficients.chunks(step.order + 1);
+    Some(polynomials.map(|series| value(series, time - step.start)).collect())
+}
+
+/// The right sides of a system and these events, to be expanded to this order.
+pub(super) fn expansion(system: &System, events: &[Event], order: usize) -> Result<Expansion, RecurrenceError> {
+    let variables: Vec<Symbol> = system.state.iter().copied().chain([system.time]).collect();
+    let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
+    let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
+    let outputs = outputs
+        .map(|output| recurrences.add(output))
+        .collect::<Result<_, _>>()?;
+    Ok(Expansion {
+        recurrences,
+        states: system.state.len(),
+        order,
+        outputs,
+    })
+}
+
+/// Jorba and Zou: the order that reaches the tolerance with the fewest operations.
+fn order(tolerance: f64) -> usize {
+    (1.0 - 0.5 * tolerance.ln()).ceil() as usize + 1
+}
+
+/// How far the first series reaches, and how large every state becomes on the way; `None` where there is none.
+pub(super) fn first_step(system: &System, start: f64, values: &[f64], events: &[Event]) -> Option<(f64, Vec<f64>)> {
+    const SAMPLES: u32 = 8;
+    let tolerance = f64::EPSILON;
+    let mut expansion = expansion(system, events, order(tolerance)).ok()?;
+    expansion.begin(start, values);
+    expansion.expand(start, values).ok()?;
+    let reach = expansion.step(tolerance);
+    let size = |state: usize| {
+        let place = |sample: u32| {
+            if reach.is_finite() {
+                reach * f64::from(sample) / f64::from(SAMPLES)
+            } else {
+                0.0
+            }
+        };
+        let sizes = (0..=SAMPLES).map(|sample| value(expansion.state(state), place(sample)).abs());
+        sizes.fold(0.0, f64::max)
+    };
+    Some((reach, (0..values.len()).map(size).collect()))
+}
+
+/// The path between two times from these values.
+pub(super) fn follow(
+    system: &System,
+    [start, end]: [f64; 2],
+    values: &[f64],
+    events: &[Event],
+    options: &Options,
+) -> Result<Path, SystemError> {
+    let size = system.state.len();
+    let order = order(options.tolerance);
+    let mut expansion = expansion(system, events, order)?;
+    let duration = end - start;
+    let (mut time, mut values) = (0.0, values.to_vec());
+    let (mut steps, mut occurrences): (Vec<Step>, Vec<Occurrence>) = (vec![], vec![]);
+    expansion.begin(start, &values);
+    let mut signs = vec![0.0; events.len()];
+    let mut stuck = 0;
+    let reason = loop {
+        if time >= duration {
+            break End::Reached;
+        }
+        if steps.len() >= options.step_limit {
+            break End::StepLimit;
+        }
+        if options.interrupt.is_requested() {
+            break End::Interrupted;
+        }
+        if let Err(state) = expansion.expand(start + time, &values) {
+            if steps.is_empty() {
+                return Err(SystemError::Start(system.state[state]));
+            }
+            break End::Singular;
+        }
+        let undefined = |event: &usize| !expansion.event(*event).iter().all(|value| value.is_finite());
+        if let Some(event) = (0..events.len()).find(undefined) {
+            if steps.is_empty() {
+                return Err(SystemError::Event(event));
+            }
+            break End::Singular;
+        }
+        let reach = expansion.step(options.tolerance).min(duration - time);
+        if reach.is_nan() || reach <= 0.0 || start + time + reach == start + time {
+            break End::Singular;
+        }
+        // A corner within the step ends it, and so does an event that stops.
+        let corner = expansion.first_corner(reach);
+        let mut length = corner.map_or(reach, |(_, place)| place);
+        let mut met = expansion.crossings(&mut signs, length);
+        let stop = met.iter().position(|found| events[found.0].stops);
+        let stop = stop.map(|index| {
+            met.truncate(index + 1);
+            length = met[index].1;
+            met[index].0
+        });
+        occurrences.extend(met.into_iter().map(|(event, place, rising)| Occurrence {
+            event,
+            time: start + (time + place),
+            rising,
+        }));
+        let coefficients: Vec<f64> = (0..size).flat_map(|state| expansion.state(state).to_vec()).collect();
+        for (state, series) in values.iter_mut().zip(coefficients.chunks(order + 1)) {
+            *state = value(series, length);
+        }
+        steps.push(Step {
+            start: time,
+            order,
+            coefficients,
+        });
+        let last = time + length >= duration && corner.is_none() && stop.is_none();
+        time = if last { duration } else { time + length };
+        if let Some(event) = stop {
+            break End::Event(event);
+        }
+        if let Some((corner, _)) = corner {
+            expansion.cross(corner);
+            // Leaving a corner and being back at once, over and over, is to stay on it.
+            const OFTEN: usize = 20;
+            let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * time;
+            stuck = if at_once { stuck + 1 } else { 0 };
+            if stuck > OFTEN {
+                break End::Sticks;
+            }
+        }
+    };
+    if steps.is_empty() {
+        // Nowhere to go: where it starts it is all the same.
+        steps.push(Step {
+            start: 0.0,
+            order: 0,
+            coefficients: values,
+        });
+    }
+    Ok(Path {
+        motion: Motion::Taylor { steps, start },
+        end: if reason == End::Reached { end } else { start + time },
+        reason,
+        occurrences,
+    })
+}
+
+/// Right sides and events, with their series.
+#[derive(Clone, Debug)]
+pub(super) struct Expansion {
+    /// Its variables are the states, then time.
+    recurrences: Recurrences,
+    states: usize,
+    order: usize,
+    /// The places of the rates, then of the events.
+    outputs: Vec<usize>,
+}
+
+impl Expansion {
+    /// Takes the side of every corner on which this point lies, or to which it is going.
+    pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
+        // The argument of one corner may depend on the side of another.
+        for _ in 0..=self.recurrences.corners().count() {
+            // Parts without a value on a side not taken yet do not matter here.
+            let _ = self.expand_once(time, values);
+            if !self.recurrences.take_sides() {
+                break;
+            }
+        }
+    }
+
+    /// The coefficients of everything about a point.
+    ///
+    /// # Errors
+    /// The first state whose series has no finite value.
+    pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
+        for _ in 0..=self.recurrences.corners().count() {
+            let result = self.expand_once(time, values);
+            // A corner left behind together with another: the motion is beyond it and going on.
+            let left = self.recurrences.corners().position(|(series, side)| {
+                let slope = series.get(1).copied().unwrap_or(0.0);
+                series[0] * side < 0.0 && slope * side < 0.0
+            });
+            match left {
+                Some(corner) => self.cross(corner),
+                None => return result,
+            }
+        }
+        self.expand_once(time, values)
+    }
+
+    fn expand_once(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
+        let size = self.states;
+        for (variable, value) in values.iter().chain([&time]).enumerate() {
+            self.recurrences.set(variable, 0, *value);
+        }
+        if self.order > 0 {
+            self.recurrences.set(size, 1, 1.0);
+        }
+        for n in 0..=self.order {
+            self.recurrences.compute(n);
+            if n == self.order {
+                break;
+            }
+            for state in 0..size {
+                let rate = self.recurrences.series(self.outputs[state])[n];
+                self.recurrences.set(state, n + 1, rate / (n + 1) as f64);
+            }
+        }
+        match (0..size).find(|&state| self.state(state).iter().any(|value| !value.is_finite())) {
+            Some(state) => Err(state),
+            None => Ok(()),
+        }
+    }
+
+    /// The series of a state.
+    pub(super) fn state(&self, state: usize) -> &[f64] {
+        self.recurrences.series(state)
+    }
+
+    /// The series of an event.
+    pub(super) fn event(&self, event: usize) -> &[f64] {
+        self.recurrences.series(self.outputs[self.states + event])
+    }
+
+    /// The longest step within the tolerance of every state, event and argument of a corner.
+    pub(super) fn step(&self, tolerance: f64) -> f64 {
+        let followed = (0..self.states).map(|state| self.state(state));
+        let events = self.outputs.iter().skip(self.states);
+        let events = events.map(|output| self.recurrences.series(*output));
+        // What a side has no value for is not looked at.
+        let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
+        let corners = self.recurrences.corners().map(|(series, _)| series).filter(finite);
+        followed
+            .chain(events)
+            .chain(corners)
+            .fold(f64::INFINITY, |longest, series| reach(series, tolerance, longest))
+    }
+
+    /// Every crossing of every event on the step, in their order: which, where, and whether it rises there. `signs` are those
+    /// behind the last step: a crossing that rounding has put between two steps is one at the beginning of the second.
+    fn crossings(&self, signs: &mut [f64], length: f64) -> Vec<(usize, f64, bool)> {
+        let mut met = Vec::new();
+        // Where no time passes, a sign would be rounding.
+        if length == 0.0 {
+            return met;
+        }
+        for (event, before) in signs.iter_mut().enumerate() {
+            let series = self.event(event);
+            let sign = sign_at_start(series, length);
+            if sign == 0.0 {
+                continue;
+            }
+            if *before == -sign {
+                met.push((event, 0.0, sign > 0.0));
+            }
+            *before = sign;
+            let mut from = 0.0;
+            // No polynomial has more roots than its degree.
+            for _ in 0..self.order {
+                let Some((place, rising)) = first_root(series, from, length) else {
+                    break;
+                };
+                met.push((event, place, rising));
+                *before = if rising { 1.0 } else { -1.0 };
+                from = place;
+            }
+        }
+        met.sort_by(|one, other| one.1.total_cmp(&other.1));
+        met
+    }
+
+    /// The first corner met within a step, and where; at 0 where the motion turns back to the corner that it stands on, or leaves
+    /// it on the other side.
+    pub(super) fn first_corner(&self, length: f64) -> Option<(usize, f64)> {
+        let met = |(index, (series, side)): (usize, (&[f64], f64))| {
+            let (here, slope) = (side * series[0], side * series.get(1).copied().unwrap_or(0.0));
+            let rounding = 1e-14 * length * slope.abs();
+            let leading = series.iter().find(|value| **value != 0.0);
+            let leaves = here == 0.0 && leading.is_some_and(|leading| side * leading < 0.0);
+            if leaves || here <= rounding && slope < 0.0 {
+                return Some((index, 0.0));
+            }
+            let mut from = 0.0;
+            for _ in 0..self.order {
+                let (place, rising) = first_root(series, from, length)?;
+                if rising != (side > 0.0) {
+                    return Some((index, place));
+                }
+                from = place;
+            }
+            None
+        };
+        let found = self.recurrences.corners().enumerate().filter_map(met);
+        found.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    /// Goes to the other side of a corner.
+    pub(super) fn cross(&mut self, corner: usize) {
+        self.recurrences.cross(corner);
+    }
+}
+
+/// The longest step, no longer than this, on which the last terms of a series are within the tolerance: several, since symmetry
+/// may leave some of them zero.
+fn reach(series: &[f64], tolerance: f64, longest: f64) -> f64 {
+    const LAST: usize = 8;
+    const SHORTER: f64 = 0.9;
+    const TRIALS: usize = 400;
+    let order = series.len() - 1;
+    let last = order.saturating_sub(LAST - 1).max(1)..=order;
+    let Some(first) = series.iter().position(|c| *c != 0.0) else {
+        return longest;
+    };
+    let term = |k: usize, h: f64| series[k].abs() * h.powi(k as i32);
+    let within = |h: f64| {
+        let size = (0..=order / 2).map(|k| term(k, h)).fold(0.0, f64::max);
+        let kept = |k: usize| term(k, h) <= size * tolerance.powf(k as f64 / order as f64);
+        last.clone().all(kept)
+    };
+    // The root test; from there shorter until the last terms are small enough.
+    let radius = |k: usize| (series[first].abs() / series[k].abs()).powf(1.0 / (k - first) as f64);
+    let radii = last.clone().filter(|&k| k > first && series[k] != 0.0).map(radius);
+    let mut h = radii.fold(longest, f64::min);
+    for _ in 0..TRIALS {
+        if h.is_infinite() || within(h) {
+            break;
+        }
+        h *= SHORTER;
+    }
+    h
+}

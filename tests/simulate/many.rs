@@ -1,0 +1,63 @@
+//! Several motions at a time, and on several threads, are each what they are alone.
+
+use lindstedt::damper::sweep::sweep_on;
+use lindstedt::damper::{Friction, Integrator, Model, Options, Start, simulate, simulate_many};
+
+/// Motions with every term on, different in every parameter.
+fn crowd(count: usize) -> Vec<(Model, Start)> {
+    (0..count)
+        .map(|index| {
+            let part = index as f64 / count as f64;
+            let model = Model {
+                zeta: 0.02 * part,
+                alpha: if index.is_multiple_of(3) { 0.0 } else { 0.1 * part },
+                beta: if index.is_multiple_of(4) { 0.0 } else { 0.3 * part },
+                frequency_ratio: 0.5 + part,
+                gamma: 10.0_f64.powf(3.0 + 6.0 * part),
+                mu: if index.is_multiple_of(2) { 0.0 } else { 1e4 },
+                left: Some(-1.0 - part),
+                right: Some(0.1 + 0.5 * part),
+                friction: Friction::Exact,
+            };
+            let start = Start {
+                x: -0.9 + 0.3 * part,
+                velocity: 0.5 * part,
+            };
+            (model, start)
+        })
+        .collect()
+}
+
+#[test]
+fn several_at_a_time_are_bit_for_bit_what_each_is_alone() {
+    let options = Options {
+        keep_path: false,
+        ..Options::default()
+    };
+    let motions = crowd(150);
+    let together = simulate_many(&motions, &options).expect("they begin");
+    for ((model, start), together) in motions.iter().zip(&together) {
+        for keep_path in [false, true] {
+            let alone =
+                simulate(model, *start, Integrator::Taylor, &Options { keep_path, ..options }).expect("it begins");
+            assert_eq!(alone.impacts, together.impacts, "{model:?}");
+            assert_eq!(alone.turns, together.turns);
+            assert_eq!(alone.end_x.to_bits(), together.end_x.to_bits());
+            assert_eq!((alone.steps, alone.stop), (together.steps, together.stop));
+        }
+    }
+}
+
+#[test]
+fn a_sweep_is_the_same_on_any_number_of_threads() {
+    let motions = crowd(400);
+    let options = Options::default();
+    let one = sweep_on(1, &motions, &options, |_| ()).expect("they begin");
+    let counted = std::sync::atomic::AtomicUsize::new(0);
+    let count = |done: usize| {
+        counted.fetch_add(done, std::sync::atomic::Ordering::Relaxed);
+    };
+    let many = sweep_on(5, &motions, &options, count).expect("they begin");
+    assert_eq!(one, many);
+    assert_eq!(counted.into_inner(), motions.len());
+}

@@ -1,0 +1,205 @@
+//! Rest times by their definition, from samples of the motion and from the action.
+
+use lindstedt::damper::{Integrator, Model, NoRest, Options, Start, Stop, simulate};
+use lindstedt::ode::root::find_root;
+
+use super::{REST, run, taylor};
+
+#[test]
+fn rest_times_of_the_plain_pendulum() {
+    // The envelope by the action, the staircase by the last crossing.
+    for (zeta, envelope, last) in [
+        (0.0100, 224.2, 223.4),
+        (0.0101, 222.0, 220.3),
+        (0.0102, 219.8, 217.1),
+        (0.0103, 217.7, 216.9),
+    ] {
+        let model = Model {
+            zeta,
+            right: Some(3.0),
+            ..Model::default()
+        };
+        let rest = taylor(&model, REST, 1e-10, 300.0).rest();
+        assert!((rest.time.expect("it rests") - envelope).abs() < 0.06, "{rest:?}");
+        assert!(
+            (rest.last_crossing.expect("it crosses") - last).abs() < 0.06,
+            "{rest:?}"
+        );
+    }
+}
+
+/// The rest time by its definition, from nothing but samples of the Runge-Kutta motion: crests on the left, each by a
+/// parabola through three samples, and the straight line of log|x| between the two around the level.
+fn rest_by_samples(model: &Model, level: f64, duration: f64) -> f64 {
+    const STEP: f64 = 1e-3;
+    let motion = run(model, REST, 1e-11, duration, Integrator::RungeKutta);
+    let at = |k: usize| motion.path.at(STEP * k as f64).map_or(0.0, |(x, _)| x);
+    let crests = (1..(duration / STEP) as usize - 1).filter_map(|k| {
+        let [before, here, after] = [at(k - 1), at(k), at(k + 1)];
+        (here < before && here <= after).then(|| {
+            let (slope, bend) = (0.5 * (after - before), before - 2.0 * here + after);
+            (STEP * (k as f64 - slope / bend), here - 0.5 * slope * slope / bend)
+        })
+    });
+    let mut before = (0.0, REST.x);
+    for (t, x) in crests {
+        if -x <= level {
+            let fraction = (level / -before.1).ln() / (x / before.1).ln();
+            return before.0 + fraction * (t - before.0);
+        }
+        before = (t, x);
+    }
+    f64::INFINITY
+}
+
+#[test]
+fn a_barrier_near_plumb_does_not_invent_rest() {
+    // Without loss nothing ever rests, wherever the barrier stands and wherever the run ends.
+    for k in 0..29 {
+        let model = Model {
+            right: Some(0.005 * f64::from(k)),
+            ..Model::default()
+        };
+        for duration in [98.5, 100.0, 101.3] {
+            let rest = taylor(&model, REST, 1e-10, duration).rest();
+            assert_eq!(rest.time, Err(NoRest::StaysAbove), "{:?} {duration}", model.right);
+        }
+    }
+    for (right, mu) in [(0.1, 1e4), (0.02, 1e4), (0.146, 1e5)] {
+        let model = Model {
+            right: Some(right),
+            mu,
+            zeta: 0.01,
+            ..Model::default()
+        };
+        assert_eq!(taylor(&model, REST, 1e-10, 100.0).rest().time, Err(NoRest::StaysAbove));
+        let found = taylor(&model, REST, 1e-10, 260.0).rest().time.expect("it rests");
+        let sampled = rest_by_samples(&model, 0.15, 260.0);
+        assert!((found - sampled).abs() < 1e-3, "{right}: {found} {sampled}");
+    }
+}
+
+#[test]
+fn the_rest_time_is_continuous_in_the_place_of_the_barrier() {
+    let rest = |right: f64| {
+        let model = Model {
+            right: Some(right),
+            mu: 1e5,
+            zeta: 0.01,
+            ..Model::default()
+        };
+        taylor(&model, REST, 1e-10, 200.0).rest().time.expect("it rests")
+    };
+    let times: Vec<f64> = (0..=40).map(|k| rest(0.14 + 2.5e-4 * f64::from(k))).collect();
+    // It rises by a twentieth from one to the next, and so does the rise, smoothly.
+    let bends = times
+        .windows(3)
+        .map(|three| (three[0] - 2.0 * three[1] + three[2]).abs());
+    assert!(bends.fold(0.0, f64::max) < 5e-3, "{times:?}");
+}
+
+#[test]
+fn the_rest_time_does_not_depend_on_where_in_the_first_swing_the_motion_is_taken_up() {
+    let model = Model {
+        mu: 1e5,
+        right: Some(0.05),
+        ..Model::default()
+    };
+    let whole = taylor(&model, REST, 1e-11, 900.0);
+    let rest = whole.rest();
+    for t in [0.5, 1.3, 1.8] {
+        let (x, velocity) = whole.path.at(t).expect("on the way");
+        let later = taylor(&model, Start { x, velocity }, 1e-11, 900.0).rest();
+        assert!((later.amplitude - rest.amplitude).abs() < 1e-10, "{later:?}");
+        let (later, whole) = (later.time.expect("it rests"), rest.time.expect("it rests"));
+        assert!((later + t - whole).abs() < 1e-5, "{t}: {later} {whole}");
+    }
+}
+
+#[test]
+fn a_motion_that_creeps_is_its_own_envelope_and_one_that_swings_must_be_seen_to_turn() {
+    // x'' + 4 x' + x = 0 for small x: slopes s = -2 +- sqrt 3, x = (s1 e^(s2 t) - s2 e^(s1 t))/(s1 - s2) of the start.
+    let model = Model {
+        zeta: 2.0,
+        right: Some(1.0),
+        ..Model::default()
+    };
+    let start = Start {
+        x: -1e-5,
+        velocity: 0.0,
+    };
+    let (slow, fast) = (-2.0 + 3.0_f64.sqrt(), -2.0 - 3.0_f64.sqrt());
+    let left = |t: f64| (slow * (fast * t).exp() - fast * (slow * t).exp()) / (slow - fast);
+    let exact = find_root(|t| left(t) - 0.1, 1.0, 20.0).expect("it falls");
+    let rest = taylor(&model, start, 1e-10, 60.0).rest();
+    assert!((rest.time.expect("it rests") - exact).abs() < 1e-6, "{rest:?} {exact}");
+
+    let swinging = Model { zeta: 0.5, ..model };
+    let soon = taylor(&swinging, REST, 1e-10, 6.0).rest();
+    assert_eq!(soon.time, Err(NoRest::NotYetSeen), "{soon:?}");
+    assert!(taylor(&swinging, REST, 1e-10, 60.0).rest().time.is_ok());
+}
+
+/// Over the top there is no swing: the amplitude is half a turn, or the start where that lies farther out.
+#[test]
+fn the_amplitude_of_a_motion_that_turns_over() {
+    let model = Model {
+        right: None,
+        ..Model::default()
+    };
+    for (x, amplitude) in [(-10.0, 10.0), (10.0, 10.0), (0.5, std::f64::consts::PI)] {
+        let motion = taylor(&model, Start { x, velocity: 3.0 }, 1e-9, 5.0);
+        assert!(
+            (motion.rest().amplitude - amplitude).abs() < 1e-12,
+            "{x}: {}",
+            motion.rest().amplitude
+        );
+    }
+}
+
+/// Where a rest energy is given the run ends as it is reached, with what a longer run had until then.
+#[test]
+fn a_run_ends_where_its_energy_has_died_away() {
+    let plain = Model {
+        zeta: 0.05,
+        right: None,
+        ..Model::default()
+    };
+    let bouncing = Model {
+        zeta: 0.02,
+        gamma: 1e5,
+        mu: 1e4,
+        ..Model::default()
+    };
+    for model in [plain, bouncing] {
+        let options = Options {
+            duration: 200.0,
+            ..Options::default()
+        };
+        let full = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
+        let mut last = 0.0;
+        for k in 1..14 {
+            let calm = 0.9 * 0.6_f64.powi(k);
+            let options = Options {
+                rest_energy: Some(calm),
+                ..options
+            };
+            let motion = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
+            assert_eq!(motion.stop, Stop::Calm);
+            let energy = model.energy(motion.end_x, motion.end_velocity);
+            assert!(
+                energy <= calm * (1.0 + 1e-9) && motion.end_time >= last,
+                "{energy} {calm}"
+            );
+            last = motion.end_time;
+            let before = full.turns.iter().filter(|turn| turn.t <= motion.end_time);
+            assert_eq!(motion.turns.iter().collect::<Vec<_>>(), before.collect::<Vec<_>>());
+            if model.right.is_none() {
+                assert!((energy / calm - 1.0).abs() < 1e-9, "{energy} {calm}");
+                let judge = simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
+                assert_eq!(judge.stop, Stop::Calm);
+                assert!((judge.end_time - motion.end_time).abs() < 1e-5);
+            }
+        }
+    }
+}

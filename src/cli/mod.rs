@@ -186,6 +186,7 @@ pub fn run() -> ExitCode {
     // Without a handler an interrupt just ends the program, as it would any other.
     drop(handler);
     // The work has a thread of its own so that a time limit can end it, wherever it is.
+    let started = Instant::now();
     let worker = std::thread::spawn(move || {
         let outcome = std::panic::catch_unwind(|| match command {
             Command::Derive(arguments) => derive::run(&arguments),
@@ -203,13 +204,15 @@ pub fn run() -> ExitCode {
         None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
         Some(limit) => receiver.recv_timeout(limit),
     };
+    // A whole result that comes too late is too late, however soon it was taken from the channel.
+    let late = patience.is_zero() && limit.is_some_and(|limit| started.elapsed() > limit);
     let (message, in_vain) = match first {
-        Ok(Message::Done(outcome)) => (Some(outcome), None),
+        Ok(Message::Done(outcome)) if !late => (Some(outcome), None),
         Ok(Message::Interrupt) => (
             wait_for_part(&receiver, patience),
             Some((INTERRUPTED, "interrupted without a result".to_owned())),
         ),
-        Err(_) => {
+        Ok(Message::Done(_)) | Err(_) => {
             let seconds = common.timeout.unwrap_or_default();
             let message =
                 format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout");
@@ -242,9 +245,12 @@ enum Message {
     Interrupt,
 }
 
-/// Asks the work to hand back what it has, and waits a little for it.
+/// Asks the work to hand back what it has, and waits a little for it; not at all for work that has no parts.
 fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Option<Result<Outcome, Failure>>> {
     STOP.store(true, Ordering::Relaxed);
+    if patience.is_zero() {
+        return None;
+    }
     let end = Instant::now() + patience;
     while let Ok(message) = receiver.recv_timeout(end.saturating_duration_since(Instant::now())) {
         if let Message::Done(outcome) = message {

@@ -216,7 +216,7 @@ impl Compiler<'_> {
             }
             (Node::Sum(terms), _) => self.sum(terms, children),
             (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
-            (Node::Power(base, _), _) if has_long_numbers(base) => {
+            (Node::Power(base, exponent), _) if shift(base, exponent.as_number()).is_some() => {
                 self.product(&Rational::one(), std::slice::from_ref(expr), children)
             }
             (Node::Power(_, exponent), [base, exponent_slot]) => match exponent.as_number() {
@@ -273,18 +273,17 @@ impl Compiler<'_> {
                 Node::Power(base, exponent) => (base, exponent.as_number().cloned()),
                 _ => (factor, Some(Rational::one())),
             };
-            let whole = exponent.filter(|number| number.is_integer() && has_long_numbers(base));
-            places.push(match whole.and_then(|number| number.to_integer().to_i32()) {
-                None => (*slot, self.known.get(base).copied()),
-                Some(exponent) => {
-                    let (sum, bits) = self.scaled_sum(base);
-                    coefficient *= Rational::from_integer(BigInt::one() << bits).pow(exponent);
-                    let slot = match exponent {
-                        1.. => self.power(sum, &Rational::from_integer(exponent.into())),
-                        _ => *slot,
+            places.push(match (shift(base, exponent.as_ref()), exponent) {
+                (Some(shift), Some(exponent)) => {
+                    let sum = self.scaled_sum(base, shift.bits);
+                    coefficient *= shift.made_up;
+                    let slot = match exponent.is_positive() {
+                        true => self.power(sum, &exponent),
+                        false => *slot,
                     };
                     (slot, Some(sum))
                 }
+                _ => (*slot, self.known.get(base).copied()),
             });
         }
         if !coefficient.is_one() {
@@ -317,9 +316,8 @@ impl Compiler<'_> {
         }
     }
 
-    /// A sum over `2^bits`, the size of its longest number.
-    fn scaled_sum(&mut self, sum: &Expr) -> (Slot, u64) {
-        let bits = longest_number(sum);
+    /// A sum over `2^bits`.
+    fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> Slot {
         let unit = Rational::new(BigInt::one(), BigInt::one() << bits);
         let mut total: Option<Slot> = None;
         for term in sum.terms() {
@@ -334,7 +332,7 @@ impl Compiler<'_> {
                 Some(total) => self.emit(Operation::Pair(Instruction::Add, total, slot)),
             });
         }
-        (total.unwrap_or_else(|| self.constant(0.0)), bits)
+        total.unwrap_or_else(|| self.constant(0.0))
     }
 
     fn times(&mut self, product: Option<Slot>, factor: Slot) -> Slot {
@@ -444,10 +442,32 @@ fn longest_number(sum: &Expr) -> u64 {
     bits.max().unwrap_or(0)
 }
 
-/// Whether a sum has numbers near the end of double precision or beyond.
-fn has_long_numbers(expr: &Expr) -> bool {
+/// By what a sum is divided before it is raised to a power, and what makes up for it after.
+struct Shift {
+    /// The divisor is `2^bits`.
+    bits: u64,
+    /// `2^(bits*exponent)`, a fraction.
+    made_up: Rational,
+}
+
+/// The shift of a sum whose numbers are near the end of double precision or beyond; none for other bases and exponents.
+fn shift(base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
     const LONG: u64 = 900;
-    matches!(expr.node(), Node::Sum(_)) && longest_number(expr) > LONG
+    let longest = match base.node() {
+        Node::Sum(_) => longest_number(base),
+        _ => return None,
+    };
+    let exponent = exponent?;
+    let (numerator, denominator) = (exponent.numer().to_i32()?, exponent.denom().to_u32()?);
+    if longest <= LONG {
+        return None;
+    }
+    // The root of the divisor is to be a power of two as well.
+    let root_bits = longest.div_ceil(u64::from(denominator));
+    Some(Shift {
+        bits: root_bits * u64::from(denominator),
+        made_up: Rational::from_integer(BigInt::one() << root_bits).pow(numerator),
+    })
 }
 
 /// A factor whose zero covers a whole interval, on which the other factors need no value.
@@ -593,6 +613,24 @@ mod tests {
         assert!((compiled.call(&[0.5, 0.1, 0.4375, 2.0, 3.0]) - expected).abs() < 1e-15);
         let quotient = CompiledFunction::new(&parse_expression("x/(x'*xc)").unwrap(), &names).unwrap();
         assert_eq!(quotient.instructions.len(), 2, "{quotient:?}");
+    }
+
+    #[test]
+    fn powers_of_sums_with_numbers_beyond_doubles() {
+        let (large, root) = (format!("1{}", "0".repeat(402)), format!("1{}", "0".repeat(201)));
+        let sum = format!("({large} + {large}*x + x^2)");
+        for (text, value) in [
+            (format!("sqrt{sum}/{root}"), 2.0),
+            (format!("{root}/sqrt{sum}"), 0.5),
+            (format!("{sum}^(3/2)/{large}/{root}"), 8.0),
+            (format!("{sum}^(1/3)/{large}^(1/3)"), 4.0_f64.cbrt()),
+            (format!("{sum}^2/{large}^2"), 16.0),
+            (format!("{root}*{root}*x/{sum}"), 0.75),
+        ] {
+            let found = at(&text, 3.0);
+            let close = found.as_ref().is_ok_and(|found| (found / value - 1.0).abs() < 1e-14);
+            assert!(close, "{found:?} for {value}");
+        }
     }
 
     #[test]

@@ -33,6 +33,8 @@ pub struct Force {
     arguments: RefCell<Vec<f64>>,
     near: Option<Near>,
     features: OnceCell<Features>,
+    /// Whether places of features are poles, each decided once.
+    poles: RefCell<BTreeMap<u64, bool>>,
 }
 
 /// The Taylor polynomial and the distance up to which it is as good as the force.
@@ -64,6 +66,7 @@ impl Force {
             coordinate,
             numbers: numbers.clone(),
             features: OnceCell::new(),
+            poles: RefCell::default(),
         };
         found.near = found.near_rest(equilibrium, amplitude);
         Some(found)
@@ -243,7 +246,16 @@ impl Force {
             .map(|feature| feature.place)
             .filter(|place| (from..=to).contains(&(place - self.equilibrium)))
             .filter(|place| (place - self.equilibrium).abs() > 8.0 * f64::EPSILON * self.equilibrium.abs())
-            .find(|&place| self.is_pole(place, size))
+            .find(|&place| {
+                // At zero alone the answer depends on the size of the motion.
+                let known = self.poles.borrow().get(&place.to_bits()).copied();
+                let pole = known.filter(|_| place != 0.0);
+                pole.unwrap_or_else(|| {
+                    let found = self.is_pole(place, size);
+                    self.poles.borrow_mut().insert(place.to_bits(), found);
+                    found
+                })
+            })
     }
 
     /// What of the force is beyond double precision at the distance `y`, in words, where that is why it has no finite value there.

@@ -33,7 +33,8 @@ use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme, SecularError, bounded};
 use super::{Options, Refusal, first_order, first_term};
 use crate::derivation::Line;
-use crate::exact::{Polynomial, Ring};
+use crate::exact::polynomial::Monomial;
+use crate::exact::{Polynomial, Rational, Ring};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
@@ -73,6 +74,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     let mut taken = oscillator.names();
     let (linear_frequency, definition) = force.linear_frequency(&taken);
+    let root = definition
+        .as_ref()
+        .and_then(|root| Some((root.symbol, force.linear.as_number()?)));
+    let in_numbers = |polynomial: Polynomial| match &root {
+        Some((symbol, square)) => with_square(&polynomial, *symbol, square),
+        None => polynomial,
+    };
     // Constants of the linear force alone are written out in its definition.
     let used = |name: Symbol| {
         let coefficients = force.terms.iter().map(|term| &term.coefficient);
@@ -191,7 +199,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let squared_unit = times(linear_frequency.clone(), &linear_frequency);
     let displacement = series
         .displacement
-        .map(|coefficient, _| reduced(coefficient.product(&unit)));
+        .map(|coefficient, _| in_numbers(reduced(coefficient.product(&unit))));
     let limit_cycle = cycles.as_ref().map(|(cycles, number)| LimitCycle {
         amplitude: amplitude_of(&displacement, convention),
         number: *number,
@@ -227,8 +235,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         definitions,
         equilibrium: Expr::zero(),
         law: Law::Series {
-            squared: times(series.frequency_squared, &squared_unit),
-            frequency: Some(times(series.frequency, &linear_frequency)),
+            squared: in_numbers(times(series.frequency_squared, &squared_unit)),
+            frequency: Some(in_numbers(times(series.frequency, &linear_frequency))),
         },
         displacement,
         limit_cycle,
@@ -240,6 +248,18 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             &force.linear,
         )],
     })
+}
+
+/// A polynomial in a root of a number, its even powers written as the number: `sqrt(2)^2` as 2, `1/sqrt(2)^3` as half of
+/// `1/sqrt(2)`. What cancels between the powers does so exactly.
+fn with_square(polynomial: &Polynomial, root: Symbol, square: &Rational) -> Polynomial {
+    let mut written = Polynomial::zero();
+    for (monomial, number) in polynomial.terms() {
+        let pairs = monomial.exponent(root) / 2;
+        let rest = Monomial::power_of(root, monomial.exponent(root) % 2);
+        written.add_term(monomial.without(root).product(&rest), number * square.pow(pairs));
+    }
+    written
 }
 
 /// What is expanded, and in what.

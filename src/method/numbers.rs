@@ -260,28 +260,33 @@ fn frequency_squared(
         };
     }
     let value = solution.frequency_squared_at(&value_of);
+    let mut rounding = solution.rounding_at(&value_of).unwrap_or(0.0);
     if let Some(form) = solution.law.closed_form() {
         let value_of = |name| rounded(solution, name, &value_of);
-        let kept = form
-            .value
-            .evaluate_rounded(&value_of)
-            .is_some_and(|(value, error)| value.is_finite() && error <= LOST_DIGITS * value.abs());
-        if !kept && let Some(better) = by_definition(oscillator, solution, numbers) {
+        let found = form.value.evaluate_rounded(&value_of);
+        let error = found
+            .filter(|found| found.0.is_finite())
+            .map(|(value, error)| error / value.abs());
+        if error.is_none_or(|error| error.is_nan() || error > LOST_DIGITS)
+            && let Some(better) = by_definition(oscillator, solution, numbers)
+        {
             return Ok((better, 0.0));
         }
+        rounding = rounding.max(error.unwrap_or(0.0));
     }
     let undefined = || {
         let value = |name| solution.evaluate(&Polynomial::symbol(name), &value_of);
         let mut names = solution.definitions.iter().map(|definition| definition.symbol);
         names.find(|&name| value(name).is_err())
     };
-    let value = value
-        .filter(|value| value.is_finite())
-        .ok_or_else(|| match undefined() {
-            Some(name) => NoNumbers::Undefined { name },
-            None => NoNumbers::NoValue,
-        })?;
-    Ok((value, solution.rounding_at(&value_of).unwrap_or(0.0)))
+    let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
+        match (undefined(), overflow(oscillator, solution, numbers)) {
+            (_, Some(error)) => error,
+            (Some(name), _) => NoNumbers::Undefined { name },
+            (None, _) => NoNumbers::NoValue,
+        }
+    })?;
+    Ok((value, rounding))
 }
 
 /// The value of a symbol or of a definition, with its rounding error.
@@ -311,12 +316,25 @@ fn stays_defined(
         return Ok(());
     };
     match force.gap(-amplitude.abs(), amplitude.abs()) {
+        // Beyond double precision the force has a value that a law may not need.
+        Some(place) if force.overflow(place - force.equilibrium()).is_some() => Ok(()),
         Some(place) => Err(NoNumbers::Gap {
             coordinate: oscillator.coordinate,
             place,
         }),
         None => Ok(()),
     }
+}
+
+/// What of the force is beyond double precision along a motion of one term, where something is.
+fn overflow(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<NoNumbers> {
+    let force = force_of(oscillator, solution, numbers)?;
+    let amplitude = amplitude_of(solution, numbers);
+    let found = |place: f64| {
+        let term = force.overflow(place)?;
+        Some(PeriodError::Overflow { place, term }.moved(force.equilibrium()).into())
+    };
+    [amplitude, -amplitude].into_iter().find_map(found)
 }
 
 /// A law of one term by what defines it, without the differences of a closed form.

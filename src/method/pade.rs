@@ -129,6 +129,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Closed(ClosedForm { squared: true, value });
     solution.steps = vec![];
     solution.displacement = first_correction(&solution.displacement, small, step);
+    let harmonics = solution.displacement.harmonics();
+    let motion = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
+    let mut used = &solution.equilibrium.symbols() | &law.symbols();
+    used.extend(motion.flat_map(Polynomial::symbols));
+    solution.definitions = solution.definitions_behind(used).into_iter().cloned().collect();
     solution.validity = vec![
         format!(
             "degree {numerator_degree} over degree {denominator_degree} in {variable}: agrees with the exact series through {}",

@@ -11,6 +11,7 @@ use super::validity::{is_conservative, well_of};
 use super::well::Well;
 use super::{Physics, formula_frequency};
 use crate::conservative::features::Features;
+use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::expr::Expr;
 use crate::ode::root::find_root;
@@ -42,7 +43,9 @@ impl<'a> Truth<'a> {
             well: well_of(oscillator, solution, numbers),
             places: vec![],
         };
-        truth.places = truth.reached_places().unwrap_or_default();
+        let at_origin = solution.equilibrium.is_zero();
+        let symmetric = at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
+        truth.places = truth.reached_places(symmetric).unwrap_or_default();
         truth
     }
 
@@ -88,8 +91,10 @@ impl<'a> Truth<'a> {
         found
     }
 
-    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place.
-    fn reached_places(&self) -> Option<Vec<f64>> {
+    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place. Of the many of a force that
+    /// waves all the way some are enough, for between points the error is followed by halving.
+    fn reached_places(&self, symmetric: bool) -> Option<Vec<f64>> {
+        const MOST: usize = 64;
         let physics = self.physics.as_ref()?;
         let (side, farthest) = (self.asked().signum(), self.farthest());
         let mut sizes: Vec<f64> = Vec::new();
@@ -101,13 +106,24 @@ impl<'a> Truth<'a> {
             }
             // The far turning point: by symmetry, or where the energies are equal.
             sizes.push(-distance);
+            if symmetric {
+                continue;
+            }
             let turns = |size: f64| {
                 let end = physics.rest.turning_point(side * size);
                 end.map_or(f64::NAN, |end| side * (place - end))
             };
             sizes.extend(find_root(turns, 1e-3 * farthest, 0.999 * farthest).ok());
         }
-        Some(sizes)
+        sizes.sort_by(f64::total_cmp);
+        sizes.dedup();
+        Some(
+            sizes
+                .iter()
+                .copied()
+                .step_by(sizes.len().div_ceil(MOST).max(1))
+                .collect(),
+        )
     }
 
     /// Sizes of the amplitude from rest to the end of what is looked at, in order.

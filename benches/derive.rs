@@ -2,12 +2,12 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;
+use lindstedt::Values;
 use lindstedt::contact::hertz::Design;
 use lindstedt::contact::linearisation::Rule;
 use lindstedt::impact::{self, Setup};
 use lindstedt::method::{Options, numbers, solve};
 use lindstedt::solution::Method;
-use lindstedt::verify::Values;
 use lindstedt::verify::comparison::compare;
 
 fn derivations(criterion: &mut Criterion) {

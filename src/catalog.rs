@@ -217,6 +217,11 @@ pub const CATALOG: &[Entry] = &[
 ];
 
 /// The entry of this name.
+///
+/// ```
+/// let pendulum = lindstedt::catalog::find("pendulum").expect("an entry");
+/// assert_eq!(pendulum.equation, "x'' + sin(x) = 0");
+/// ```
 pub fn find(name: &str) -> Option<&'static Entry> {
     CATALOG.iter().find(|entry| entry.name == name)
 }

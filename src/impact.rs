@@ -10,6 +10,7 @@
 //! The law comes from [`method::solve`] on `x'' + sin x = 0`, the phases from
 //! [`contact::phases`](crate::contact::phases), the judgement from Runge-Kutta on equation (9) as it stands.
 
+use crate::contact::hertz::Design;
 use crate::contact::linearisation::Rule;
 use crate::contact::phases::{Column, Form, PhasesError, Swing, ThreePhases, three_phases};
 use crate::contact::true_motion::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation};
@@ -48,8 +49,26 @@ pub struct Setup {
     pub step_limit: u32,
 }
 
+/// The paper's pendulum: released at 1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            amplitude: 1.5,
+            barrier: 0.323,
+            // A design of positive sizes has a stiffness.
+            stiffness: Design::default().stiffness().unwrap_or(f64::NAN),
+            stiffness_source: "equation (8)".to_owned(),
+            order: 2,
+            rule: Rule::default(),
+            integrator_tolerance: 1e-10,
+            step_limit: 250_000,
+        }
+    }
+}
+
 /// The three phases in closed form beside the true motion.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Impact {
     /// What was asked.
     pub setup: Setup,
@@ -71,6 +90,7 @@ pub struct Impact {
 
 /// Why there is no impact to report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImpactError {
     /// The law could not be derived.
     #[error(transparent)]
@@ -96,6 +116,15 @@ pub enum ImpactError {
 ///
 /// # Errors
 /// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not positive: see [`ImpactError`].
+///
+/// ```
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// let contact = &impact.energy.phases[1];
+/// assert!(contact.end > contact.start && contact.form.at(0.0).1 > 0.0); // pressed into the barrier
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
     let swing = Oscillator::parse(FREE_SWING)?;
     let free_swing = method::solve(

@@ -4,82 +4,104 @@
 //! Fourier series in `theta = omega t`, and a verdict against the original equation:
 //!
 //! ```
-//! use lindstedt::{Oscillator, method, verify};
+//! use lindstedt::{Options, Oscillator, Verdict, judge, solve};
 //!
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
-//! let solution = method::solve(&pendulum, &method::Options { order: Some(2), ..Default::default() })?;
-//! let law = solution.law.frequency_squared().expect("a polynomial law");
-//! assert_eq!(law.to_string(), "1 - A^2/8");
+//! let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+//! assert_eq!(solution.formula(), "omega^2 = 1 - A^2/8");
 //!
-//! let mut at = verify::Values::default();
-//! at.insert("A".into(), "1.5".parse()?)?;
-//! let verdict = verify::judge(&pendulum, &solution, &at, 0.01)?;
-//! assert_eq!(verdict.verdict, verify::Verdict::Fail); // 1.49 % off at 1.5 rad
+//! let at = "A = 3/2".parse()?;
+//! let judged = judge(&pendulum, &solution, &at, 0.01)?;
+//! assert_eq!(judged.verdict, Verdict::Fail); // 1.49 % off at 1.5 rad
+//! println!("{}, at t = 1: {}", solution.motion_at(&at)?, solution.at(1.0, &at)?);
+//! println!("{}", lindstedt::export::json::solution(&solution, Some(&judged)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The modules stand in the order of the way of the data; each uses only those above it.
 //!
-//! | stage | module | what it holds |
-//! | --- | --- | --- |
-//! | below all | [`interrupt`] | a request to stop, which long work looks at |
-//! | names and numbers | [`symbol`], [`spelling`], [`decimal`], [`exact`] | symbols, fractions, polynomials, the coefficient ring |
-//! | expression | [`expr`] | the tree, its parser, printer, calculus and evaluation |
-//! | series | [`series`] | Taylor, Fourier, running convolutions |
-//! | any equations | [`system`] | first-order systems of any size by Taylor series and by Runge-Kutta, with events |
-//! | answer and question | [`derivation`], [`solution`], [`oscillator`] | what a method returns and how it got there, and what it is given |
-//! | numbers alone | [`ode`], [`period`], [`return_map`] | Runge-Kutta, quadrature, roots; the true period; limit cycles |
-//! | forces of position alone | [`conservative`] | potential and projections in closed form |
-//! | equilibrium | [`equilibrium`] | where the motion swings about |
-//! | method | [`method`] | one file each |
-//! | verify | [`verify`] | the true motion and the verdict |
-//! | contact | [`contact`], [`impact`] | the three phases of a pendulum that hits an elastic barrier |
-//! | damper | [`damper`] | the same pendulum with damping, friction, excitation and two barriers, event by event |
-//! | in and out | [`catalog`], [`problem`], [`export`] | classical oscillators, problem files; text, LaTeX, JSON, pictures |
+//! | module | what it holds |
+//! | --- | --- |
+//! | [`interrupt`] | a request to stop, which long work looks at |
+//! | [`ode`], [`spelling`], [`symbol`] | Runge-Kutta, quadrature, roots; near misses of names; names |
+//! | [`exact`], [`period`], [`return_map`] | fractions, polynomials, the coefficient ring; the true period; limit cycles in truth |
+//! | [`decimal`] | numbers as people write them |
+//! | [`expr`] | the expression tree, its parser, printer, calculus and evaluation |
+//! | [`values`] | exact values of symbols |
+//! | [`series`] | Taylor, Fourier, running convolutions |
+//! | [`system`] | first-order systems of any size by Taylor series and by Runge-Kutta, with events |
+//! | [`derivation`] | how an answer was reached, line by line |
+//! | [`solution`] | what a method returns |
+//! | [`oscillator`] | what a method is given |
+//! | [`conservative`] | forces of the position alone: potential and projections in closed form, value near rest |
+//! | [`equilibrium`] | where the motion swings about |
+//! | [`method`] | one file each, one row in the table |
+//! | [`verify`] | the true motion and the verdict |
+//! | [`contact`] | Hertz, the fitted line, the three phases of a pendulum that hits an elastic barrier |
+//! | [`damper`], [`impact`] | the same pendulum with all forces, event by event; derived law, phases and judge together |
+//! | [`problem`] | problem files |
+//! | [`catalog`] | classical oscillators |
+//! | [`export`] | text, LaTeX, JSON, pictures |
+//!
+//! | feature | what it adds |
+//! | --- | --- |
+//! | `cli` | the command-line program, and with it all of the others |
+//! | `plot` | pictures in SVG |
 
-#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod interrupt;
 
+pub mod ode;
+pub mod spelling;
 pub mod symbol;
 
-pub mod decimal;
 pub mod exact;
-pub mod spelling;
+pub mod period;
+pub mod return_map;
+
+pub mod decimal;
 
 pub mod expr;
+
+pub mod values;
+
 pub mod series;
+
 pub mod system;
 
 pub mod derivation;
+
 pub mod solution;
 
 pub mod oscillator;
 
 pub mod conservative;
 
-pub mod ode;
-pub mod period;
-pub mod return_map;
-
 pub mod equilibrium;
 
 pub mod method;
+
 pub mod verify;
 
 pub mod contact;
+
 pub mod damper;
 pub mod impact;
 
-pub mod catalog;
 pub mod problem;
+
+pub mod catalog;
 
 pub mod export;
 
+pub use method::motion::{Motion, NoMotion};
+pub use method::{Options, solve};
 pub use oscillator::Oscillator;
-pub use solution::Solution;
+pub use solution::{Method, Solution};
 pub use symbol::Symbol;
+pub use values::Values;
+pub use verify::{Verdict, judge};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

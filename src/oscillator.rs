@@ -84,6 +84,7 @@ pub struct PerturbedForce {
 
 /// Why an equation is no oscillator, or not one that can be expanded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum OscillatorError {
     /// The text is not an equation.
     #[error(transparent)]

@@ -32,6 +32,7 @@ const STEP_TOLERANCE: f64 = 1e-13;
 
 /// Why there is no period.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PeriodError {
     /// Released there, the motion leaves instead of swinging.
     #[error(

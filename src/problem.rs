@@ -15,7 +15,7 @@ use crate::contact::hertz::{Design, NotPositive};
 use crate::contact::linearisation::{Rule, UnknownRule};
 use crate::expr::{ParseError, parse_expression};
 use crate::symbol::Symbol;
-use crate::verify::{ValueError, Values};
+use crate::values::{ValueError, Values};
 
 pub use damper::{Damper, DamperError, PARAMETERS};
 pub use keys::{KEYS, Reader, UnreadKey};
@@ -198,6 +198,7 @@ impl Default for Run {
 
 /// Why a file is no problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProblemError {
     /// Not TOML, or a key or value that does not belong there; the text shows the line.
     #[error("{message}")]

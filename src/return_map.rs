@@ -59,6 +59,7 @@ pub struct Equation<'a> {
 
 /// Why no cycle was found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoLimitCycle {
     /// There seems to be none.
     #[error("no limit cycle with a turning point between x = {from:.3e} and x = {to:.3e}, forward or backward in time")]
@@ -119,6 +120,21 @@ impl LimitCycle {
 ///
 /// # Errors
 /// None within a factor of sixty.
+///
+/// ```
+/// use lindstedt::return_map::{Equation, nearest_limit_cycle};
+///
+/// // Van der Pol with mu = 1: the period of the cycle is 6.6632868593.
+/// let equation = Equation {
+///     acceleration: &|x, v| (1.0 - x * x) * v - x,
+///     equilibrium: 0.0,
+///     amplitude: 2.0,
+///     frequency: 1.0,
+/// };
+/// let cycle = nearest_limit_cycle(&equation, Some(true)).map_err(|_| "no cycle")?;
+/// assert!((cycle.period() - 6.663_286_859_3).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Result<LimitCycle, NoLimitCycle> {
     let directions: &[&[bool]] = match attracts {
         Some(true) => &[&[true], &[false]],

@@ -4,6 +4,7 @@
 
 mod branch;
 mod law;
+mod method;
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -12,6 +13,7 @@ use num_traits::{One, Signed};
 
 pub use branch::Branch;
 pub use law::{ClosedForm, Law, Root, System};
+pub use method::{Counts, Method};
 
 use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::derivation::{Line, Step};
@@ -22,104 +24,6 @@ use crate::exact::scaled::Scaled;
 use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::symbol::{Symbol, fresh};
-
-/// The method that derived a solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Method {
-    /// Strained time, secular terms eliminated order by order.
-    LindstedtPoincare,
-    /// The whole nonlinearity at the first power of a bookkeeping parameter.
-    HomotopyPerturbation,
-    /// A homotopy with a convergence-control parameter hbar, frequency expanded as well.
-    HomotopyAnalysis,
-    /// The nonlinear factor frozen at the previous iterate.
-    IterationPerturbation,
-    /// Coefficients of the equation expanded in a bookkeeping parameter.
-    ParameterExpansion,
-    /// As many harmonics as wanted, each balanced.
-    HarmonicBalance,
-    /// The energy of a one-term motion collocated at an eighth of the period.
-    EnergyBalance,
-    /// omega^2 between the least and the largest of f(x)/x.
-    MaxMin,
-    /// Two trial motions and the residuals they leave at one instant.
-    AmplitudeFrequency,
-    /// The mean Hamiltonian of a one-term motion made stationary.
-    Hamiltonian,
-    /// One correction functional, its secular term removed.
-    VariationalIteration,
-    /// The slope of the force at half the amplitude.
-    FrequencyFormula,
-    /// A quotient of polynomials that agrees with the exact series.
-    Pade,
-    /// The period by elliptic integrals or Gamma functions, else by quadrature.
-    Exact,
-}
-
-impl Method {
-    /// Every method, in the order in which they are listed to users.
-    pub const ALL: [Self; 14] = [
-        Self::LindstedtPoincare,
-        Self::HomotopyPerturbation,
-        Self::HomotopyAnalysis,
-        Self::IterationPerturbation,
-        Self::ParameterExpansion,
-        Self::HarmonicBalance,
-        Self::EnergyBalance,
-        Self::MaxMin,
-        Self::AmplitudeFrequency,
-        Self::Hamiltonian,
-        Self::VariationalIteration,
-        Self::FrequencyFormula,
-        Self::Pade,
-        Self::Exact,
-    ];
-
-    /// The name on the command line and in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::LindstedtPoincare => "lindstedt-poincare",
-            Self::HomotopyPerturbation => "homotopy-perturbation",
-            Self::HomotopyAnalysis => "homotopy-analysis",
-            Self::IterationPerturbation => "iteration-perturbation",
-            Self::ParameterExpansion => "parameter-expansion",
-            Self::HarmonicBalance => "harmonic-balance",
-            Self::EnergyBalance => "energy-balance",
-            Self::MaxMin => "max-min",
-            Self::AmplitudeFrequency => "amplitude-frequency",
-            Self::Hamiltonian => "hamiltonian",
-            Self::VariationalIteration => "variational-iteration",
-            Self::FrequencyFormula => "frequency-formula",
-            Self::Pade => "pade",
-            Self::Exact => "exact",
-        }
-    }
-
-    /// The name in running text.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::LindstedtPoincare => "Lindstedt-Poincare",
-            Self::HomotopyPerturbation => "Homotopy perturbation",
-            Self::HomotopyAnalysis => "Homotopy analysis",
-            Self::IterationPerturbation => "Iteration perturbation",
-            Self::ParameterExpansion => "Parameter expansion",
-            Self::HarmonicBalance => "Harmonic balance",
-            Self::EnergyBalance => "Energy balance",
-            Self::MaxMin => "Max-min approach",
-            Self::AmplitudeFrequency => "Amplitude-frequency formulation",
-            Self::Hamiltonian => "Hamiltonian approach",
-            Self::VariationalIteration => "Variational iteration",
-            Self::FrequencyFormula => "Frequency formula",
-            Self::Pade => "Pade approximant",
-            Self::Exact => "Exact frequency",
-        }
-    }
-
-    /// The method of this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
-    }
-}
 
 /// What the amplitude in a formula measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -237,6 +141,7 @@ impl LeadingCycle {
 /// The motion is `x(t) = displacement(theta)`, `theta = omega t`; all polynomials are in the parameters of the equation, the
 /// amplitude symbol of the convention and the symbols of `definitions`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Solution {
     /// The equation as it was understood, `x'' + f = 0`.
     pub equation: String,
@@ -409,24 +314,21 @@ impl Solution {
     /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one order.
     pub fn order_in_words(&self) -> String {
         let order = self.order;
-        match self.method {
-            Method::Pade => {
+        match self.method.counts() {
+            Counts::Degrees => {
                 let (numerator, denominator) = self.degrees.unwrap_or((order, 0));
                 format!("[{numerator}/{denominator}]")
             }
-            Method::LindstedtPoincare => {
+            Counts::Powers => {
                 let names: Vec<&str> = self.small_parameters().map(|symbol| symbol.name()).collect();
                 format!("to order {order} in {}", names.join(" and "))
             }
-            Method::HomotopyPerturbation | Method::ParameterExpansion => {
-                format!("to order {order} in {}", fresh("p", &self.names()))
-            }
-            Method::HomotopyAnalysis => format!("of order {order}"),
-            Method::IterationPerturbation if order == 1 => "after one pass".to_owned(),
-            Method::IterationPerturbation => format!("after {order} passes"),
-            Method::HarmonicBalance if order == 1 => "with one harmonic".to_owned(),
-            Method::HarmonicBalance => format!("of order {order}"),
-            _ => String::new(),
+            Counts::PowersOfBookkeeping => format!("to order {order} in {}", fresh("p", &self.names())),
+            Counts::Passes if order == 1 => "after one pass".to_owned(),
+            Counts::Passes => format!("after {order} passes"),
+            Counts::Harmonics if order == 1 => "with one harmonic".to_owned(),
+            Counts::Harmonics | Counts::Corrections => format!("of order {order}"),
+            Counts::Nothing => String::new(),
         }
     }
 
@@ -449,7 +351,7 @@ impl Solution {
             format!("omega = {}", self.lowest_first(law))
         } else if let Some(relation) = self.law.relation() {
             format!("0 = {}", self.lowest_first(relation))
-        } else if self.method == Method::HarmonicBalance {
+        } else if self.method.counts() == Counts::Harmonics {
             let harmonics = self.displacement.harmonics();
             let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
             return format!("harmonics {} balanced, solved by numbers", kept.join(", "));

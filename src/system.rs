@@ -60,6 +60,7 @@ pub struct System {
 
 /// Why there is no system, or no path from this start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SystemError {
     /// As many expressions as states.
     #[error("{states} states need {states} right sides, not {right_sides}")]
@@ -285,6 +286,20 @@ impl System {
     ///
     /// # Errors
     /// [`SystemError`] where the run cannot begin; one that ends early says so by [`Path::reason`].
+    ///
+    /// ```
+    /// use lindstedt::system::{Integrator, Options, System};
+    ///
+    /// // Prey and predator of Lotka and Volterra, by both integrators.
+    /// let system = System::parse(&[("x", "x*(1 - y)"), ("y", "y*(x - 1)")], &[])?;
+    /// let [taylor, runge_kutta] = [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
+    ///     let options = Options { integrator, ..Options::default() };
+    ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.at(10.0))
+    /// });
+    /// let difference = taylor?.expect("a state")[0] - runge_kutta?.expect("a state")[0];
+    /// assert!(difference.abs() < 1e-9);
+    /// # Ok::<(), lindstedt::system::SystemError>(())
+    /// ```
     pub fn solve(
         &self,
         start: f64,

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use lindstedt::Values;
 use lindstedt::catalog::{CATALOG, find, methods};
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{AmplitudeConvention, Method};
-use lindstedt::verify::{Values, Verdict, judge, needed_values};
+use lindstedt::verify::{Verdict, judge, needed_values};
 use lindstedt::{Oscillator, Solution};
 
 #[test]

@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
+use lindstedt::Values;
 use lindstedt::equilibrium::with_numbers_where_needed;
 use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::method::numbers::{evaluate, frequency_squared_of};
@@ -12,7 +13,7 @@ use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::oscillator::OscillatorError;
 use lindstedt::period::{PeriodError, swing};
 use lindstedt::solution::{Method, Solution};
-use lindstedt::verify::{Values, VerificationError, judge};
+use lindstedt::verify::{VerificationError, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn oscillator(equation: &str) -> Oscillator {

@@ -4,12 +4,12 @@
 //! either kind.
 
 use lindstedt::Oscillator;
+use lindstedt::Values;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
 use lindstedt::problem::Problem;
 use lindstedt::solution::{AmplitudeConvention, Method};
-use lindstedt::verify::Values;
 use lindstedt::verify::comparison::compare;
 use proptest::prelude::*;
 

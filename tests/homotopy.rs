@@ -239,8 +239,8 @@ fn validity_says_what_is_open_and_where_it_was_cut() {
 /// The hbar in use stands beside its formula in every format, whatever the parameters are called.
 #[test]
 fn a_table_says_which_hbar_was_used() {
+    use lindstedt::Values;
     use lindstedt::export::{json, latex, text};
-    use lindstedt::verify::Values;
     use lindstedt::verify::comparison::compare;
     for (parameter, own) in [("eps", "hbar"), ("hbar", "hbar_")] {
         let oscillator = Oscillator::parse(&format!("x'' + x + {parameter}*x^3 = 0")).expect("an oscillator");

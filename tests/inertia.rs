@@ -1,10 +1,11 @@
 //! Inertia that depends on the position, by every method that takes it: against Runge-Kutta on the equation as typed, against
 //! motions that are known exactly, and against the definitions computed another way.
 
+use lindstedt::Values;
 use lindstedt::method::{Options, solve};
 use lindstedt::ode::quadrature::integrate_smooth;
 use lindstedt::solution::{AmplitudeConvention, Method};
-use lindstedt::verify::{Values, Verification, judge};
+use lindstedt::verify::{Verification, judge};
 use lindstedt::{Oscillator, Solution, Symbol};
 
 fn derived(equation: &str, method: Method, order: Option<u32>) -> (Oscillator, Solution) {

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use lindstedt::Values;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
+use lindstedt::verify::Reach;
 use lindstedt::verify::comparison::{Comparison, compare};
-use lindstedt::verify::validity::Reach;
-use lindstedt::verify::{Values, Verdict, Verification, judge};
+use lindstedt::verify::{Verdict, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn values(at: &[(&str, &str)]) -> Values {

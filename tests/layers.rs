@@ -6,33 +6,40 @@
 
 use std::path::{Path, PathBuf};
 
-/// The layers, lowest first; modules in one line do not use each other. `ode` is numbers only: it
-/// uses nothing but the request to stop.
-const LAYERS: [&[&str]; 20] = [
-    &["interrupt"],
-    &["symbol", "spelling", "ode"],
-    &["exact", "period", "return_map"],
-    &["decimal"],
-    &["expr"],
-    &["series"],
-    &["system"],
-    &["derivation"],
-    &["solution"],
-    &["oscillator"],
-    &["conservative"],
-    &["equilibrium"],
-    &["method"],
-    &["verify"],
-    &["contact"],
-    &["impact", "damper"],
-    &["problem"],
-    &["catalog"],
-    &["export"],
-    &["cli"],
-];
+/// Which module stands in which layer, lowest first.
+struct Layers(Vec<Vec<String>>);
 
-fn layer(module: &str) -> Option<usize> {
-    LAYERS.iter().position(|modules| modules.contains(&module))
+impl Layers {
+    /// The layers of `lib.rs`: its modules in order, those between two empty lines together, and on top of them the program.
+    fn of(library: &str) -> Self {
+        let mut layers: Vec<Vec<String>> = Vec::new();
+        for block in library.split("\n\n") {
+            let name = |line: &str| {
+                let name = line
+                    .trim_start_matches("pub ")
+                    .strip_prefix("mod ")?
+                    .strip_suffix(';')?;
+                Some(name.to_owned())
+            };
+            let names: Vec<String> = block.lines().filter_map(name).collect();
+            if !names.is_empty() {
+                layers.push(names);
+            }
+        }
+        layers.push(vec!["cli".to_owned()]);
+        Self(layers)
+    }
+
+    fn of_crate() -> Self {
+        let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lib.rs");
+        Self::of(&std::fs::read_to_string(library).expect("src/lib.rs"))
+    }
+
+    fn layer(&self, module: &str) -> Option<usize> {
+        self.0
+            .iter()
+            .position(|modules| modules.iter().any(|name| name == module))
+    }
 }
 
 /// One source file: which module it belongs to and how many `super` lead from it to the root.
@@ -116,27 +123,40 @@ fn without_comments(text: &str) -> String {
 }
 
 /// The uses that are not allowed, as messages that name the line.
-fn offences(source: &Source, handed_on: &[(String, String)]) -> Vec<String> {
+fn offences(source: &Source, handed_on: &[(String, String)], layers: &Layers) -> Vec<String> {
     let own = source.module;
-    let allowed = |used: &str| used == own || layer(used).zip(layer(own)).is_some_and(|(used, own)| used < own);
+    let allowed = |used: &str| {
+        used == own
+            || layers
+                .layer(used)
+                .zip(layers.layer(own))
+                .is_some_and(|(used, own)| used < own)
+    };
     uses(source, handed_on)
         .into_iter()
         .filter(|(_, used)| !allowed(used))
-        .map(|(line, used)| match layer(&used) {
+        .map(|(line, used)| match layers.layer(&used) {
             Some(_) => format!("{line}: `{own}` uses `{used}`, which is not below it"),
             None => format!("{line}: `{own}` uses `{used}`, which belongs to no layer"),
         })
         .collect()
 }
 
-/// The names that `lib.rs` hands on from a module: `pub use oscillator::Oscillator;`.
+/// The names that `lib.rs` hands on from a module: `pub use solution::{Method, Solution};`.
 fn handed_on(library: &str) -> Vec<(String, String)> {
     let line = |line: &str| {
         let path = line.strip_prefix("pub use ")?.strip_suffix(';')?;
-        let (module, name) = path.split_once("::")?;
-        Some((name.to_owned(), module.to_owned()))
+        let (module, names) = path.split_once("::")?;
+        let names = names.rsplit("::").next()?.trim_matches(['{', '}']);
+        let module = module.to_owned();
+        Some(
+            names
+                .split(", ")
+                .map(move |name| (name.to_owned(), module.clone()))
+                .collect::<Vec<_>>(),
+        )
     };
-    library.lines().filter_map(line).collect()
+    library.lines().filter_map(line).flatten().collect()
 }
 
 fn source_files(folder: &Path) -> Vec<PathBuf> {
@@ -167,7 +187,10 @@ fn lower_layers_never_use_upper_ones() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let library = std::fs::read_to_string(folder.join("lib.rs")).expect("src/lib.rs");
     let handed_on = handed_on(&library);
-    assert!(handed_on.iter().any(|entry| entry.0 == "Oscillator"), "{handed_on:?}");
+    for name in ["Oscillator", "Motion", "Method", "judge"] {
+        assert!(handed_on.iter().any(|entry| entry.0 == name), "{name}: {handed_on:?}");
+    }
+    let layers = Layers::of(&library);
     let (mut wrong, mut seen, mut uses_seen) = (Vec::new(), Vec::new(), 0);
     for file in source_files(&folder) {
         let inside = file.strip_prefix(&folder).expect("a file in src");
@@ -183,13 +206,13 @@ fn lower_layers_never_use_upper_ones() {
             text: &text,
         };
         uses_seen += uses(&source, &handed_on).len();
-        if layer(module).is_none() {
+        if layers.layer(module).is_none() {
             wrong.push(format!(
-                "src/{}: belongs to no layer, give it a place in this test",
+                "src/{}: belongs to no layer, give it a place in src/lib.rs",
                 inside.display()
             ));
         }
-        let offences = offences(&source, &handed_on);
+        let offences = offences(&source, &handed_on, &layers);
         wrong.extend(
             offences
                 .iter()
@@ -204,19 +227,44 @@ fn lower_layers_never_use_upper_ones() {
         seen.len()
     );
     // A layer without a file would protect nothing.
-    let empty: Vec<_> = LAYERS
-        .iter()
-        .copied()
-        .flatten()
-        .filter(|name| !seen.iter().any(|s| s == *name))
-        .collect();
+    let modules = layers.0.iter().flatten();
+    let empty: Vec<_> = modules.filter(|name| !seen.contains(name)).collect();
     assert!(empty.is_empty(), "no file in src/ belongs to {empty:?}");
+}
+
+/// The documentation of the crate and `ARCHITECTURE.md` list the modules as `lib.rs` declares them.
+#[test]
+fn one_order_is_told_everywhere() {
+    let read = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    let layers = Layers::of_crate().0;
+    let row = |line: &str| {
+        let cell = line.strip_prefix("//! | [`")?.split(" | ").next()?;
+        Some(
+            cell.split("`], [`")
+                .map(|name| name.trim_end_matches("`]").to_owned())
+                .collect(),
+        )
+    };
+    let documented: Vec<Vec<String>> = read("src/lib.rs").lines().filter_map(row).collect();
+    assert_eq!(documented[..], layers[..layers.len() - 1]);
+    let row = |line: &str| {
+        let names = line.strip_prefix("    ")?.split("  ").next()?;
+        Some(names.split(' ').map(str::to_owned).collect())
+    };
+    let page = read("ARCHITECTURE.md");
+    let first = page.split("\n## ").next().unwrap_or(&page);
+    let drawn: Vec<Vec<String>> = first.lines().filter_map(row).collect();
+    assert_eq!(drawn, layers);
 }
 
 #[test]
 fn an_upward_use_is_seen() {
     let handed_on = handed_on("pub use oscillator::Oscillator;\npub mod ode;\npub use symbol::Symbol;\n");
-    let found = |module: &str, depth: usize, text: &str| offences(&Source { module, depth, text }, &handed_on);
+    let layers = Layers::of_crate();
+    let found = |module: &str, depth: usize, text: &str| offences(&Source { module, depth, text }, &handed_on, &layers);
     for (module, depth, text, line, used) in [
         ("series", 2, "use crate::method::solve;", 1, "method"),
         ("ode", 2, "\nlet x = crate::expr::Expr::zero();", 2, "expr"),

@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use lindstedt::Values;
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::solution::Solution;
-use lindstedt::verify::{Values, Verdict, Verification, judge};
+use lindstedt::verify::{Verdict, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn derive(equation: &str, options: &Options) -> (Oscillator, Solution) {

@@ -11,6 +11,7 @@
 
 use std::f64::consts::PI;
 
+use lindstedt::Values;
 use lindstedt::exact::rational::{factorial, ratio};
 use lindstedt::exact::{Polynomial, Rational, Ring};
 use lindstedt::expr::parse_expression;
@@ -18,7 +19,7 @@ use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::oscillator::OscillatorError;
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::{AmplitudeConvention, Solution};
-use lindstedt::verify::{self, Values, Verification};
+use lindstedt::verify::{self, Verification};
 use lindstedt::{Oscillator, Symbol};
 use num_traits::{One, Pow, Zero};
 

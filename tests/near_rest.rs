@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use lindstedt::Values;
 use lindstedt::method::{Options, numbers, solve};
 use lindstedt::solution::Method;
-use lindstedt::verify::{Values, judge};
+use lindstedt::verify::judge;
 use lindstedt::{Oscillator, Symbol};
 
 /// An equation, its equilibrium, and `f'`, `f''/2`, `f'''/6` there.

@@ -1,11 +1,12 @@
 //! Where a formula holds, beside what is known in closed form: zeros and poles of laws, wells and what lies beyond them,
 //! radii of convergence, the first amplitude at which a formula fails, and the size of what is left over.
 
+use lindstedt::Values;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
-use lindstedt::verify::validity::Range;
-use lindstedt::verify::{Values, Verification, judge};
+use lindstedt::verify::Range;
+use lindstedt::verify::{Verification, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn judged_by(oscillator: &Oscillator, options: &Options, at: &[(&str, &str)]) -> Verification {

@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         comparison::ComparisonError::Verification(verify::VerificationError::Unknown { .. }) => {
             Failure::Usage(error.to_string())
         }
-        comparison::ComparisonError::Verification(_) => Failure::refused(&error, None),
+        _ => Failure::refused(&error, None),
     })?;
     let text = match arguments.common.format {
         Format::Text => text::comparison(&comparison, files::width(arguments.common.output.as_deref())),

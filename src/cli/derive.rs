@@ -1,6 +1,7 @@
 //! `lindstedt derive PROBLEM`.
 
 use clap::{Args, ValueEnum};
+use lindstedt::Values;
 use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
@@ -9,7 +10,7 @@ use lindstedt::method::{self, Options, Refusal};
 use lindstedt::problem::{self, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::spelling::nearest;
-use lindstedt::verify::{self, Values, VerificationError};
+use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Oscillator, Symbol};
 
 use super::problem::problem;

@@ -9,13 +9,14 @@
 //!
 //! Where a term has no closed form here the answer is `None`, and the methods fall back on quadrature and say so.
 
-pub mod features;
-pub mod force;
+pub(crate) mod features;
+pub(crate) mod force;
 mod motion;
-pub mod parity;
-pub mod potential;
-pub mod projection;
+pub(crate) mod parity;
+pub(crate) mod potential;
+pub(crate) mod projection;
 
+pub use force::Force;
 pub use parity::is_odd;
 
 use crate::expr::{Expr, ExprError};

@@ -111,6 +111,7 @@ impl Line {
 
 /// Why there is no line.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum LinearisationError {
     /// The greatest depth is not a positive number.
     #[error("the force cannot be replaced by a line over the depth {0}: the greatest depth must be a positive number")]

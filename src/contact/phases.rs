@@ -132,6 +132,7 @@ pub enum Form {
 
 /// Why there are no three phases.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum PhasesError {
     /// The amplitude is not a positive number.
     #[error("the amplitude must be a positive number, not {0}: the release is at x = -amplitude")]

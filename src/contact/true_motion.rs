@@ -55,6 +55,7 @@ pub struct Deviation {
 
 /// Why there is no true motion.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum TrueMotionError {
     /// It turns round before the barrier.
     #[error(

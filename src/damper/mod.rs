@@ -99,6 +99,7 @@ impl Default for Options {
 
 /// Why a simulation cannot begin.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// The model or the start.
     #[error(transparent)]
@@ -211,6 +212,7 @@ impl fmt::Display for Stop {
 
 /// One contact with a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Impact {
     /// Which barrier.
     pub side: Side,
@@ -330,6 +332,7 @@ pub struct Turn {
 
 /// A motion that was followed.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Simulation {
     /// What was followed.
     pub model: Model,
@@ -361,6 +364,17 @@ pub struct Simulation {
 ///
 /// # Errors
 /// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
+///
+/// ```
+/// use lindstedt::damper::{Integrator, Model, Options, Start, simulate};
+///
+/// let model = Model { zeta: 0.02, mu: 1e5, ..Model::default() };
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
+/// assert!(motion.impacts[0].restitution.is_some_and(|e| e < 1.0));
+/// assert!(motion.energy().residual.abs() < 1e-9);
+/// # Ok::<(), lindstedt::damper::SimulationError>(())
+/// ```
 pub fn simulate(
     model: &Model,
     start: Start,
@@ -433,6 +447,16 @@ impl Simulation {
 ///
 /// # Errors
 /// As [`simulate`], for the first that cannot begin, with its number.
+///
+/// ```
+/// use lindstedt::damper::{Model, Options, Start, simulate_many};
+///
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions = [0.0, 0.1].map(|zeta| (Model { zeta, ..Model::default() }, start));
+/// let found = simulate_many(&motions, &Options::default()).map_err(|(_, error)| error)?;
+/// assert!(found[1].impacts[0].speed_in < found[0].impacts[0].speed_in);
+/// # Ok::<(), lindstedt::damper::SimulationError>(())
+/// ```
 pub fn simulate_many(
     motions: &[(Model, Start)],
     options: &Options,

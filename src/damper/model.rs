@@ -106,6 +106,7 @@ pub struct Start {
 
 /// Why there is nothing to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// A parameter that is no finite number.
     #[error("{name} must be a finite number, not {value}")]

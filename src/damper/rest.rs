@@ -38,6 +38,7 @@ pub struct Rest {
 
 /// Why there is no rest time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum NoRest {
     /// The motion has not become small enough.
     #[error("the amplitude stays above 10 % of the first swing until the end of the run")]

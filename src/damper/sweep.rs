@@ -43,6 +43,7 @@ pub struct Axis {
 
 /// Why a text names no range.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum AxisError {
     /// Not of the form NAME=from:to:count.
     #[error("`{0}` should be NAME=from:to:count, such as zeta=0.01:0.05:9")]
@@ -150,6 +151,17 @@ impl Summary {
 ///
 /// # Errors
 /// [`SimulationError`] and the number of the first motion that cannot begin.
+///
+/// ```
+/// use lindstedt::damper::{Model, Options, Start, sweep::{Axis, sweep}};
+///
+/// let axis: Axis = "zeta=0.01:0.1:4".parse()?;
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions: Vec<_> = axis.values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let rows = sweep(&motions, &Options::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// assert!(rows[3].impacts < rows[0].impacts);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn sweep(
     motions: &[(Model, Start)],
     options: &Options,

@@ -111,6 +111,7 @@ pub struct Panel<'a> {
 
 /// Why there is no figure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FigureError {
     /// No panel, or a panel (named) without a curve.
     #[error("nothing to draw in {0}: leave it out or give it data")]

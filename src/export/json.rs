@@ -22,12 +22,14 @@ use crate::solution::{
     AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, LimitCycle, Method, Root, Solution, System,
 };
 use crate::symbol::Symbol;
+use crate::values::Values;
 use crate::verify::comparison::{Comparison, Refused, Row};
 use crate::verify::validity::Reach;
-use crate::verify::{Values, Verdict, Verification};
+use crate::verify::{Verdict, Verification};
 
 /// Why a document is no solution.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum JsonError {
     /// A key is missing or holds something else.
     #[error("`{key}` should hold {expected}")]

@@ -11,15 +11,12 @@ use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::series::terms;
-use crate::solution::{Method, Solution};
+use crate::solution::{Counts, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// Whether everything stands in units of omega, and `p` marks the orders.
 fn is_homotopy(solution: &Solution) -> bool {
-    matches!(
-        solution.method,
-        Method::HomotopyPerturbation | Method::ParameterExpansion
-    )
+    solution.method.counts() == Counts::PowersOfBookkeeping
 }
 
 /// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its corrections.

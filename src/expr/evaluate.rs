@@ -19,6 +19,7 @@ use crate::symbol::Symbol;
 
 /// Why an expression has no number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EvaluationError {
     /// A symbol without a value.
     #[error("`{0}` has no value here")]

@@ -95,6 +95,7 @@ pub enum Node {
 
 /// Why an expression could not be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExprError {
     /// A quotient, or a negative power of zero.
     #[error("division by zero: `{0}`")]

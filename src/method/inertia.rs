@@ -27,6 +27,7 @@ use num_traits::{One, Zero};
 use super::energy_balance::positive_amplitude;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
+use super::table::Entry;
 use super::{Options, Refusal};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
@@ -119,25 +120,55 @@ fn integrating_factor(growth: &Expr, coordinate: Symbol) -> Option<Expr> {
     Some(Expr::product(factors))
 }
 
+/// How a method takes equations whose inertia depends on the position.
+#[derive(Clone, Copy)]
+pub struct Approach {
+    solve: fn(&VariableMass, &Oscillator, &Options) -> Result<Solution, Refusal>,
+    /// omega^2 and the motion, where the law is not explicit.
+    numbers: fn(&Question) -> Option<(f64, FourierSeries<f64>)>,
+}
+
+/// The true motion.
+pub(super) const EXACT: Approach = Approach {
+    solve: exact,
+    numbers: exact_at,
+};
+
+/// Energy at an eighth of the period.
+pub(super) const ENERGY_BALANCE: Approach = Approach {
+    solve: energy_balance,
+    numbers: energy_balance_at,
+};
+
+/// The mean Hamiltonian.
+pub(super) const HAMILTONIAN: Approach = Approach {
+    solve: hamiltonian,
+    numbers: hamiltonian_at,
+};
+
+/// Harmonics of the equation as typed.
+pub(super) const HARMONIC_BALANCE: Approach = Approach {
+    solve: harmonic_balance,
+    numbers: harmonic_balance_at,
+};
+
 /// The answer of a method that takes such an equation as it is; `None` where it does not, or the equation is another.
 ///
 /// # Errors
 /// As for the method on any other equation.
-pub(super) fn solve(method: Method, oscillator: &Oscillator, options: &Options) -> Result<Option<Solution>, Refusal> {
-    let by = match method {
-        Method::Exact => exact,
-        Method::EnergyBalance => energy_balance,
-        Method::Hamiltonian => hamiltonian,
-        Method::HarmonicBalance => harmonic_balance,
-        _ => return Ok(None),
+pub(super) fn solve(entry: &Entry, oscillator: &Oscillator, options: &Options) -> Result<Option<Solution>, Refusal> {
+    let Some(approach) = entry.inertia else {
+        return Ok(None);
     };
     let Some(moving) = VariableMass::of(oscillator)? else {
         return Ok(None);
     };
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention { method: method.title() });
+        return Err(Refusal::Convention {
+            method: entry.method.title(),
+        });
     }
-    by(&moving, oscillator, options).map(Some)
+    (approach.solve)(&moving, oscillator, options).map(Some)
 }
 
 /// The name of something in a derivation: `M`, `U`, ..., or what is free of the equation's names.
@@ -541,42 +572,78 @@ pub(super) fn at_numbers(
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers)?;
     let force = Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
-    let weighted = |x: f64| mass(x) * force.at(x);
-    let one_term = |squared: f64| {
-        let motion = FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one());
-        squared.is_finite().then_some((squared, motion))
-    };
-    match solution.method {
-        Method::Exact => {
-            let (period, cosine) =
-                period::weighted_motion(&period::Force::smooth(&weighted), &|x| mass(x).sqrt(), 0.0, amplitude).ok()?;
-            let frequency = std::f64::consts::TAU / period;
-            let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
-            Some((frequency * frequency, motion))
-        }
-        Method::EnergyBalance => {
-            let eighth = amplitude / f64::sqrt(2.0);
-            let rise = integrate_smooth(weighted, eighth, amplitude, 1e-12).ok()?.0;
-            one_term(4.0 * rise / (amplitude * amplitude * mass(eighth)))
-        }
-        Method::Hamiltonian => {
-            let growth = compiled(oscillator, &moving.growth, numbers)?;
-            let mean = |function: &dyn Fn(f64, f64) -> f64| {
-                let value = |theta: f64| function(theta.cos(), theta.sin());
-                integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-12).map(|(value, _)| value)
-            };
-            let inertia = mean(&|c, s| {
-                let x = amplitude * c;
-                mass(x) * (c * c - amplitude * growth(x) * s * s * c)
-            });
-            let work = mean(&|c, _| weighted(amplitude * c) * c);
-            one_term(work.ok()? / (amplitude * inertia.ok()?))
-        }
-        _ => {
-            let odd = moving.is_odd(oscillator).ok()?;
-            balanced(oscillator, numbers, &harmonics(solution.order, odd), amplitude)
-        }
+    let approach = Entry::of(solution.method).inertia.as_ref()?;
+    (approach.numbers)(&Question {
+        moving: &moving,
+        oscillator,
+        order: solution.order,
+        numbers,
+        amplitude,
+        mass: &mass,
+        force: &force,
+    })
+}
+
+/// An equation at numbers, seen from its equilibrium.
+struct Question<'a> {
+    moving: &'a VariableMass,
+    oscillator: &'a Oscillator,
+    order: u32,
+    numbers: &'a BTreeMap<Symbol, f64>,
+    amplitude: f64,
+    mass: &'a dyn Fn(f64) -> f64,
+    force: &'a Force,
+}
+
+impl Question<'_> {
+    /// The slope of the potential.
+    fn weighted(&self, x: f64) -> f64 {
+        (self.mass)(x) * self.force.at(x)
     }
+
+    fn one_term(&self, squared: f64) -> Option<(f64, FourierSeries<f64>)> {
+        let motion = FourierSeries::from_parts(vec![0.0, self.amplitude], vec![], Integer::one());
+        squared.is_finite().then_some((squared, motion))
+    }
+}
+
+fn exact_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+    let (mass, weighted) = (question.mass, |x| question.weighted(x));
+    let force = period::Force::smooth(&weighted);
+    let (period, cosine) = period::weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
+    let frequency = std::f64::consts::TAU / period;
+    let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    Some((frequency * frequency, motion))
+}
+
+fn energy_balance_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+    let amplitude = question.amplitude;
+    let eighth = amplitude / f64::sqrt(2.0);
+    let rise = integrate_smooth(|x| question.weighted(x), eighth, amplitude, 1e-12)
+        .ok()?
+        .0;
+    question.one_term(4.0 * rise / (amplitude * amplitude * (question.mass)(eighth)))
+}
+
+fn hamiltonian_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+    let amplitude = question.amplitude;
+    let growth = compiled(question.oscillator, &question.moving.growth, question.numbers)?;
+    let mean = |function: &dyn Fn(f64, f64) -> f64| {
+        let value = |theta: f64| function(theta.cos(), theta.sin());
+        integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-12).map(|(value, _)| value)
+    };
+    let inertia = mean(&|c, s| {
+        let x = amplitude * c;
+        (question.mass)(x) * (c * c - amplitude * growth(x) * s * s * c)
+    });
+    let work = mean(&|c, _| question.weighted(amplitude * c) * c);
+    question.one_term(work.ok()? / (amplitude * inertia.ok()?))
+}
+
+fn harmonic_balance_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+    let odd = question.moving.is_odd(question.oscillator).ok()?;
+    let harmonics = harmonics(question.order, odd);
+    balanced(question.oscillator, question.numbers, &harmonics, question.amplitude)
 }
 
 /// The balance of the equation as typed by Newton's iteration, the amplitude raised in steps from a nearly linear one.

@@ -3,31 +3,34 @@
 //! One file per method, each opening with its reference and equations. To add one: write its file with a function
 //! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`] and a row in [`table::METHODS`].
 
-pub mod amplitude_frequency;
-pub mod balance;
-pub mod energy_balance;
-pub mod exact;
-pub mod expansion;
-pub mod first_order;
-pub mod frequency_formula;
-pub mod hamiltonian;
-pub mod harmonic_balance;
-pub mod homotopy_analysis;
-pub mod homotopy_perturbation;
-pub mod inertia;
-pub mod iteration_perturbation;
-pub mod joint_expansion;
-pub mod limit_cycle;
-pub mod lindstedt_poincare;
-pub mod max_min;
+pub(crate) mod amplitude_frequency;
+pub(crate) mod balance;
+pub(crate) mod energy_balance;
+pub(crate) mod exact;
+pub(crate) mod expansion;
+pub(crate) mod first_order;
+pub(crate) mod frequency_formula;
+pub(crate) mod hamiltonian;
+pub(crate) mod harmonic_balance;
+pub(crate) mod homotopy_analysis;
+pub(crate) mod homotopy_perturbation;
+pub(crate) mod inertia;
+pub(crate) mod iteration_perturbation;
+pub(crate) mod joint_expansion;
+pub(crate) mod limit_cycle;
+pub(crate) mod lindstedt_poincare;
+pub(crate) mod max_min;
+pub(crate) mod motion;
 pub mod numbers;
-pub mod one_term;
-pub mod pade;
-pub mod parameter_expansion;
+pub(crate) mod one_term;
+pub(crate) mod pade;
+pub(crate) mod parameter_expansion;
 mod quotation;
 pub mod secular;
 pub mod table;
-pub mod variational_iteration;
+pub(crate) mod variational_iteration;
+
+pub use harmonic_balance::MOST_HARMONICS;
 
 use std::collections::BTreeMap;
 
@@ -70,6 +73,7 @@ pub struct Options {
 
 /// Why a method does not answer, and what to do instead.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The equation is no oscillator, or cannot be expanded.
     #[error(transparent)]
@@ -314,7 +318,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let degree = (entry.rounded_degree)(options, polynomial);
     let centred = centred(oscillator, degree)?;
     let options = &about_a_load(&centred, options);
-    let answer = match inertia::solve(method, &centred.oscillator, options) {
+    let answer = match inertia::solve(entry, &centred.oscillator, options) {
         Ok(Some(solution)) => Ok(solution),
         Ok(None) => (entry.solve)(&centred.oscillator, options),
         Err(refusal) => Err(refusal),

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use num_traits::One;
 
-use super::table::Entry;
+use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
@@ -18,7 +18,7 @@ use crate::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
 use crate::period::PeriodError;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Branch, Method, Solution};
+use crate::solution::{AmplitudeConvention, Branch, Counts, Solution};
 use crate::symbol::Symbol;
 
 /// The relative rounding error above which a closed form is set aside for the integral it stands for.
@@ -29,6 +29,7 @@ const NO_DIGITS: f64 = 1e-6;
 
 /// An answer in numbers.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Numbers {
     /// omega^2, of either sign.
     pub frequency_squared: f64,
@@ -44,6 +45,7 @@ pub struct Numbers {
 
 /// Why an answer has no numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoNumbers {
     /// The branch of an implicit relation turns back or reaches zero before the amplitude asked for.
     #[error("not real: the root that continues the linear frequency ends at A = {}", significant(*amplitude, 6))]
@@ -118,9 +120,9 @@ pub fn evaluate(
     if rounding > NO_DIGITS && squared != 0.0 {
         return Err(NoNumbers::Cancels { rounding });
     }
-    let motion = match solution.method {
-        Method::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).ok().map(|found| found.1),
-        Method::Exact => None,
+    let motion = match Entry::of(solution.method).motion {
+        Motion::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).ok().map(|found| found.1),
+        Motion::Exact => None,
         _ => formula_motion(oscillator, solution, &numbers, squared),
     };
     Ok(Numbers {
@@ -156,13 +158,13 @@ pub fn frequency_squared_of(
 /// The symbol of homotopy analysis that is to be chosen, where there is one.
 fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
     let hbar = homotopy_analysis::convergence_control(solution);
-    let open = solution.method == Method::HomotopyAnalysis && !numbers.contains_key(&hbar);
+    let open = Entry::of(solution.method).takes(Choice::Hbar) && !numbers.contains_key(&hbar);
     (open && contains(solution, hbar)).then_some(hbar)
 }
 
 /// The coefficients of a balance, by their names; the equilibrium is no part of the mean.
 fn balanced(solution: &Solution, motion: &FourierSeries<f64>, numbers: &BTreeMap<Symbol, f64>) -> Vec<(Symbol, f64)> {
-    if solution.method != Method::HarmonicBalance {
+    if Entry::of(solution.method).motion != Motion::Balance {
         return vec![];
     }
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
@@ -197,22 +199,24 @@ fn contains(solution: &Solution, symbol: Symbol) -> bool {
 fn by_size(solution: &Solution) -> bool {
     solution.law.relation().is_none()
         && solution.amplitude == AmplitudeConvention::Initial
-        && !matches!(
-            solution.method,
-            Method::Pade | Method::HomotopyPerturbation | Method::HomotopyAnalysis | Method::LindstedtPoincare
-        )
+        && !Entry::of(solution.method).signed
         || is_first_order(solution)
 }
 
 /// Whether an expansion stopped at the projection of a force that is no polynomial.
 fn is_first_order(solution: &Solution) -> bool {
     // The series itself always has omega beside omega^2.
-    solution.method == Method::LindstedtPoincare && solution.law.frequency().is_none()
+    solution.method.counts() == Counts::Powers && solution.law.frequency().is_none()
+}
+
+/// Whether the law is that of the true motion.
+fn is_exact(solution: &Solution) -> bool {
+    Entry::of(solution.method).motion == Motion::Exact
 }
 
 /// Whether the law is that of a motion `A cos(theta)`.
 fn of_one_term(solution: &Solution) -> bool {
-    by_size(solution) && solution.method != Method::Exact && solution.law.system().is_none()
+    by_size(solution) && !is_exact(solution) && solution.law.system().is_none()
 }
 
 /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
@@ -241,13 +245,13 @@ fn frequency_squared(
     if of_one_term(solution) {
         stays_defined(oscillator, solution, numbers)?;
     }
-    if solution.method == Method::Exact {
+    if is_exact(solution) {
         // The law itself says nothing of whether the motion comes back.
         let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
         force.turning_point(amplitude_of(solution, numbers))?;
     }
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
-    let sized = by_size(solution) && (solution.method != Method::Exact || odd_equation(solution));
+    let sized = by_size(solution) && (!is_exact(solution) || odd_equation(solution));
     let value_of = |name| {
         let value = numbers.get(&name).copied()?;
         Some(if sized && name == symbol { value.abs() } else { value })
@@ -340,7 +344,7 @@ fn overflow(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Sym
 /// A law of one term by what defines it, without the differences of a closed form.
 fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
-    if solution.method == Method::Exact {
+    if is_exact(solution) {
         return exact_motion(oscillator, solution, numbers).ok().map(|found| found.0);
     }
     let force = if is_first_order(solution) {
@@ -398,11 +402,7 @@ fn iterate_by_definition(
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
 ) -> Option<FourierSeries<f64>> {
-    if !matches!(
-        solution.method,
-        Method::IterationPerturbation | Method::VariationalIteration
-    ) || solution.law.relation().is_some()
-    {
+    if Entry::of(solution.method).motion != Motion::Iterate || solution.law.relation().is_some() {
         return None;
     }
     let symbol = solution.amplitude.symbol();
@@ -454,7 +454,7 @@ fn solve(
         };
         return found().ok_or(NoNumbers::NoValue);
     }
-    if solution.method == Method::Exact {
+    if is_exact(solution) {
         return exact_motion(oscillator, solution, numbers).map(|(squared, motion)| (squared, motion, None));
     }
     let given = || {
@@ -464,7 +464,7 @@ fn solve(
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(equilibrium, Integer::one());
-    if solution.method == Method::HarmonicBalance {
+    if Entry::of(solution.method).motion == Motion::Balance {
         let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();

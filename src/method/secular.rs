@@ -101,6 +101,7 @@ pub struct SecularSine<C> {
 
 /// Why no periodic expansion exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SecularError {
     /// A sine at the natural frequency that neither frequency nor amplitude can remove: energy is lost or gained.
     #[error("a secular sine remains at order {order}: the motion gains or loses energy")]

@@ -2,8 +2,8 @@
 
 use super::{
     Options, Refusal, amplitude_frequency, energy_balance, exact, frequency_formula, hamiltonian, harmonic_balance,
-    homotopy_analysis, homotopy_perturbation, iteration_perturbation, lindstedt_poincare, max_min, one_term, pade,
-    parameter_expansion, variational_iteration,
+    homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation, lindstedt_poincare, max_min, one_term,
+    pade, parameter_expansion, variational_iteration,
 };
 use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
@@ -26,7 +26,39 @@ pub struct Entry {
     /// omega^2 of a motion `A cos(theta)` by what defines it, in numbers, for methods of one term: the force about the
     /// equilibrium and the size of the amplitude.
     pub definition: Option<fn(&Force, f64) -> Option<f64>>,
+    /// Whether its law knows the sign of the amplitude; one that does not is written for positive ones.
+    pub signed: bool,
+    /// How its motion becomes numbers.
+    pub motion: Motion,
+    /// How it takes equations whose inertia depends on the position as they are, where it does.
+    pub inertia: Option<inertia::Approach>,
 }
+
+/// How a motion becomes numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// By its formula.
+    Formula,
+    /// By the formula of an iterate, whose projections of the force may be taken by quadrature.
+    Iterate,
+    /// By solving a balance of harmonics.
+    Balance,
+    /// By quadrature of the energy: the true motion.
+    Exact,
+}
+
+/// A method whose omega^2 is the projection of the force on the first harmonic, over the amplitude.
+const OF_THE_SHARED_INTEGRAL: Entry = Entry {
+    method: Method::Hamiltonian,
+    solve: hamiltonian::solve,
+    takes: &[Choice::Order],
+    sees: Sees::Force,
+    rounded_degree: |_, _| None,
+    definition: Some(one_term::first_projection_over_amplitude),
+    signed: false,
+    motion: Motion::Formula,
+    inertia: None,
+};
 
 /// What a user may choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +107,8 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         takes: &[Choice::Order, Choice::Cycle],
         sees: Sees::Derivatives,
         rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
-        definition: Some(one_term::first_projection_over_amplitude),
+        signed: true,
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::HomotopyPerturbation,
@@ -84,6 +117,8 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         sees: Sees::TaylorPolynomial,
         rounded_degree: |options, _| Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2)))),
         definition: None,
+        signed: true,
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::HomotopyAnalysis,
@@ -92,81 +127,66 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         sees: Sees::TaylorPolynomial,
         rounded_degree: |options, _| Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2)))),
         definition: None,
+        signed: true,
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::IterationPerturbation,
         solve: iteration_perturbation::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
         rounded_degree: |options, polynomial| (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0),
-        definition: Some(one_term::first_projection_over_amplitude),
+        motion: Motion::Iterate,
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::ParameterExpansion,
         solve: parameter_expansion::solve,
         takes: &[Choice::Order, Choice::Taylor],
-        sees: Sees::Force,
         rounded_degree: |options, polynomial| match options.taylor {
             Some(degree) => Some(degree),
             None => (polynomial && options.order != Some(1)).then_some(0),
         },
-        definition: Some(one_term::first_projection_over_amplitude),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::HarmonicBalance,
         solve: harmonic_balance::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
-        definition: Some(one_term::first_projection_over_amplitude),
+        motion: Motion::Balance,
+        inertia: Some(inertia::HARMONIC_BALANCE),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::EnergyBalance,
         solve: energy_balance::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
         definition: Some(energy_balance::by_quadrature),
+        inertia: Some(inertia::ENERGY_BALANCE),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::MaxMin,
         solve: max_min::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
-        definition: Some(one_term::first_projection_over_amplitude),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::AmplitudeFrequency,
         solve: amplitude_frequency::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
         definition: Some(amplitude_frequency::by_definition),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
-        method: Method::Hamiltonian,
-        solve: hamiltonian::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
-        definition: Some(one_term::first_projection_over_amplitude),
+        inertia: Some(inertia::HAMILTONIAN),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::VariationalIteration,
         solve: variational_iteration::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
-        definition: Some(one_term::first_projection_over_amplitude),
+        motion: Motion::Iterate,
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::FrequencyFormula,
         solve: frequency_formula::solve,
-        takes: &[Choice::Order],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
         definition: Some(frequency_formula::by_definition),
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::Pade,
@@ -178,14 +198,17 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
             Some(beyond_twice(numerator.saturating_add(denominator)))
         },
         definition: None,
+        signed: true,
+        ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
         method: Method::Exact,
         solve: exact::solve,
         takes: &[],
-        sees: Sees::Force,
-        rounded_degree: |_, _| None,
         definition: None,
+        motion: Motion::Exact,
+        inertia: Some(inertia::EXACT),
+        ..OF_THE_SHARED_INTEGRAL
     },
 ];
 

@@ -79,6 +79,7 @@ fn first_order(acceleration: impl Fn(f64, f64, f64) -> f64) -> impl Fn(f64, &[f6
 
 /// What makes a run impossible from the outset. A run that began keeps what it has, see [`StopReason`].
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum IntegrationError {
     /// The start or the end time is not a finite number.
     #[error("the start (t = {t}, x = {x}, v = {v}) and the end time {end_time} must be finite numbers")]

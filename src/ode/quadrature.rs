@@ -24,6 +24,7 @@ use thiserror::Error;
 
 /// Why no integral was returned.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum QuadratureError {
     /// An end of the interval is not a finite number.
     #[error("the integral from {from} to {to} is not over a finite interval: map it to one first")]

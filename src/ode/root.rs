@@ -18,6 +18,7 @@ use thiserror::Error;
 
 /// Why no root was returned.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RootError {
     /// Both ends have the same sign.
     #[error(

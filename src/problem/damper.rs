@@ -24,6 +24,7 @@ pub struct Damper {
 
 /// Why a problem file is no motion of the damper.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DamperError {
     /// The file itself, or its design.
     #[error(transparent)]

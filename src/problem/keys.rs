@@ -86,6 +86,7 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
 
 /// A file that a command cannot take at its word.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum UnreadKey {
     /// A key that would be ignored.
     #[error("`{key}` says nothing to `{reader}`: leave it out, or use {others}")]

@@ -62,6 +62,7 @@ struct Corner {
 
 /// Why an expression has no recurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecurrenceError {
     /// A name without a value.
     #[error("`{0}` is neither a variable nor a number")]

@@ -30,6 +30,7 @@ pub const HIGHEST_DEGREE: u32 = 4000;
 
 /// Why there is no expansion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TaylorError {
     /// The function is not analytic at the point, or its analyticity there cannot be decided.
     #[error("`{term}` has no Taylor series about {point}")]

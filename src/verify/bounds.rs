@@ -137,7 +137,8 @@ fn turns(course: &[(f64, f64)]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::method::{Options, solve};
-    use crate::verify::{Values, judge};
+    use crate::values::Values;
+    use crate::verify::judge;
 
     /// Equation, values, whether the condition fails, words, and the two bounds stated.
     type Case = (

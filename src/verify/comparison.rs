@@ -4,15 +4,17 @@ use std::collections::BTreeMap;
 
 use super::reach::{Truth, reach};
 use super::validity::{self, Reach};
-use super::{TrueMotion, Values, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
+use super::{TrueMotion, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
+use crate::values::Values;
 
 /// A method that applies.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Row {
     /// What it derived.
     pub solution: Solution,
@@ -55,6 +57,7 @@ pub struct Refused {
 
 /// The table.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// The equation as it was understood.
     pub equation: String,
@@ -76,6 +79,7 @@ pub struct Comparison {
 
 /// Why there is no table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ComparisonError {
     /// No method applies; the reason of the first.
     #[error("no method applies: {0}")]
@@ -110,6 +114,16 @@ fn variants(small: Option<&str>) -> Vec<Options> {
 ///
 /// # Errors
 /// No method applies; values are missing or unknown; no periodic motion there.
+///
+/// ```
+/// use lindstedt::{Method, Oscillator, verify::comparison::compare};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// let exact = table.rows.iter().find(|row| row.solution.method == Method::Exact);
+/// assert!(exact.and_then(|row| row.relative_error).is_some_and(|error| error.abs() < 1e-12));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compare(
     oscillator: &Oscillator,
     at: &Values,

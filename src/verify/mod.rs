@@ -14,10 +14,14 @@
 mod amplitude_series;
 mod bounds;
 pub mod comparison;
-pub mod convergence;
+pub(crate) mod convergence;
 mod reach;
-pub mod validity;
-pub mod well;
+pub(crate) mod validity;
+pub(crate) mod well;
+
+pub use convergence::{Singularity, nearest_singularity};
+pub use validity::{Range, Reach};
+pub use well::{End, Well};
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -25,7 +29,7 @@ use std::f64::consts::TAU;
 use crate::conservative::features::Features;
 use crate::conservative::force::Force as RestForce;
 use crate::decimal::decimal;
-use crate::exact::rational::{Rational, to_f64};
+use crate::exact::rational::Rational;
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of};
 use crate::ode::root::find_root;
@@ -35,99 +39,13 @@ use crate::return_map::{Equation, LimitCycle, NoLimitCycle, nearest_limit_cycle}
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
+use crate::values::Values;
 
 /// The error of the frequency below which a formula passes when the user names no tolerance: 1 %.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 
 /// Points per period on which deviation and residual are taken.
 const SAMPLES: usize = 1024;
-
-/// Exact values of symbols, as given by the user: numbers and multiples of pi.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Values(BTreeMap<Symbol, Expr>);
-
-/// Why a value is no value.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ValueError {
-    /// It contains a symbol.
-    #[error("the value `{value}` of `{name}` contains `{symbol}`: give a number, such as 3/2 or pi/3")]
-    NotANumber {
-        /// The name.
-        name: Symbol,
-        /// The value as typed.
-        value: String,
-        /// What is in it.
-        symbol: Symbol,
-    },
-    /// It is not finite.
-    #[error("the value `{value}` of `{name}` is not a finite number")]
-    NotFinite {
-        /// The name.
-        name: Symbol,
-        /// The value as typed.
-        value: String,
-    },
-    /// The name was given twice.
-    #[error("`{0}` is given two values")]
-    Twice(Symbol),
-}
-
-impl Values {
-    /// Adds the value of a symbol.
-    ///
-    /// # Errors
-    /// A value with symbols in it, one that is not finite, or a second value for the same name.
-    pub fn insert(&mut self, name: Symbol, value: Expr) -> Result<(), ValueError> {
-        if let Some(symbol) = value.symbols().into_iter().next() {
-            return Err(ValueError::NotANumber {
-                name,
-                value: value.to_string(),
-                symbol,
-            });
-        }
-        if value.evaluate(&BTreeMap::new()).is_err() {
-            return Err(ValueError::NotFinite {
-                name,
-                value: value.to_string(),
-            });
-        }
-        match self.0.insert(name, value) {
-            None => Ok(()),
-            Some(_) => Err(ValueError::Twice(name)),
-        }
-    }
-
-    /// The names and exact values, in alphabetical order.
-    pub fn iter(&self) -> impl Iterator<Item = (Symbol, &Expr)> {
-        self.0.iter().map(|(name, value)| (*name, value))
-    }
-
-    /// The value of a symbol as a floating-point number.
-    pub fn get(&self, name: Symbol) -> Option<f64> {
-        let value = self.0.get(&name)?;
-        value
-            .as_number()
-            .map(to_f64)
-            .or_else(|| value.evaluate(&BTreeMap::new()).ok())
-    }
-
-    /// The values of `names`, and the others.
-    pub fn split(&self, names: &[Symbol]) -> (BTreeMap<Symbol, Expr>, Self) {
-        let (those, others) = self.0.clone().into_iter().partition(|(name, _)| names.contains(name));
-        (those, Self(others))
-    }
-
-    /// Whether nothing is given.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    fn with(&self, name: Symbol, value: f64) -> BTreeMap<Symbol, f64> {
-        let mut numbers: BTreeMap<Symbol, f64> = self.0.keys().filter_map(|&key| Some((key, self.get(key)?))).collect();
-        numbers.insert(name, value);
-        numbers
-    }
-}
 
 /// The formula's verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,6 +58,7 @@ pub enum Verdict {
 
 /// A formula judged at given values.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Verification {
     /// The values at which it was judged.
     pub at: Values,
@@ -171,6 +90,7 @@ pub struct Verification {
 
 /// Why a formula could not be judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VerificationError {
     /// Values are missing.
     #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
@@ -242,6 +162,17 @@ pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
 ///
 /// # Errors
 /// Missing or unknown values, or no true periodic motion there.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, Verdict, judge, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let law = solve(&duffing, &Options::default())?;
+/// let judged = judge(&duffing, &law, &"A = 1, eps = 1/10".parse()?, 0.01)?;
+/// assert_eq!(judged.verdict, Verdict::Pass);
+/// assert!(judged.relative_error.is_some_and(|error| error.abs() < 1e-5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn judge(
     oscillator: &Oscillator,
     solution: &Solution,

@@ -2,7 +2,7 @@
 
 use lindstedt::Oscillator;
 use lindstedt::method::numbers::evaluate;
-use lindstedt::method::{Options, Refusal, harmonic_balance};
+use lindstedt::method::{MOST_HARMONICS, Options, Refusal};
 use lindstedt::solution::Method;
 
 use super::{by, by_options, numbers};
@@ -57,7 +57,7 @@ fn harmonic_balance_converges_to_the_exact_motion() {
             }
         ),
         Err(Refusal::HighestOrder {
-            highest: harmonic_balance::MOST_HARMONICS,
+            highest: MOST_HARMONICS,
             ..
         })
     ));

@@ -1,11 +1,11 @@
 //! Closed forms against projections by quadrature, laws derived by hand, and the exact frequency.
 
 use lindstedt::Oscillator;
+use lindstedt::Values;
 use lindstedt::expr::Expr;
 use lindstedt::method::Options;
 use lindstedt::period::{Force, conservative_period};
 use lindstedt::solution::{Method, Solution};
-use lindstedt::verify::Values;
 use lindstedt::verify::comparison::compare;
 
 use super::{by, by_options, numbers, squared};

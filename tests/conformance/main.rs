@@ -9,6 +9,7 @@ mod validity;
 
 use std::collections::BTreeMap;
 
+use lindstedt::Values;
 use lindstedt::catalog::CATALOG;
 use lindstedt::exact::Rational;
 use lindstedt::exact::rational::ratio;
@@ -16,7 +17,7 @@ use lindstedt::expr::Expr;
 use lindstedt::method::numbers::frequency_squared_of;
 use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::solution::{Method, Solution};
-use lindstedt::verify::{Values, Verdict, judge, needed_values};
+use lindstedt::verify::{Verdict, judge, needed_values};
 use lindstedt::{Oscillator, Symbol};
 
 fn by(equation: &str, method: Method) -> Result<Solution, Refusal> {

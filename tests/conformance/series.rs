@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use lindstedt::Values;
 use lindstedt::exact::Rational;
 use lindstedt::exact::rational::ratio;
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, Refusal};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
-use lindstedt::verify::{Values, judge};
+use lindstedt::verify::judge;
 use lindstedt::{Oscillator, Symbol};
 
 use super::{by, by_options, numbers, squared};

@@ -1,9 +1,10 @@
 //! Where formulas hold: ranges, negative amplitudes, and which cycles attract.
 
 use lindstedt::Oscillator;
+use lindstedt::Values;
 use lindstedt::method::numbers::evaluate;
 use lindstedt::solution::Method;
-use lindstedt::verify::{Values, judge};
+use lindstedt::verify::judge;
 
 use super::{by, numbers};
 

@@ -88,7 +88,7 @@ impl Question<'_> {
     }
 
     /// How far a motion of these coefficients is from a balance of its harmonics, beside the inertia of a motion of one term;
-    /// `None` where the integrals do not settle.
+    /// less what the last digits of the coefficients may do to it. `None` where the integrals do not settle.
     pub fn defect_of_balance(&self, squared: f64, coefficients: &[f64], order: usize) -> Option<f64> {
         const PANELS: i32 = 64;
         let mut panels: Vec<f64> = (0..=PANELS).map(|k| PI * f64::from(k) / f64::from(PANELS)).collect();
@@ -107,6 +107,10 @@ impl Question<'_> {
             panels.extend(crossed);
             panels.sort_by(f64::total_cmp);
         }
+        // The last digit of the coefficients moves the motion, beside a pole by more than its distance allows.
+        let rounding = f64::EPSILON * coefficients.iter().map(|a| a.abs()).sum::<f64>();
+        let slope = |theta: f64| self.force.slope(self.origin + distance(theta)).abs();
+        let noise = 2.0 / PI * rounding * integrate(&slope, &panels, 1e-3)? / (squared * self.size());
         let mut largest = (coefficients.iter().sum::<f64>() / self.amplitude - 1.0).abs();
         for k in self.balanced(order) {
             let integrand = |theta: f64| self.f(distance(theta)) * (k as f64 * theta).cos();
@@ -114,7 +118,7 @@ impl Question<'_> {
             let inertia = (k * k) as f64 * squared * coefficients.get(k).copied().unwrap_or(0.0);
             largest = largest.max((force - inertia).abs() / (squared * self.size()));
         }
-        Some(largest)
+        Some(f64::max(largest - noise, 0.0))
     }
 
     /// omega^2 and the coefficients in units of the amplitude: from rest, or from a solution with fewer points.

@@ -4,10 +4,11 @@
 use std::f64::consts::TAU;
 
 use lindstedt::Oscillator;
+use lindstedt::Values;
 use lindstedt::solution::Method;
+use lindstedt::verify::Reach;
+use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{Comparison as Table, Row, compare};
-use lindstedt::verify::validity::Reach;
-use lindstedt::verify::{Values, Verdict};
 
 use crate::Comparison;
 use crate::definitions::{Answer, Question};

@@ -2,8 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use lindstedt::Values;
 use lindstedt::method::{Options, solve};
-use lindstedt::verify::{Values, judge, motions};
+use lindstedt::verify::{judge, motions};
 use lindstedt::{Oscillator, Symbol};
 
 use crate::families::number;

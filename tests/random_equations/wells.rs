@@ -14,13 +14,14 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use lindstedt::conservative::force::Force;
+use lindstedt::Values;
+use lindstedt::conservative::Force;
 use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
-use lindstedt::verify::convergence::nearest_singularity;
-use lindstedt::verify::well::{End, Well};
-use lindstedt::verify::{Values, judge};
+use lindstedt::verify::judge;
+use lindstedt::verify::nearest_singularity;
+use lindstedt::verify::{End, Well};
 use lindstedt::{Oscillator, Symbol};
 
 use crate::quadrature::bisect;

@@ -1,0 +1,125 @@
+//! The methods by name, and what their orders count.
+
+/// The method that derived a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Method {
+    /// Strained time, secular terms eliminated order by order.
+    LindstedtPoincare,
+    /// The whole nonlinearity at the first power of a bookkeeping parameter.
+    HomotopyPerturbation,
+    /// A homotopy with a convergence-control parameter hbar, frequency expanded as well.
+    HomotopyAnalysis,
+    /// The nonlinear factor frozen at the previous iterate.
+    IterationPerturbation,
+    /// Coefficients of the equation expanded in a bookkeeping parameter.
+    ParameterExpansion,
+    /// As many harmonics as wanted, each balanced.
+    HarmonicBalance,
+    /// The energy of a one-term motion collocated at an eighth of the period.
+    EnergyBalance,
+    /// omega^2 between the least and the largest of f(x)/x.
+    MaxMin,
+    /// Two trial motions and the residuals they leave at one instant.
+    AmplitudeFrequency,
+    /// The mean Hamiltonian of a one-term motion made stationary.
+    Hamiltonian,
+    /// One correction functional, its secular term removed.
+    VariationalIteration,
+    /// The slope of the force at half the amplitude.
+    FrequencyFormula,
+    /// A quotient of polynomials that agrees with the exact series.
+    Pade,
+    /// The period by elliptic integrals or Gamma functions, else by quadrature.
+    Exact,
+}
+
+/// What the order of an answer counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counts {
+    /// Powers of the small parameter.
+    Powers,
+    /// Powers of a bookkeeping parameter that is one in the end; everything stands in units of omega.
+    PowersOfBookkeeping,
+    /// The first frequency and its corrections.
+    Corrections,
+    /// Passes of an iteration.
+    Passes,
+    /// Harmonics.
+    Harmonics,
+    /// The degrees of a numerator and a denominator.
+    Degrees,
+    /// Nothing: there is one order.
+    Nothing,
+}
+
+impl Method {
+    /// Every method, in the order in which they are listed to users.
+    pub const ALL: [Self; 14] = [
+        Self::LindstedtPoincare,
+        Self::HomotopyPerturbation,
+        Self::HomotopyAnalysis,
+        Self::IterationPerturbation,
+        Self::ParameterExpansion,
+        Self::HarmonicBalance,
+        Self::EnergyBalance,
+        Self::MaxMin,
+        Self::AmplitudeFrequency,
+        Self::Hamiltonian,
+        Self::VariationalIteration,
+        Self::FrequencyFormula,
+        Self::Pade,
+        Self::Exact,
+    ];
+
+    /// The name on the command line and in JSON, the name in running text, and what the order counts.
+    fn words(self) -> (&'static str, &'static str, Counts) {
+        match self {
+            Self::LindstedtPoincare => ("lindstedt-poincare", "Lindstedt-Poincare", Counts::Powers),
+            Self::HomotopyPerturbation => (
+                "homotopy-perturbation",
+                "Homotopy perturbation",
+                Counts::PowersOfBookkeeping,
+            ),
+            Self::HomotopyAnalysis => ("homotopy-analysis", "Homotopy analysis", Counts::Corrections),
+            Self::IterationPerturbation => ("iteration-perturbation", "Iteration perturbation", Counts::Passes),
+            Self::ParameterExpansion => (
+                "parameter-expansion",
+                "Parameter expansion",
+                Counts::PowersOfBookkeeping,
+            ),
+            Self::HarmonicBalance => ("harmonic-balance", "Harmonic balance", Counts::Harmonics),
+            Self::EnergyBalance => ("energy-balance", "Energy balance", Counts::Nothing),
+            Self::MaxMin => ("max-min", "Max-min approach", Counts::Nothing),
+            Self::AmplitudeFrequency => (
+                "amplitude-frequency",
+                "Amplitude-frequency formulation",
+                Counts::Nothing,
+            ),
+            Self::Hamiltonian => ("hamiltonian", "Hamiltonian approach", Counts::Nothing),
+            Self::VariationalIteration => ("variational-iteration", "Variational iteration", Counts::Nothing),
+            Self::FrequencyFormula => ("frequency-formula", "Frequency formula", Counts::Nothing),
+            Self::Pade => ("pade", "Pade approximant", Counts::Degrees),
+            Self::Exact => ("exact", "Exact frequency", Counts::Nothing),
+        }
+    }
+
+    /// The name on the command line and in JSON.
+    pub fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// The name in running text.
+    pub fn title(self) -> &'static str {
+        self.words().1
+    }
+
+    /// What the order of its answers counts.
+    pub fn counts(self) -> Counts {
+        self.words().2
+    }
+
+    /// The method of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+}

@@ -2,6 +2,8 @@
 //!
 //! A published law is only what a derived one is compared with: nothing here is ever used as an answer.
 
+use std::fmt;
+
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::Method;
@@ -30,6 +32,13 @@ pub struct Published {
     pub squared: bool,
     /// The order in the small parameter to which it is printed.
     pub order: u32,
+}
+
+impl fmt::Display for Published {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = if self.squared { "omega^2" } else { "omega" };
+        write!(formatter, "{name} = {} + ...", self.law)
+    }
 }
 
 const fn omega(law: &'static str, order: u32) -> Option<Published> {

@@ -283,10 +283,7 @@ impl Impact {
 
     /// The verdict on a column: every quantity within the tolerance.
     pub fn verdict(&self, column: Column, tolerance: f64) -> Verdict {
-        match self.shortcomings(column, tolerance).is_empty() {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        }
+        Verdict::of(self.shortcomings(column, tolerance).is_empty())
     }
 
     /// What lies beyond the tolerance in a column: the quantities with their errors, and what of the closed form they come

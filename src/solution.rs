@@ -22,7 +22,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Rational;
 use crate::exact::scaled::Scaled;
 use crate::expr::Expr;
-use crate::series::FourierSeries;
+use crate::series::{FourierSeries, terms};
 use crate::symbol::{Symbol, fresh};
 
 /// What the amplitude in a formula measures.
@@ -342,15 +342,15 @@ impl Solution {
     /// The law in one line, with the definitions it needs.
     pub fn formula(&self) -> String {
         let law = if let Some(law) = self.law.frequency_squared() {
-            format!("omega^2 = {}", self.lowest_first(law))
+            format!("omega^2 = {}", self.written(law))
         } else if let Some(form) = self.law.closed_form().filter(|_| !self.numerical) {
             form.to_string()
         } else if let Some(form) = self.law.closed_form() {
             format!("{} in closed form, with rounded coefficients", form.name())
         } else if let Some(law) = self.law.frequency() {
-            format!("omega = {}", self.lowest_first(law))
+            format!("omega = {}", self.written(law))
         } else if let Some(relation) = self.law.relation() {
-            format!("0 = {}", self.lowest_first(relation))
+            format!("0 = {}", self.written(relation))
         } else if self.method.counts() == Counts::Harmonics {
             let harmonics = self.displacement.harmonics();
             let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
@@ -378,12 +378,15 @@ impl Solution {
         definitions.filter(|entry| symbols.contains(&entry.symbol)).collect()
     }
 
-    /// A polynomial with the lowest power of the small parameter first.
-    fn lowest_first(&self, law: &Polynomial) -> String {
-        let mut terms: Vec<_> = law.terms().collect();
-        terms.sort_by_key(|(monomial, _)| self.order_of(monomial));
+    /// The terms of a polynomial, those with the lowest power of the small parameters first.
+    pub fn lowest_first<'a>(&self, law: &'a Polynomial) -> Vec<(&'a Monomial, &'a Rational)> {
+        terms::in_order(law, |monomial| self.order_of(monomial))
+    }
+
+    /// A polynomial as text, its terms in that order.
+    fn written(&self, law: &Polynomial) -> String {
         let mut text = String::new();
-        for (monomial, number) in terms {
+        for (monomial, number) in self.lowest_first(law) {
             let term = match (self.numerical && !number.is_integer(), monomial.factors().is_empty()) {
                 (false, _) => Polynomial::term(monomial.clone(), number.clone()).to_string(),
                 (true, true) => significant_fraction(number, 6),

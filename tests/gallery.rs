@@ -58,7 +58,11 @@ fn rounded(value: &mut Value) {
                 .parse()
                 .map_or(Value::Null, |rounded: f64| rounded.into());
         }
-        Value::Array(list) => list.iter_mut().for_each(rounded),
+        Value::Array(list) => {
+            // Whether a harmonic of rounding noise is there at all is noise too.
+            list.retain(|entry| !is_noise(&entry["cos"]) || !is_noise(&entry["sin"]));
+            list.iter_mut().for_each(rounded);
+        }
         Value::Object(map) => {
             // Rounding noise by nature.
             if map.contains_key("energy_drift") {
@@ -70,13 +74,21 @@ fn rounded(value: &mut Value) {
                 *slope = format!("{number:.2}").into();
             }
             for (key, entry) in map.iter_mut() {
-                let noise = (key.ends_with("_error") || key == "max_deviation" || key == "residual")
-                    && entry.as_f64().is_some_and(|error| error.abs() < 1e-8);
+                let noise = entry.as_f64().map(f64::abs).is_some_and(|size| match key.as_str() {
+                    "max_deviation" | "residual" => size < 1e-8,
+                    "cos" | "sin" => is_noise(entry) && size > 0.0,
+                    _ => key.ends_with("_error") && size < 1e-8,
+                });
                 if noise { *entry = "noise".into() } else { rounded(entry) }
             }
         }
         _ => {}
     }
+}
+
+/// Whether a harmonic of a motion is rounding noise.
+fn is_noise(value: &Value) -> bool {
+    value.as_f64().is_some_and(|number| number.abs() < 1e-12)
 }
 
 #[test]
@@ -139,7 +151,8 @@ fn every_example_reads_back_to_the_same_solution() {
         if command == "derive" {
             let read = read_solution(&document).expect("a solution");
             document["verification"] = Value::Null;
-            assert_eq!(solution(&read, None), document, "{}", file.display());
+            let written = serde_json::to_value(solution(&read, None)).expect("JSON");
+            assert_eq!(written, document, "{}", file.display());
         } else {
             let phases = read_phases(&document).expect("three phases");
             assert_eq!(phases.len(), 3);
@@ -164,6 +177,7 @@ fn help_says_what_there_is() {
         insta::assert_snapshot!("help-compare", output(&["compare", "--help"]));
         insta::assert_snapshot!("help-impact", output(&["impact", "--help"]));
         insta::assert_snapshot!("help-catalog", output(&["catalog", "--help"]));
+        insta::assert_snapshot!("help-schema", output(&["schema", "--help"]));
         insta::assert_snapshot!("catalog", output(&["catalog"]));
         let duffing = ["derive", "duffing", "--steps"];
         insta::assert_snapshot!("steps", output(&duffing));
@@ -225,6 +239,9 @@ fn exit_codes_are_those_of_the_manual() {
         ),
         (vec!["impact", "--tolerance", "0.1"], 0),
         (vec!["impact", "--tolerance", "0.01"], 3),
+        (vec!["schema", "solution"], 0),
+        (vec!["schema", "solutions"], 2),
+        (vec!["schema"], 2),
         (vec!["imapct"], 2),
     ] {
         let output = run(&arguments);

@@ -266,7 +266,7 @@ fn a_table_says_which_hbar_was_used() {
         );
         let table = text::comparison(&comparison, usize::MAX);
         assert!(table.contains(&format!("{own} = {digits}")), "{digits} {table}");
-        let table = json::comparison(&comparison).to_string();
+        let table = serde_json::to_string(&json::comparison(&comparison)).expect("JSON");
         assert!(table.contains(&format!("\"{own}\":{digits}")), "{digits} {table}");
     }
 }

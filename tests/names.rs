@@ -192,7 +192,10 @@ impl Report {
             formulas.replace_range(start..=start + end.expect("a brace"), "");
         }
         Self {
-            words: vec![steps, json::solution(solution, None).to_string()],
+            words: vec![
+                steps,
+                serde_json::to_string(&json::solution(solution, None)).expect("JSON"),
+            ],
             formulas,
         }
     }

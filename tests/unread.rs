@@ -348,8 +348,10 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("catalog", vec![], vec!["--tolerance", "0.1"]),
         ("catalog", vec![], vec!["--timeout", "1e-9"]),
         ("catalog", vec![], vec!["--quiet"]),
+        ("schema", vec!["impact"], vec!["--output", file]),
+        ("schema", vec!["impact"], vec!["--quiet"]),
     ];
-    for command in ["derive", "compare", "impact", "simulate", "catalog"] {
+    for command in ["derive", "compare", "impact", "simulate", "catalog", "schema"] {
         for name in options_of(command) {
             let option = format!("--{name}");
             assert!(

@@ -2,8 +2,7 @@
 
 use clap::Args;
 use lindstedt::catalog::{CATALOG, Entry, methods};
-use lindstedt::export::latex;
-use serde_json::{Value, json};
+use lindstedt::export::{json, latex};
 
 use super::{Common, Failure, Format, Outcome, json_text, whole};
 
@@ -27,10 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
         }
         Format::Csv => return super::no_table(),
-        Format::Json => {
-            let entries: Vec<Value> = CATALOG.iter().map(document).collect();
-            json_text(&json!({ "schema": "lindstedt/catalog/1", "entries": entries }))
-        }
+        Format::Json => json_text(&json::catalog())?,
     };
     Ok(Outcome {
         result: whole(text),
@@ -41,22 +37,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-fn published(entry: &Entry) -> Option<String> {
-    let published = entry.published?;
-    Some(format!(
-        "{} = {} + ...",
-        if published.squared { "omega^2" } else { "omega" },
-        published.law
-    ))
-}
-
 fn text(entry: &Entry) -> String {
     let mut lines = vec![
         format!("{}: {}", entry.name, entry.title),
         format!("  {}", entry.equation),
         format!("  {}", entry.source),
     ];
-    lines.extend(published(entry).map(|law| format!("  published: {law}")));
+    lines.extend(entry.published.map(|law| format!("  published: {law}")));
     let (mut applying, mut refused): (Vec<&str>, Vec<(String, Vec<&str>)>) = (vec![], vec![]);
     for (method, result) in methods(entry) {
         let Err(refusal) = result else {
@@ -100,25 +87,10 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
 
 /// Equation and published law; titles and sources hold nothing that LaTeX reads as a command.
 fn item(entry: &Entry) -> String {
-    let law =
-        published(entry).map(|law| format!(", published $ {} $", latex::equation(law.trim_end_matches(" + ..."))));
+    let law = entry.published.map(|law| {
+        let law = law.to_string();
+        format!(", published $ {} $", latex::equation(law.trim_end_matches(" + ...")))
+    });
     let (equation, law) = (latex::equation(entry.equation), law.unwrap_or_default());
     format!("\\item[{}] {}: $ {equation} ${law}", entry.name, entry.title)
-}
-
-fn document(entry: &Entry) -> Value {
-    let method = |(method, result): (lindstedt::solution::Method, Result<(), _>)| {
-        let reason = result
-            .err()
-            .map(|refusal: lindstedt::method::Refusal| refusal.to_string());
-        json!({ "method": method.name(), "applies": reason.is_none(), "reason": reason })
-    };
-    json!({
-        "name": entry.name,
-        "title": entry.title,
-        "equation": entry.equation,
-        "source": entry.source,
-        "published": published(entry),
-        "methods": methods(entry).into_iter().map(method).collect::<Vec<_>>(),
-    })
 }

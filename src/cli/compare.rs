@@ -58,19 +58,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Text => text::comparison(&comparison, files::width(arguments.common.output.as_deref())),
         Format::Latex => latex::comparison(&comparison),
         Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::comparison(&comparison)),
+        Format::Json => json_text(&json::comparison(&comparison))?,
     };
     let picture = arguments
         .common
         .plot
         .as_ref()
         .map(|path| (path.clone(), picture(&oscillator, &comparison)));
-    let failed = comparison.rows.iter().any(|row| row.verdict != Some(Verdict::Pass));
+    let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
     Ok(Outcome {
         result: whole(text),
         picture,
         note: None,
-        verdict: Some(if failed { Verdict::Fail } else { Verdict::Pass }),
+        verdict: Some(Verdict::of(passed)),
         partial: false,
     })
 }

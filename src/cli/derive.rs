@@ -150,7 +150,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             derivation + &latex::solution(&solution, verification.as_ref())
         }
         Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::solution(&solution, verification.as_ref())),
+        Format::Json => json_text(&json::solution(&solution, verification.as_ref()))?,
     };
     let picture = match (&arguments.common.plot, &verification) {
         (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at))),

@@ -11,25 +11,12 @@ use lindstedt::problem::{Barrier, Order, Problem, Reader};
 use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct Arguments {
     /// A TOML file, or - for standard input; without it the paper's swing
     pub file: Option<PathBuf>,
     #[command(flatten)]
     pub common: Common,
-}
-
-impl Default for Arguments {
-    fn default() -> Self {
-        let common = Common {
-            format: Format::Text,
-            output: None,
-            plot: None,
-            tolerance: None,
-            timeout: None,
-        };
-        Self { file: None, common }
-    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -43,7 +30,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Text => text::impact(&impact, tolerance),
         Format::Latex => latex::impact(&impact, tolerance),
         Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::impact(&impact, tolerance)),
+        Format::Json => json_text(&json::impact(&impact, tolerance))?,
     };
     let picture = arguments
         .common

@@ -9,6 +9,7 @@ mod derive;
 mod files;
 mod impact;
 mod problem;
+mod schema;
 mod simulate;
 
 use std::fmt::Display;
@@ -22,6 +23,7 @@ use std::time::{Duration, Instant};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use lindstedt::problem::LARGEST_FILE;
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
+use serde::Serialize;
 
 /// Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion.
 #[derive(Parser)]
@@ -49,10 +51,12 @@ enum Command {
     Simulate(simulate::Arguments),
     /// List the classical oscillators that `derive` knows by name
     Catalog(catalog::Arguments),
+    /// Print the JSON Schema of a kind of document: every key with its meaning and unit
+    Schema(schema::Arguments),
 }
 
 /// What every command takes.
-#[derive(Args, Clone)]
+#[derive(Args, Clone, Default)]
 struct Common {
     /// What to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -71,8 +75,9 @@ struct Common {
     timeout: Option<f64>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Format {
+    #[default]
     Text,
     Latex,
     Json,
@@ -154,13 +159,14 @@ pub fn run() -> ExitCode {
         Command::Impact(arguments) => arguments.common.clone(),
         Command::Simulate(arguments) => arguments.common.clone(),
         Command::Catalog(arguments) => arguments.common.clone(),
+        Command::Schema(arguments) => arguments.common(),
     };
     let input = match &command {
         Command::Derive(arguments) => problem::path(&arguments.problem),
         Command::Compare(arguments) => problem::path(&arguments.problem),
         Command::Impact(arguments) => arguments.file.as_deref(),
         Command::Simulate(arguments) => arguments.file.as_deref(),
-        Command::Catalog(_) => None,
+        Command::Catalog(_) | Command::Schema(_) => None,
     };
     let checked = files::check(&common, input);
     if let Err(Failure::Refused(message)) = &checked {
@@ -194,6 +200,7 @@ pub fn run() -> ExitCode {
             Command::Impact(arguments) => impact::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Catalog(arguments) => catalog::run(&arguments),
+            Command::Schema(arguments) => schema::run(&arguments),
         });
         let _ = sender.send(Message::Done(outcome.ok()));
     });
@@ -334,8 +341,12 @@ fn tolerance(common: &Common) -> f64 {
     common.tolerance.unwrap_or(DEFAULT_TOLERANCE)
 }
 
-fn json_text(document: &serde_json::Value) -> String {
-    format!("{document:#}\n")
+/// A document as text of several lines.
+fn json_text(document: &impl Serialize) -> Result<String, Failure> {
+    match serde_json::to_string_pretty(document) {
+        Ok(text) => Ok(text + "\n"),
+        Err(error) => Err(Failure::Refused(error.to_string())),
+    }
 }
 
 /// Refuses `--plot` where pictures were left out of the build.

@@ -6,7 +6,8 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::damper::sweep::{Axis, MOST_MOTIONS, Summary, sweep, sweep_on};
 use lindstedt::damper::{Integrator, Simulation, simulate};
-use lindstedt::export::simulation::{Report, SweepReport, csv, json, sweep_csv, sweep_json, sweep_text, text};
+use lindstedt::export::json;
+use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
 use lindstedt::interrupt::Interrupt;
 use lindstedt::problem::{DamperError, Problem};
 use lindstedt::verify::Verdict;
@@ -118,7 +119,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     };
     let text = match arguments.common.format {
         Format::Csv => csv(&report),
-        Format::Json => json_text(&json(&report)),
+        Format::Json => json_text(&json::simulation(&report))?,
         Format::Text | Format::Latex => text(&report),
     };
     let picture = arguments
@@ -149,11 +150,7 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
             && judge.impacts.len() == motion.impacts.len()
             && motion.difference(judge, 2001).displacement <= allowed * scale
     });
-    if agreed && motion.stop.is_complete() && motion.energy().residual <= allowed {
-        Verdict::Pass
-    } else {
-        Verdict::Fail
-    }
+    Verdict::of(agreed && motion.stop.is_complete() && motion.energy().residual <= allowed)
 }
 
 fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
@@ -247,7 +244,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
     let write = match arguments.common.format {
         Format::Csv => sweep_csv,
-        Format::Json => sweep_json,
+        Format::Json => json::sweep,
         Format::Text | Format::Latex => sweep_text,
     };
     let axes = arguments.sweep.clone();
@@ -263,7 +260,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         }),
         picture,
         note,
-        verdict: Some(if incomplete == 0 { Verdict::Pass } else { Verdict::Fail }),
+        verdict: Some(Verdict::of(incomplete == 0)),
         partial: incomplete > 0,
     })
 }

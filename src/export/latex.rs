@@ -21,8 +21,8 @@ use crate::impact::Impact;
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{LimitCycle, Solution};
+use crate::verify::Verification;
 use crate::verify::comparison::{Comparison, Row};
-use crate::verify::{Verdict, Verification};
 
 /// A polynomial with the lowest power of the small parameter first.
 pub(super) fn law(polynomial: &Polynomial, solution: &Solution) -> String {
@@ -117,11 +117,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
         let _ = writeln!(text, "% {line}");
     }
     if let Some(verification) = verification {
-        let verdict = if verification.verdict == Verdict::Pass {
-            "pass"
-        } else {
-            "fail"
-        };
+        let verdict = verification.verdict.name();
         let error = verification
             .relative_error
             .map_or("none".to_owned(), |error| decimal(100.0 * error) + " %");
@@ -183,13 +179,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         );
     }
     text.push_str("\\end{tabular}\n");
-    let name = |column| {
-        if impact.verdict(column, tolerance) == Verdict::Pass {
-            "pass"
-        } else {
-            "fail"
-        }
-    };
+    let name = |column| impact.verdict(column, tolerance).name();
     let _ = writeln!(
         text,
         "% verdict: paper {}, energy {}",

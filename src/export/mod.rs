@@ -1,7 +1,9 @@
-//! Handing a result on: [`text`] to read, [`json`] for programs, [`latex`] for an article, `figure` (feature `plot`) to look at.
+//! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an article, `figure` (feature `plot`)
+//! to look at.
 
 #[cfg(feature = "plot")]
 pub mod figure;
+#[cfg(feature = "json")]
 pub mod json;
 pub mod latex;
 pub mod simulation;

@@ -20,7 +20,7 @@ use crate::series::FourierSeries;
 use crate::series::terms;
 use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
 use crate::symbol::Symbol;
-use crate::verify::{Verdict, Verification};
+use crate::verify::Verification;
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
 pub fn percent(error: f64) -> String {
@@ -241,11 +241,7 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
         let mark = if range.outside { "  <- outside" } else { "" };
         line("range", format!("{}{mark}", range.text));
     }
-    let verdict = if verification.verdict == Verdict::Pass {
-        "pass"
-    } else {
-        "fail"
-    };
+    let verdict = verification.verdict.name();
     line(
         "verdict",
         format!(
@@ -365,13 +361,12 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         text,
         "  Runge-Kutta keeps the energy to {drift:e} of the kinetic energy at touch"
     );
-    let name = |verdict| if verdict == Verdict::Pass { "pass" } else { "fail" };
     let _ = writeln!(
         text,
         "  verdict (every number within {} %): paper {}, energy {}",
         significant(100.0 * tolerance, 3),
-        name(impact.verdict(Column::Paper, tolerance)),
-        name(impact.verdict(Column::Energy, tolerance))
+        impact.verdict(Column::Paper, tolerance).name(),
+        impact.verdict(Column::Energy, tolerance).name()
     );
     for (column, title) in [(Column::Paper, "paper"), (Column::Energy, "energy")] {
         for (errors, cause) in impact.shortcomings(column, tolerance) {

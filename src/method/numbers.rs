@@ -43,6 +43,16 @@ pub struct Numbers {
     pub remark: Option<String>,
 }
 
+/// The values with which the formulas of an answer are evaluated.
+#[derive(Clone, Debug)]
+pub struct SymbolValues {
+    /// Every symbol of the formulas that has a real value: parameters and amplitude, what was chosen, definitions, omega, pi.
+    /// Laws that are written for positive amplitudes have the size of a negative one here.
+    pub values: Vec<(Symbol, f64)>,
+    /// theta at `t = 0`: pi where the amplitude stands with its size instead of itself, else 0.
+    pub phase: f64,
+}
+
 /// Why an answer has no numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -378,7 +388,7 @@ fn formula_motion(
         return Some(motion);
     }
     let (omega, amplitude) = (Symbol::new("omega"), solution.amplitude.symbol());
-    let turned = by_size(solution) && numbers.get(&amplitude).is_some_and(|value| *value < 0.0);
+    let turned = is_turned(oscillator, solution, numbers);
     let value = |symbol| {
         if symbol == omega {
             return Some(squared.sqrt());
@@ -390,8 +400,97 @@ fn formula_motion(
     if !turned {
         return Some(motion);
     }
-    let half_a_period = |k: usize, value: f64| if k % 2 == 1 { -value } else { value };
-    Some(motion.by_harmonic(half_a_period))
+    let motion = motion.by_harmonic(half_a_period);
+    if odd_equation(solution) {
+        return Some(motion);
+    }
+    // Every harmonic comes with a cos(theta) that lets the motion start at the amplitude; half a period later the even ones,
+    // which have kept their signs, need it with the other sign.
+    let start = solution.equilibrium.evaluate(numbers).ok()? + numbers.get(&amplitude)?;
+    let missing = start - motion.evaluate(0.0);
+    Some(motion.sum(&FourierSeries::from_parts(vec![0.0, missing], vec![], Integer::one())))
+}
+
+/// Whether the motion is that of the size of the amplitude, half a period later; polynomials in the amplitude know its sign.
+fn is_turned(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
+    let negative = numbers
+        .get(&solution.amplitude.symbol())
+        .is_some_and(|value| *value < 0.0);
+    by_size(solution) && negative && !matches!(oscillator.polynomial_degree(), Ok(Some(_)))
+}
+
+/// The coefficient of harmonic `k` half a period later.
+pub(crate) fn half_a_period(k: usize, value: f64) -> f64 {
+    if k % 2 == 1 { -value } else { value }
+}
+
+/// The values of all symbols that the formulas of an answer are written with, of which `found` are the numbers, if it has any.
+pub fn symbol_values(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    found: Option<&Numbers>,
+) -> SymbolValues {
+    let amplitude = solution.amplitude.symbol();
+    let evaluated = !solution.law.is_solved_by_numbers() && !is_exact(solution);
+    let turned = evaluated && is_turned(oscillator, solution, numbers);
+    let sized = |(&name, &value): (&Symbol, &f64)| match turned && name == amplitude {
+        true => (name, -value),
+        false => (name, value),
+    };
+    // A limit cycle is free of the amplitude.
+    let known = numbers
+        .iter()
+        .filter(|entry| solution.limit_cycle.is_none() || *entry.0 != amplitude);
+    let mut values: Vec<(Symbol, f64)> = known.map(sized).collect();
+    values.extend(found.into_iter().flat_map(|found| found.chosen.iter().copied()));
+    let squared = found.map(|found| found.frequency_squared);
+    let lost = squared.and_then(|squared| lost_projections(oscillator, solution, numbers, squared));
+    let lost: Vec<(Symbol, f64)> = lost
+        .into_iter()
+        .flatten()
+        .filter_map(|(k, value)| {
+            let name = projection_name(solution, k)?;
+            Some((name, if turned { half_a_period(k, value) } else { value }))
+        })
+        .collect();
+    // A definition may use those before it.
+    for definition in &solution.definitions {
+        let name = definition.symbol;
+        if values.iter().any(|entry| entry.0 == name) {
+            continue;
+        }
+        let by_definition = lost.iter().find(|entry| entry.0 == name).map(|entry| entry.1);
+        let value = by_definition.or_else(|| definition.meaning.evaluate(&values.iter().copied().collect()).ok());
+        values.extend(value.filter(|value| value.is_finite()).map(|value| (name, value)));
+    }
+    values.extend(squared.map(|squared| (Symbol::new("omega"), squared.sqrt())));
+    let pi = Symbol::new("pi");
+    let harmonics = solution.displacement.harmonics();
+    let motion = harmonics.iter().flat_map(|entry| [&entry.1, &entry.2]);
+    let cycle = solution.limit_cycle.iter().map(|cycle| &cycle.amplitude);
+    let mut polynomials = solution.law.polynomials().chain(motion).chain(cycle);
+    if polynomials.any(|polynomial| polynomial.symbols().contains(&pi)) {
+        values.push((pi, std::f64::consts::PI));
+    }
+    let phase = if turned { std::f64::consts::PI } else { 0.0 };
+    SymbolValues { values, phase }
+}
+
+/// The name that a first iterate gives to `c_k`: what stands over omega^2 in the harmonic, alone.
+fn projection_name(solution: &Solution, k: usize) -> Option<Symbol> {
+    let omega = Symbol::new("omega");
+    let (_, cosine, _) = solution
+        .displacement
+        .harmonics()
+        .into_iter()
+        .find(|entry| entry.0 == k)?;
+    let alone = cosine.terms().filter_map(|(monomial, _)| match *monomial.factors() {
+        [(name, 1), (over, -2)] | [(over, -2), (name, 1)] if over == omega => Some(name),
+        _ => None,
+    });
+    let mut defined = alone.filter(|&name| solution.definitions.iter().any(|definition| definition.symbol == name));
+    defined.next()
 }
 
 /// `x_1 = A cos theta + sum c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)` with the `c_k` by quadrature, where their closed
@@ -402,6 +501,30 @@ fn iterate_by_definition(
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
 ) -> Option<FourierSeries<f64>> {
+    let projections = lost_projections(oscillator, solution, numbers, squared)?;
+    let amplitude = *numbers.get(&solution.amplitude.symbol())?;
+    let mut cosine = vec![0.0; solution.displacement.highest_harmonic().max(1) + 1];
+    cosine[1] = amplitude;
+    for (k, projection) in projections {
+        // The constant term of the series is half of c_0.
+        let divisor = if k == 0 { -2.0 } else { (k * k - 1) as f64 };
+        let part = projection / (divisor * squared);
+        cosine[k] += part;
+        cosine[1] -= part;
+    }
+    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
+    cosine[0] += equilibrium;
+    let finite = cosine.iter().all(|value| value.is_finite());
+    finite.then(|| FourierSeries::from_parts(cosine, vec![], Integer::one()))
+}
+
+/// The `c_k` of a first iterate by quadrature, where their closed forms have lost digits that show beside the amplitude.
+fn lost_projections(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    squared: f64,
+) -> Option<Vec<(usize, f64)>> {
     if Entry::of(solution.method).motion != Motion::Iterate || solution.law.relation().is_some() {
         return None;
     }
@@ -420,20 +543,13 @@ fn iterate_by_definition(
         return None;
     }
     let force = force_of(oscillator, solution, numbers)?;
-    let harmonics = solution.displacement.harmonics();
-    let mut cosine = vec![0.0; harmonics.last()?.0.max(1) + 1];
-    cosine[1] = amplitude;
-    for (k, ..) in harmonics.into_iter().filter(|entry| entry.0 != 1) {
-        // The constant term of the series is half of c_0.
-        let divisor = if k == 0 { -2.0 } else { (k * k - 1) as f64 };
-        let part = one_term::coefficient(&force, amplitude, k).0 / (divisor * squared);
-        cosine[k] += part;
-        cosine[1] -= part;
-    }
-    let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
-    cosine[0] += equilibrium;
-    let finite = cosine.iter().all(|value| value.is_finite());
-    finite.then(|| FourierSeries::from_parts(cosine, vec![], Integer::one()))
+    let harmonics = solution.displacement.harmonics().into_iter();
+    let projections = harmonics.filter(|entry| entry.0 != 1);
+    Some(
+        projections
+            .map(|(k, ..)| (k, one_term::coefficient(&force, amplitude, k).0))
+            .collect(),
+    )
 }
 
 /// What has to be solved: balances, integrals, the exact motion; and a remark.

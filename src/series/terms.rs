@@ -29,15 +29,20 @@ pub fn sum(terms: impl IntoIterator<Item = String>) -> String {
     if text.is_empty() { "0".to_owned() } else { text }
 }
 
-/// A polynomial, its terms in the order of `key`.
+/// The terms of a polynomial in the order of `key`.
+pub fn in_order(polynomial: &Polynomial, key: impl Fn(&Monomial) -> i32) -> Vec<(&Monomial, &Rational)> {
+    let mut terms: Vec<_> = polynomial.terms().collect();
+    terms.sort_by_key(|(monomial, _)| key(monomial));
+    terms
+}
+
+/// A polynomial as text, its terms in the order of `key`.
 pub fn polynomial(
     polynomial: &Polynomial,
     key: impl Fn(&Monomial) -> i32,
     term: impl Fn(&Monomial, &Rational) -> String,
 ) -> String {
-    let mut terms: Vec<_> = polynomial.terms().collect();
-    terms.sort_by_key(|(monomial, _)| key(monomial));
-    sum(terms
+    sum(in_order(polynomial, key)
         .into_iter()
         .map(|(monomial, coefficient)| term(monomial, coefficient)))
 }

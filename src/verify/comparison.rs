@@ -213,7 +213,7 @@ fn row(
             true => reach(oscillator, solution, truth, tolerance),
             false => None,
         },
-        verdict: true_motion.map(|_| if pass { Verdict::Pass } else { Verdict::Fail }),
+        verdict: true_motion.map(|_| Verdict::of(pass)),
     }
 }
 

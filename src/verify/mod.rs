@@ -31,7 +31,7 @@ use crate::conservative::force::Force as RestForce;
 use crate::decimal::decimal;
 use crate::exact::rational::Rational;
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
-use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of};
+use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of, half_a_period, symbol_values};
 use crate::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::period::{self, PeriodError, Swing};
@@ -54,6 +54,21 @@ pub enum Verdict {
     Pass,
     /// It is not, or it is not real.
     Fail,
+}
+
+impl Verdict {
+    /// Passed or not.
+    pub fn of(passed: bool) -> Self {
+        if passed { Self::Pass } else { Self::Fail }
+    }
+
+    /// `pass` or `fail`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+        }
+    }
 }
 
 /// A formula judged at given values.
@@ -84,6 +99,12 @@ pub struct Verification {
     pub ranges: Vec<validity::Range>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
     pub chosen: Vec<(Symbol, f64)>,
+    /// The value of every symbol of the formulas, `omega` and `pi` included; those that have no real value are left out.
+    pub values: Vec<(Symbol, f64)>,
+    /// theta at `t = 0`: pi for a negative amplitude whose size stands in `values`, else 0.
+    pub phase: f64,
+    /// The motion in theta; `None` where the frequency is not real or the motion is not known.
+    pub motion: Option<FourierSeries<f64>>,
     /// The verdict on the frequency.
     pub verdict: Verdict,
 }
@@ -195,6 +216,7 @@ pub fn judge(
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let remark = found.as_ref().and_then(|found| found.remark.clone());
     let remark = remark.map(|text| validity::Range { text, outside: false });
+    let symbols = symbol_values(oscillator, solution, &numbers, found.as_ref());
     Ok(Verification {
         at: at.clone(),
         frequency,
@@ -214,7 +236,14 @@ pub fn judge(
             .chain(validity::ranges(oscillator, solution, &numbers, tolerance))
             .collect(),
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
-        verdict: if pass { Verdict::Pass } else { Verdict::Fail },
+        values: symbols.values,
+        phase: symbols.phase,
+        // The motion of the size of the amplitude, which begins half a period later.
+        motion: motion.map(|(_, motion)| match symbols.phase == 0.0 {
+            true => motion,
+            false => motion.by_harmonic(half_a_period),
+        }),
+        verdict: Verdict::of(pass),
     })
 }
 

@@ -1,13 +1,12 @@
-//! A simulated motion, and a sweep of many: as text, JSON, table of comma-separated values, and pictures.
+//! A simulated motion, and a sweep of many: as text, table of comma-separated values, and pictures; as documents they are in
+//! `export::json`.
 
 mod csv;
 #[cfg(feature = "plot")]
 pub mod figure;
-mod json;
 mod text;
 
 pub use csv::{simulation as csv, sweep as sweep_csv};
-pub use json::{simulation as json, sweep as sweep_json};
 pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::damper::sweep::{Axis, Summary};
@@ -40,7 +39,7 @@ pub struct SweepReport<'a> {
 
 impl SweepReport<'_> {
     /// The values of the parameters of a row.
-    fn values(&self, row: usize) -> Vec<f64> {
+    pub(super) fn values(&self, row: usize) -> Vec<f64> {
         let mut rest = row;
         let mut values: Vec<f64> = self
             .axes
@@ -58,9 +57,9 @@ impl SweepReport<'_> {
 }
 
 /// Points of the comparison of two integrators.
-const COMPARED: usize = 4001;
+pub(super) const COMPARED: usize = 4001;
 
-fn friction(friction: Friction) -> &'static str {
+pub(super) fn friction(friction: Friction) -> &'static str {
     match friction {
         Friction::Exact => "exact",
         Friction::Arctangent => "arctangent",
@@ -68,7 +67,7 @@ fn friction(friction: Friction) -> &'static str {
 }
 
 /// What should be said beside the numbers.
-fn notes(report: &Report) -> Vec<String> {
+pub(super) fn notes(report: &Report) -> Vec<String> {
     let motion = report.motion;
     let mut notes = Vec::new();
     if !motion.touches() {

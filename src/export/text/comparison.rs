@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::{percent, size_in_percent};
 use crate::decimal::{decimal, significant};
-use crate::export::json::verdict;
 use crate::symbol::Symbol;
+use crate::verify::Verdict;
 use crate::verify::comparison::{Comparison, Row};
 use crate::verify::validity::Reach;
 
@@ -83,7 +83,7 @@ fn cells(comparison: &Comparison) -> Vec<[String; 6]> {
             row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
             row.relative_error.map_or("-".to_owned(), percent),
             row.max_deviation.map_or("-".to_owned(), size_in_percent),
-            row.verdict.map_or("-", verdict).to_owned(),
+            row.verdict.map_or("-", Verdict::name).to_owned(),
             reach(row.reach, row.solution.amplitude.symbol()),
         ]
     };

@@ -1,0 +1,76 @@
+//! Kind `catalog`: the classical oscillators.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Kind, methods};
+use crate::catalog::{self, CATALOG};
+
+/// The classical oscillators that the program knows by name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct CatalogDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Catalog.schema()))]
+    pub schema: String,
+    /// The oscillators, in the order of the listing.
+    pub entries: Vec<Entry>,
+}
+
+/// A classical oscillator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Entry {
+    /// The name on the command line.
+    pub name: String,
+    /// The name in running text.
+    pub title: String,
+    /// The equation of motion, `... = 0`.
+    pub equation: String,
+    /// Where it is studied.
+    pub source: String,
+    /// The law as its source prints it, `omega = ... + ...` or `omega^2 = ... + ...`; null where none is printed.
+    pub published: Option<String>,
+    /// Every method, and whether it applies.
+    pub methods: Vec<Applicability>,
+}
+
+/// Whether a method applies to an oscillator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Applicability {
+    /// The method, by its name on the command line.
+    #[schemars(schema_with = "methods")]
+    pub method: String,
+    /// Whether it applies.
+    pub applies: bool,
+    /// Why it does not, in words; null where it does.
+    pub reason: Option<String>,
+}
+
+/// The document of kind `catalog`.
+pub fn catalog() -> CatalogDocument {
+    CatalogDocument {
+        schema: Kind::Catalog.schema().to_owned(),
+        entries: CATALOG.iter().map(entry).collect(),
+    }
+}
+
+fn entry(entry: &catalog::Entry) -> Entry {
+    let applicability = |(method, result): (crate::solution::Method, Result<(), crate::method::Refusal>)| {
+        let reason = result.err().map(|refusal| refusal.to_string());
+        Applicability {
+            method: method.name().to_owned(),
+            applies: reason.is_none(),
+            reason,
+        }
+    };
+    Entry {
+        name: entry.name.to_owned(),
+        title: entry.title.to_owned(),
+        equation: entry.equation.to_owned(),
+        source: entry.source.to_owned(),
+        published: entry.published.map(|published| published.to_string()),
+        methods: catalog::methods(entry).into_iter().map(applicability).collect(),
+    }
+}

@@ -1,0 +1,173 @@
+//! Kind `comparison`: every method on one equation.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::number::finite;
+use super::solution::{numbers, values};
+use super::{Constant, Kind, Map, methods};
+use crate::verify::comparison::{Comparison, Refused, Row};
+use crate::verify::{Verdict, validity};
+
+/// Every method on one equation at given values, beside the true motion of the equation as it was typed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ComparisonDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Comparison.schema()))]
+    pub schema: String,
+    /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are in radians per unit of it.
+    pub equation: String,
+    /// The values of parameters and amplitude at which the methods are judged.
+    pub at: Map<Constant>,
+    /// omega of the true motion, in radians per unit of time; null where it cannot be computed.
+    pub true_frequency: Option<f64>,
+    /// Why there is no true frequency, in words; null where there is one.
+    pub reason: Option<String>,
+    /// The size of the relative error up to which a verdict is `pass`.
+    pub tolerance: f64,
+    /// The methods: first those that apply, then those that do not.
+    pub methods: Vec<MethodRow>,
+    /// Where the true motion is periodic, in words and numbers.
+    pub validity: Vec<String>,
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum MethodRow {
+    /// A method that applies.
+    Applying(Box<ApplyingRow>),
+    /// A method that does not apply.
+    Refused(RefusedRow),
+}
+
+/// A method that applies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ApplyingRow {
+    /// The method, by its name on the command line.
+    #[schemars(schema_with = "methods")]
+    pub method: String,
+    /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
+    pub order: u32,
+    /// The degrees of numerator and denominator of a Pade approximant; null for every other method.
+    pub degrees: Option<[u32; 2]>,
+    /// Whether the method applies.
+    #[schemars(extend("const" = true))]
+    pub applies: bool,
+    /// Why there is no frequency at these values, in words; null where there is one.
+    pub reason: Option<String>,
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    pub chosen: Map<f64>,
+    /// The law as text, with the definitions that it needs.
+    pub formula: String,
+    /// omega by the formula, in radians per unit of time; null where there is none.
+    pub frequency: Option<f64>,
+    /// frequency / true_frequency - 1, signed, as a fraction; null where one of them is not known.
+    pub relative_error: Option<f64>,
+    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
+    pub max_deviation: Option<f64>,
+    /// The range of the amplitude in which the error stays within the tolerance; null where it is not known.
+    pub reach: Option<Reach>,
+    /// Whether |relative_error| is within the tolerance; null where the true frequency is not known.
+    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null]))]
+    pub verdict: Option<String>,
+}
+
+/// A method that does not apply.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct RefusedRow {
+    /// The method, by its name on the command line.
+    #[schemars(schema_with = "methods")]
+    pub method: String,
+    /// Null.
+    pub order: (),
+    /// Whether the method applies.
+    #[schemars(extend("const" = false))]
+    pub applies: bool,
+    /// Why it does not, in words.
+    pub reason: String,
+    /// Null.
+    pub formula: (),
+    /// Null.
+    pub frequency: (),
+    /// Null.
+    pub relative_error: (),
+    /// Null.
+    pub max_deviation: (),
+    /// Null.
+    pub reach: (),
+    /// Null.
+    pub verdict: (),
+}
+
+/// How far a formula is good.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Reach {
+    /// The size of the amplitude at which the error first crosses the tolerance, in the unit of the coordinate, 0 where it does so
+    /// at once; null where no crossing was found.
+    pub up_to: Option<f64>,
+    /// The size of the amplitude up to which was searched, where no crossing was found; null where one was.
+    pub searched: Option<f64>,
+}
+
+/// The document of kind `comparison`.
+pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
+    let applying = comparison.rows.iter().map(applying);
+    ComparisonDocument {
+        schema: Kind::Comparison.schema().to_owned(),
+        equation: comparison.equation.clone(),
+        at: values(&comparison.at),
+        true_frequency: finite(comparison.true_frequency),
+        reason: comparison.reason.clone(),
+        tolerance: comparison.tolerance,
+        methods: applying.chain(comparison.refused.iter().map(refused)).collect(),
+        validity: comparison.validity.clone(),
+    }
+}
+
+fn applying(row: &Row) -> MethodRow {
+    MethodRow::Applying(Box::new(ApplyingRow {
+        method: row.solution.method.name().to_owned(),
+        order: row.solution.order,
+        degrees: row.solution.degrees.map(<[u32; 2]>::from),
+        applies: true,
+        reason: row.reason.clone(),
+        chosen: numbers(&row.chosen),
+        formula: row.solution.formula(),
+        frequency: finite(row.frequency),
+        relative_error: finite(row.relative_error),
+        max_deviation: finite(row.max_deviation),
+        reach: row.reach.map(reach),
+        verdict: row.verdict.map(|verdict| verdict.name().to_owned()),
+    }))
+}
+
+fn refused(refused: &Refused) -> MethodRow {
+    MethodRow::Refused(RefusedRow {
+        method: refused.method.name().to_owned(),
+        order: (),
+        applies: false,
+        reason: refused.reason.to_string(),
+        formula: (),
+        frequency: (),
+        relative_error: (),
+        max_deviation: (),
+        reach: (),
+        verdict: (),
+    })
+}
+
+fn reach(reach: validity::Reach) -> Reach {
+    let searched = match reach {
+        validity::Reach::Everywhere(searched) => Some(searched),
+        validity::Reach::UpTo(_) | validity::Reach::Nowhere => None,
+    };
+    Reach {
+        up_to: reach.end(),
+        searched,
+    }
+}

@@ -1,0 +1,91 @@
+//! JSON documents: one type for each kind, by which it is written, read and described.
+//!
+//! ```text
+//! number       {"exact": "-1/8", "value": -0.125}
+//! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
+//! ```
+//!
+//! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What has no value is null: a key is
+//! never left out.
+
+pub mod catalog;
+pub mod comparison;
+pub mod impact;
+pub mod number;
+mod schema;
+pub mod simulation;
+pub mod solution;
+pub mod sweep;
+
+use std::io;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+pub use catalog::{CatalogDocument, catalog};
+pub use comparison::{ComparisonDocument, comparison};
+pub use impact::{ImpactDocument, impact};
+pub use number::{Constant, Map, Polynomial, Term};
+pub use schema::Kind;
+pub use simulation::{SimulationDocument, simulation};
+pub use solution::{SolutionDocument, solution};
+pub use sweep::{SweepDocument, sweep};
+
+use crate::contact::phases::Phase;
+use crate::solution::Solution;
+use schema::{check_kind, methods};
+
+/// Why a document cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JsonError {
+    /// A key is missing, or holds what it never holds.
+    #[error("{0}")]
+    Shape(String),
+    /// A text or a number is none that could stand there.
+    #[error("`{key}` should hold {expected}")]
+    Unexpected {
+        /// The key.
+        key: String,
+        /// What belongs there.
+        expected: &'static str,
+    },
+}
+
+impl From<serde_json::Error> for JsonError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Shape(error.to_string())
+    }
+}
+
+fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
+    Err(JsonError::Unexpected {
+        key: key.to_owned(),
+        expected,
+    })
+}
+
+/// Writes a document as text of several lines, with a line end.
+///
+/// # Errors
+/// What the writer says.
+pub fn write(document: &impl Serialize, to: &mut dyn io::Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *to, document)?;
+    writeln!(to)
+}
+
+/// Reads a document of kind `solution` back; its `verification` and the derivation are left out.
+///
+/// # Errors
+/// A key that is missing or holds something else.
+pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
+    SolutionDocument::deserialize(document)?.read()
+}
+
+/// Reads the three phases of a document of kind `impact` back.
+///
+/// # Errors
+/// A key that is missing or holds something else.
+pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
+    ImpactDocument::deserialize(document)?.read_phases()
+}

@@ -1,0 +1,124 @@
+//! Exact numbers and polynomials: fractions as text beside decimals.
+
+use indexmap::IndexMap;
+use num_traits::Zero;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{JsonError, unexpected};
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
+use crate::exact::{self, Rational};
+use crate::expr::{Expr, parse_expression};
+use crate::solution::Solution;
+use crate::symbol::Symbol;
+
+/// What stands under names that the equation or the program chose, in their order.
+pub type Map<T> = IndexMap<String, T>;
+
+/// An exact constant beside its decimal value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Constant {
+    /// The exact value as text: a fraction such as `-1/8`, or an expression such as `pi/3`.
+    pub exact: String,
+    /// The same as a decimal number; null where it is beyond the range of double precision.
+    pub value: Option<f64>,
+}
+
+/// A polynomial: the sum of its terms, lowest order in the small parameters first; zero where there is none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Polynomial {
+    /// The terms that are added up.
+    pub terms: Vec<Term>,
+}
+
+/// A term: its coefficient times a product of powers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Term {
+    /// The power of each symbol in it, negative ones too; `verification.values` has the value of every symbol.
+    pub monomial: Map<i32>,
+    /// The exact coefficient as text: a fraction such as `-1/8`.
+    pub exact: String,
+    /// The coefficient as a decimal number; null where it is beyond the range of double precision.
+    pub value: Option<f64>,
+}
+
+impl Constant {
+    /// An exact constant expression, `3/2` or `pi/3`, beside its decimal value.
+    pub fn of(value: &Expr) -> Self {
+        let decimal = value
+            .as_number()
+            .map(to_f64)
+            .or_else(|| value.evaluate(&[].into()).ok());
+        Self {
+            exact: value.to_string(),
+            value: finite(decimal),
+        }
+    }
+
+    /// The constant that the text says.
+    ///
+    /// # Errors
+    /// A text that is no expression.
+    pub fn expression(&self, key: &str) -> Result<Expr, JsonError> {
+        expression(&self.exact, key)
+    }
+}
+
+impl Polynomial {
+    /// A polynomial of a solution, lowest order in its small parameters first.
+    pub fn of(polynomial: &exact::Polynomial, solution: &Solution) -> Self {
+        let term = |(monomial, coefficient): (&Monomial, &Rational)| Term {
+            monomial: monomial
+                .factors()
+                .iter()
+                .map(|(symbol, exponent)| (symbol.to_string(), *exponent))
+                .collect(),
+            exact: coefficient.to_string(),
+            value: finite(Some(to_f64(coefficient))),
+        };
+        Self {
+            terms: solution.lowest_first(polynomial).into_iter().map(term).collect(),
+        }
+    }
+
+    /// The polynomial with its exact coefficients.
+    ///
+    /// # Errors
+    /// A coefficient that is no fraction, exponents or symbols beyond all measure.
+    pub fn exact(&self, key: &str) -> Result<exact::Polynomial, JsonError> {
+        // No document of ours comes near them; those of a hostile one must neither overflow nor keep us busy.
+        const HIGHEST_EXPONENT: u32 = 2_000_000;
+        const MOST_SYMBOLS: usize = 1000;
+        let mut polynomial = exact::Polynomial::zero();
+        for term in &self.terms {
+            let Ok(coefficient) = term.exact.parse::<Rational>() else {
+                return unexpected(key, "a polynomial whose coefficients are fractions");
+            };
+            let exponents = term.monomial.values();
+            let highest = exponents.map(|exponent| exponent.unsigned_abs()).max();
+            if highest > Some(HIGHEST_EXPONENT) || term.monomial.len() > MOST_SYMBOLS {
+                return unexpected(key, "exponents up to 2000000, of up to 1000 symbols in a term");
+            }
+            let powers = term.monomial.iter();
+            let monomial = powers.fold(Monomial::one(), |product, (name, exponent)| {
+                product.product(&Monomial::power_of(Symbol::new(name), *exponent))
+            });
+            polynomial.add_term(monomial, coefficient);
+        }
+        Ok(polynomial)
+    }
+}
+
+/// A text of the grammar.
+pub(super) fn expression(text: &str, key: &str) -> Result<Expr, JsonError> {
+    parse_expression(text).or_else(|_| unexpected(key, "an expression"))
+}
+
+/// JSON has no infinity: what is beyond the range of numbers is null.
+pub(super) fn finite(value: Option<f64>) -> Option<f64> {
+    value.filter(|value| value.is_finite())
+}

@@ -1,0 +1,120 @@
+//! The kinds of documents and the JSON Schema of each, from the types that write and read them.
+
+use schemars::generate::SchemaSettings;
+use schemars::{Schema, SchemaGenerator, json_schema};
+use serde_json::Value;
+
+use super::{
+    CatalogDocument, ComparisonDocument, ImpactDocument, JsonError, SimulationDocument, SolutionDocument,
+    SweepDocument, unexpected,
+};
+use crate::solution::Method;
+
+/// A kind of document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `derive`.
+    Solution,
+    /// `compare`.
+    Comparison,
+    /// `impact`.
+    Impact,
+    /// `simulate`.
+    Simulation,
+    /// `simulate --sweep`.
+    Sweep,
+    /// `catalog`.
+    Catalog,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Self; 6] = [
+        Self::Solution,
+        Self::Comparison,
+        Self::Impact,
+        Self::Simulation,
+        Self::Sweep,
+        Self::Catalog,
+    ];
+
+    /// What a document of this kind has under `schema`.
+    pub const fn schema(self) -> &'static str {
+        match self {
+            Self::Solution => "lindstedt/solution/1",
+            Self::Comparison => "lindstedt/comparison/1",
+            Self::Impact => "lindstedt/impact/1",
+            Self::Simulation => "lindstedt/simulation/1",
+            Self::Sweep => "lindstedt/sweep/1",
+            Self::Catalog => "lindstedt/catalog/1",
+        }
+    }
+
+    /// The name on the command line: `solution`.
+    pub fn name(self) -> &'static str {
+        self.schema().split('/').nth(1).unwrap_or_default()
+    }
+
+    /// The kind of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// The JSON Schema, draft 2020-12, of documents of this kind: every key with its meaning, no other key allowed.
+    pub fn json_schema(self) -> Value {
+        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+        let mut schema = match self {
+            Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
+            Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
+            Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
+            Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
+            Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
+            Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
+        };
+        schema.insert("title".to_owned(), self.schema().into());
+        let mut schema = head_first(schema.to_value());
+        in_one_line(&mut schema);
+        schema
+    }
+}
+
+/// What a reader looks for first stands first.
+fn head_first(schema: Value) -> Value {
+    let Value::Object(mut rest) = schema else {
+        return schema;
+    };
+    let head = ["$schema", "title", "description"];
+    let mut ordered: serde_json::Map<String, Value> =
+        head.iter().filter_map(|key| rest.shift_remove_entry(*key)).collect();
+    ordered.extend(rest);
+    ordered.into()
+}
+
+/// Descriptions are wrapped where they are written, in lines of the source.
+fn in_one_line(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            for (key, entry) in map.iter_mut() {
+                match entry {
+                    Value::String(text) if key == "description" => *text = text.replace('\n', " "),
+                    _ => in_one_line(entry),
+                }
+            }
+        }
+        Value::Array(list) => list.iter_mut().for_each(in_one_line),
+        _ => {}
+    }
+}
+
+/// The schema of the name of a method.
+pub(super) fn methods(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string", "enum": Method::ALL.map(Method::name) })
+}
+
+/// Refuses a document of another kind.
+pub(super) fn check_kind(schema: &str, kind: Kind) -> Result<(), JsonError> {
+    match schema == kind.schema() {
+        true => Ok(()),
+        false => unexpected("schema", kind.schema()),
+    }
+}

@@ -1,0 +1,295 @@
+//! Kind `simulation`: one run of equation (7).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Kind;
+use crate::damper::{self, Friction, Integrator, Side};
+use crate::export::simulation::{COMPARED, Report, friction, notes};
+
+/// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of 1/omega of small swings,
+/// sqrt(L/g), energies in units of m g L.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SimulationDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Simulation.schema()))]
+    pub schema: String,
+    /// The numbers of the problem.
+    pub parameters: Parameters,
+    /// The integrator of the run: `taylor` with the contact in a variable in which it is analytic, or `runge-kutta` phase by phase.
+    #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
+    pub integrator: String,
+    /// The state at the end of the run.
+    pub final_state: State,
+    /// The states at the times that were asked for, in that order.
+    pub samples: Vec<Sample>,
+    /// Every contact with a barrier, in time.
+    pub impacts: Vec<Impact>,
+    /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
+    pub rest_time: Option<f64>,
+    /// Why there is no rest time, in words; null where there is one.
+    pub rest_reason: Option<String>,
+    /// The last time at which |x| is a tenth of the first swing, in units of time; null where it never is.
+    pub last_crossing: Option<f64>,
+    /// The energy and the work of each force.
+    pub energy: Energy,
+    /// The largest energy that no work accounts for, as a fraction of the largest energy met.
+    pub energy_residual: f64,
+    /// Why the run ended, in words.
+    pub stopped: String,
+    /// Whether the run got where it was to get.
+    pub complete: bool,
+    /// The number of steps of the integrator.
+    pub steps: usize,
+    /// The same run by the other integrator; null where it was not asked for.
+    pub judge: Option<Judge>,
+    /// What should be known beside the numbers, in words.
+    pub notes: Vec<String>,
+}
+
+/// The numbers of a run: dimensionless unless another unit is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Parameters {
+    /// Where the barriers stand.
+    pub barrier: Barrier,
+    /// The displacement at t = 0, in radians.
+    pub start: f64,
+    /// The velocity at t = 0, in radians per unit of time.
+    pub speed: f64,
+    /// The stiffness of the barrier.
+    pub gamma: f64,
+    /// Where gamma comes from, in words.
+    pub gamma_source: String,
+    /// The damping of the contact, by Hunt and Crossley.
+    pub mu: f64,
+    /// Where mu comes from, in words.
+    pub mu_source: String,
+    /// The viscous damping, as a fraction of the critical one.
+    pub zeta: f64,
+    /// The torque of dry friction, in units of m g L.
+    pub alpha: f64,
+    /// The law of dry friction: `exact` with sticking, or `arctangent`.
+    #[schemars(extend("enum" = [friction(Friction::Exact), friction(Friction::Arctangent)]))]
+    pub friction: String,
+    /// The amplitude of the moving pivot: (A_e/L) (Omega/omega)^2.
+    pub beta: f64,
+    /// The frequency of the pivot over that of small swings, Omega/omega.
+    pub frequency_ratio: f64,
+    /// How long the run is to last, in units of time.
+    pub duration: f64,
+    /// The relative tolerance that was asked for.
+    pub integrator_tolerance: f64,
+    /// The relative tolerance of one step, a part of it.
+    pub step_tolerance: f64,
+}
+
+/// The places of the barriers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Barrier {
+    /// The left one, in radians; null where there is none.
+    pub left: Option<f64>,
+    /// The right one, in radians; null where there is none.
+    pub right: Option<f64>,
+}
+
+/// A state at the end of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct State {
+    /// The time, in units of time.
+    pub t: f64,
+    /// The displacement, in radians.
+    pub x: f64,
+    /// Its rate, in radians per unit of time.
+    pub velocity: f64,
+}
+
+/// A state that was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Sample {
+    /// The time, in units of time.
+    pub t: f64,
+    /// The displacement, in radians; null where the run ended before.
+    pub x: Option<f64>,
+    /// Its rate, in radians per unit of time; null likewise.
+    pub velocity: Option<f64>,
+}
+
+/// One contact with a barrier.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Impact {
+    /// When the barrier is touched, in units of time.
+    pub entry_time: f64,
+    /// When it is left, in units of time; null where the run ended before.
+    pub exit_time: Option<f64>,
+    /// The speed at the touch, in radians per unit of time; of a motion that starts inside the barrier its speed inwards then.
+    pub speed_in: f64,
+    /// The speed at the release, in radians per unit of time; null where the run ended before.
+    pub speed_out: Option<f64>,
+    /// The greatest depth, in radians.
+    pub penetration: f64,
+    /// speed_out / speed_in; null for a contact that did not begin with a touch, or did not end.
+    pub restitution: Option<f64>,
+    /// The energy that the motion has lost between touch and release, in units of m g L; null where the run ended before.
+    pub energy_lost: Option<f64>,
+    /// Which barrier it is.
+    #[schemars(extend("enum" = [Side::Left.name(), Side::Right.name()]))]
+    pub side: String,
+}
+
+/// Energies and works over the run, in units of m g L.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Energy {
+    /// The energy at the start, in units of m g L.
+    pub start: f64,
+    /// The energy at the end, in units of m g L.
+    pub end: f64,
+    /// The work of viscous damping, never positive, in units of m g L.
+    pub viscous: f64,
+    /// The work of dry friction, never positive, in units of m g L.
+    pub friction: f64,
+    /// The work of the damping in the contacts, in units of m g L.
+    pub contact: f64,
+    /// The work of the moving pivot, in units of m g L.
+    pub excitation: f64,
+}
+
+/// The same run by the other integrator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Judge {
+    /// The integrator.
+    #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
+    pub integrator: String,
+    /// The number of contacts it finds.
+    pub impacts: usize,
+    /// How far the two motions differ.
+    pub max_difference: Difference,
+    /// The state at its end.
+    pub final_state: State,
+    /// The largest energy that no work accounts for, as a fraction of the largest energy met.
+    pub energy_residual: f64,
+    /// Why it ended, in words.
+    pub stopped: String,
+}
+
+/// The largest differences of two motions at the same times.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Difference {
+    /// Of the displacements, in radians.
+    pub x: f64,
+    /// Of the velocities, in radians per unit of time.
+    pub velocity: f64,
+    /// The time up to which they are compared, in units of time.
+    pub until: f64,
+}
+
+const INTEGRATORS: [Integrator; 2] = [Integrator::Taylor, Integrator::RungeKutta];
+
+/// The document of kind `simulation`.
+pub fn simulation(report: &Report) -> SimulationDocument {
+    let motion = report.motion;
+    let model = &motion.model;
+    let [gamma_source, mu_source] = report.sources.map(str::to_owned);
+    let book = motion.energy();
+    let rest = motion.rest();
+    let sample = |&t: &f64| {
+        let (x, velocity) = motion.path.at(t).unzip();
+        Sample { t, x, velocity }
+    };
+    SimulationDocument {
+        schema: Kind::Simulation.schema().to_owned(),
+        parameters: Parameters {
+            barrier: Barrier {
+                left: model.left,
+                right: model.right,
+            },
+            start: motion.start.x,
+            speed: motion.start.velocity,
+            gamma: model.gamma,
+            gamma_source,
+            mu: model.mu,
+            mu_source,
+            zeta: model.zeta,
+            alpha: model.alpha,
+            friction: friction(model.friction).to_owned(),
+            beta: model.beta,
+            frequency_ratio: model.frequency_ratio,
+            duration: motion.options.duration,
+            integrator_tolerance: report.tolerance,
+            step_tolerance: motion.options.relative_tolerance,
+        },
+        integrator: integrator(motion.integrator).to_owned(),
+        final_state: final_state(motion),
+        samples: report.samples.iter().map(sample).collect(),
+        impacts: motion.impacts.iter().map(impact).collect(),
+        rest_time: rest.time.ok(),
+        rest_reason: rest.time.err().map(|reason| reason.to_string()),
+        last_crossing: rest.last_crossing,
+        energy: Energy {
+            start: book.start,
+            end: book.end,
+            viscous: book.viscous,
+            friction: book.friction,
+            contact: book.contact,
+            excitation: book.excitation,
+        },
+        energy_residual: book.residual,
+        stopped: motion.stop.to_string(),
+        complete: motion.stop.is_complete(),
+        steps: motion.steps,
+        judge: report.judge.map(|judge| self::judge(motion, judge)),
+        notes: notes(report),
+    }
+}
+
+fn impact(impact: &damper::Impact) -> Impact {
+    Impact {
+        entry_time: impact.entry_time,
+        exit_time: impact.exit_time,
+        speed_in: impact.speed_in,
+        speed_out: impact.speed_out,
+        penetration: impact.penetration,
+        restitution: impact.restitution,
+        energy_lost: impact.energy_lost,
+        side: impact.side.name().to_owned(),
+    }
+}
+
+fn judge(motion: &damper::Simulation, judge: &damper::Simulation) -> Judge {
+    let difference = motion.difference(judge, COMPARED);
+    Judge {
+        integrator: integrator(judge.integrator).to_owned(),
+        impacts: judge.impacts.len(),
+        max_difference: Difference {
+            x: difference.displacement,
+            velocity: difference.velocity,
+            until: difference.until,
+        },
+        final_state: final_state(judge),
+        energy_residual: judge.energy().residual,
+        stopped: judge.stop.to_string(),
+    }
+}
+
+fn integrator(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Taylor => "taylor",
+        Integrator::RungeKutta => "runge-kutta",
+    }
+}
+
+fn final_state(motion: &damper::Simulation) -> State {
+    State {
+        t: motion.end_time,
+        x: motion.end_x,
+        velocity: motion.end_velocity,
+    }
+}

@@ -1,0 +1,466 @@
+//! Kind `solution`: a derived law and motion, and what the judge says of it.
+
+use num_traits::{One, Zero};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::number::{expression, finite};
+use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, unexpected};
+use crate::derivation::Line;
+use crate::exact::{self, Integer};
+use crate::series::FourierSeries;
+use crate::solution::{self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Root, Solution};
+use crate::symbol::Symbol;
+use crate::values::Values;
+use crate::verify;
+
+/// A formula for the frequency and the motion of an oscillator. Of the laws of the frequency take the first that is not null:
+/// `frequency_squared`, `relation`, `closed_form`, `frequency`, `by_quadrature`, `system`; that is the one that is judged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SolutionDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Solution.schema()))]
+    pub schema: String,
+    /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are in radians per unit of it.
+    pub equation: String,
+    /// The method that derived it, by its name on the command line.
+    #[schemars(schema_with = "methods")]
+    pub method: String,
+    /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
+    pub order: u32,
+    /// The degrees of numerator and denominator of a Pade approximant; null for every other method.
+    pub degrees: Option<[u32; 2]>,
+    /// The symbol in which the expansion runs: a parameter, or the symbol of the amplitude.
+    pub small_parameter: String,
+    /// What the amplitude measures: `initial` is `A` = x(0) minus the equilibrium with x'(0) = 0, `first-harmonic` is `a`, the
+    /// amplitude of the first harmonic. It has the unit of the coordinate.
+    #[schemars(extend("enum" = [AmplitudeConvention::Initial.name(), AmplitudeConvention::FirstHarmonic.name()]))]
+    pub amplitude: String,
+    /// The parameters of the equation, in alphabetical order.
+    pub parameters: Vec<String>,
+    /// Symbols that the program introduced, each with the expression that it stands for, which may use those before it; their
+    /// values are in `verification.values`.
+    pub definitions: Map<String>,
+    /// The equilibrium about which the motion swings, in the unit of the coordinate; its value is null where it has symbols.
+    pub equilibrium: Constant,
+    /// omega, the angular frequency, as a polynomial; null where the method gives none. Where `frequency_squared` or `relation`
+    /// stands beside it, those are judged, not this one.
+    pub frequency: Option<Polynomial>,
+    /// omega^2 as a polynomial; null where the method gives none. It is judged before `frequency`, of which it is no exact square.
+    pub frequency_squared: Option<Polynomial>,
+    /// A polynomial in even powers of `omega` that is zero: omega is its root that continues the linear frequency from amplitude
+    /// zero; null where the law is explicit.
+    pub relation: Option<Polynomial>,
+    /// The law as text where it is no polynomial, `omega^2 = ...` or `omega = ...`; null otherwise. K is the complete elliptic
+    /// integral of the first kind of the parameter m = k^2, not of the modulus k; J0, J1, I0, I1 are Bessel functions.
+    pub closed_form: Option<String>,
+    /// The law as text where only numbers solve it: integrals, separated by `; `; null otherwise.
+    pub by_quadrature: Option<String>,
+    /// The equations of a balance of several harmonics, which only numbers solve; null otherwise.
+    pub system: Option<System>,
+    /// The motion x(t), the equilibrium included: add nothing to it.
+    pub displacement: Displacement,
+    /// The limit cycle of a self-excited equation, whose amplitude the equation determines; null for any other.
+    pub limit_cycle: Option<LimitCycle>,
+    /// Always null: no method gives equations of amplitude and phase yet.
+    pub modulation: (),
+    /// Always null: no method gives steady states of a forced equation yet.
+    pub response: (),
+    /// Whether coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
+    pub numerical: bool,
+    /// What is known of where the formula holds, in words.
+    pub validity: Vec<String>,
+    /// The verdict at given values; null where none were given.
+    pub verification: Option<Verification>,
+}
+
+/// Algebraic equations for omega and the coefficients of the motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct System {
+    /// What is solved for: `omega` and the coefficients; `verification.values` has their values.
+    pub unknowns: Vec<String>,
+    /// Expressions, each of which is zero.
+    pub equations: Vec<String>,
+}
+
+/// A motion as a Fourier series with symbols in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Displacement {
+    /// The name of the angle: theta = omega t + `verification.phase`, in radians.
+    #[schemars(extend("const" = "theta"))]
+    pub variable: String,
+    /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the equilibrium in harmonic 0;
+    /// empty where only `verification.motion` has the motion.
+    pub harmonics: Vec<Harmonic>,
+}
+
+/// One harmonic of a motion with symbols in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Harmonic {
+    /// The multiple of theta, 0 for the mean.
+    pub harmonic: usize,
+    /// The coefficient of the cosine, in the unit of the coordinate.
+    pub cos: Polynomial,
+    /// The coefficient of the sine, in the unit of the coordinate.
+    pub sin: Polynomial,
+}
+
+/// The limit cycle that is expanded, among those of its equation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct LimitCycle {
+    /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate.
+    pub amplitude: Polynomial,
+    /// Which of the `cycles` it is, counted from one.
+    pub number: usize,
+    /// All limit cycles of the equation to leading order, smallest first.
+    pub cycles: Vec<Cycle>,
+    /// Parameters that are small together with the small parameter.
+    pub small_with: Vec<String>,
+}
+
+/// A limit cycle to leading order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Cycle {
+    /// Its amplitude where the small parameters vanish, in the unit of the coordinate.
+    pub amplitude: Constant,
+    /// An expression: where it is positive the cycle attracts, where it is negative it repels; null at a multiple root, where
+    /// nothing is said.
+    pub attracts_where_positive: Option<String>,
+    /// The same in words.
+    pub stability: String,
+}
+
+/// A formula at given values, beside the true motion of the equation as it was typed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Verification {
+    /// The values that were given.
+    pub at: Map<Constant>,
+    /// omega by the formula, in radians per unit of time; null where there is none.
+    pub frequency: Option<f64>,
+    /// Why there is no frequency, in words; null where there is one.
+    pub reason: Option<String>,
+    /// omega of the true motion, in radians per unit of time.
+    pub true_frequency: f64,
+    /// frequency / true_frequency - 1, signed, as a fraction; null where there is no frequency.
+    pub relative_error: Option<f64>,
+    /// The law that is judged: `omega^2`, of which the frequency is the root, or `omega`.
+    #[schemars(extend("enum" = ["omega^2", "omega"]))]
+    pub judged_on: String,
+    /// The relative error of `frequency` where `frequency_squared` is judged; null where they do not stand side by side.
+    pub error_of_omega: Option<f64>,
+    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
+    pub max_deviation: Option<f64>,
+    /// The root mean square of what the formula leaves of the equation, over that of the force; null where it is not known.
+    pub residual: Option<f64>,
+    /// The exponent with which the error of the frequency vanishes as the small parameter does; null where rounding hides it.
+    pub slope: Option<f64>,
+    /// Where the formula holds at these values, in words and numbers.
+    pub ranges: Vec<Range>,
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    pub chosen: Map<f64>,
+    /// The value of every symbol of the formulas: parameters, amplitude (1 where the equation is linear and none was given),
+    /// definitions, what was chosen, `omega` and `pi`. Laws that are written for the size of the amplitude have its size here. A
+    /// symbol that has no real value is left out.
+    #[serde(default)]
+    pub values: Map<f64>,
+    /// theta at t = 0, in radians: theta = omega t + phase. It is pi for a negative amplitude whose size stands in `values`, else 0.
+    #[serde(default)]
+    pub phase: f64,
+    /// The motion in numbers, whatever the method: x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), the
+    /// equilibrium in harmonic 0; harmonics below 1e-14 of the largest are left out. Where phase is pi and the force is not odd,
+    /// only this starts at the amplitude, not `displacement`. Null where the frequency is not real or the motion is not known.
+    #[serde(default)]
+    pub motion: Option<Vec<HarmonicValue>>,
+    /// Whether |relative_error| is within the tolerance, 0.01 unless another was given.
+    #[schemars(extend("enum" = [verify::Verdict::Pass.name(), verify::Verdict::Fail.name()]))]
+    pub verdict: String,
+}
+
+/// One harmonic of a motion in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct HarmonicValue {
+    /// The multiple of theta, 0 for the mean.
+    pub harmonic: usize,
+    /// The coefficient of the cosine, in the unit of the coordinate.
+    pub cos: f64,
+    /// The coefficient of the sine, in the unit of the coordinate.
+    pub sin: f64,
+}
+
+/// A place where the formula stops to hold, or another remark on its range.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Range {
+    /// The range in words and numbers.
+    pub text: String,
+    /// Whether the given values lie outside of it.
+    pub outside: bool,
+}
+
+/// The document of kind `solution`; `verification` is null unless the formula was judged.
+pub fn solution(solution: &Solution, verification: Option<&verify::Verification>) -> SolutionDocument {
+    let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
+    let harmonic = |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
+        harmonic,
+        cos: Polynomial::of(&cosine, solution),
+        sin: Polynomial::of(&sine, solution),
+    };
+    let definitions = solution.definitions.iter();
+    SolutionDocument {
+        schema: Kind::Solution.schema().to_owned(),
+        equation: solution.equation.clone(),
+        method: solution.method.name().to_owned(),
+        order: solution.order,
+        degrees: solution.degrees.map(<[u32; 2]>::from),
+        small_parameter: solution.small_parameter.to_string(),
+        amplitude: solution.amplitude.name().to_owned(),
+        parameters: names(&solution.parameters),
+        definitions: definitions
+            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
+            .collect(),
+        equilibrium: Constant::of(&solution.equilibrium),
+        frequency: optional(solution.law.frequency()),
+        frequency_squared: optional(solution.law.frequency_squared()),
+        relation: optional(solution.law.relation()),
+        closed_form: solution.law.closed_form().map(ToString::to_string),
+        by_quadrature: solution.by_numbers(),
+        system: solution.law.system().map(|system| System {
+            unknowns: names(&system.unknowns),
+            equations: system.equations.iter().map(ToString::to_string).collect(),
+        }),
+        displacement: Displacement {
+            variable: "theta".to_owned(),
+            harmonics: solution.displacement.harmonics().into_iter().map(harmonic).collect(),
+        },
+        limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
+        modulation: (),
+        response: (),
+        numerical: solution.numerical,
+        validity: solution.validity.clone(),
+        verification: verification.map(self::verification),
+    }
+}
+
+/// The cycle of the solution and, to leading order, all of its equation.
+fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle {
+    let leading = |leading: &LeadingCycle| Cycle {
+        amplitude: Constant::of(&leading.amplitude),
+        attracts_where_positive: leading.attracts_where.as_ref().map(ToString::to_string),
+        stability: leading.stability(),
+    };
+    LimitCycle {
+        amplitude: Polynomial::of(&cycle.amplitude, solution),
+        number: cycle.number,
+        cycles: cycle.cycles.iter().map(leading).collect(),
+        small_with: names(&cycle.small_with),
+    }
+}
+
+/// The verdict on a formula.
+pub fn verification(verification: &verify::Verification) -> Verification {
+    let ranges = verification.ranges.iter();
+    Verification {
+        at: values(&verification.at),
+        frequency: finite(verification.frequency),
+        reason: verification.reason.clone(),
+        true_frequency: verification.true_frequency,
+        relative_error: finite(verification.relative_error),
+        judged_on: verification.judged_on.to_owned(),
+        error_of_omega: finite(verification.error_of_omega),
+        max_deviation: finite(verification.max_deviation),
+        residual: finite(verification.residual),
+        slope: finite(verification.slope),
+        ranges: ranges
+            .map(|range| Range {
+                text: range.text.clone(),
+                outside: range.outside,
+            })
+            .collect(),
+        chosen: numbers(&verification.chosen),
+        values: numbers(&verification.values),
+        phase: verification.phase,
+        motion: verification.motion.as_ref().and_then(motion),
+        verdict: verification.verdict.name().to_owned(),
+    }
+}
+
+/// The harmonics of a motion in numbers but for rounding noise; nothing where one of them is not finite.
+fn motion(motion: &FourierSeries<f64>) -> Option<Vec<HarmonicValue>> {
+    /// Beside the largest swing: what quadrature leaves of harmonics that are not there.
+    const NOISE: f64 = 1e-14;
+    let entry = |harmonic: usize| HarmonicValue {
+        harmonic,
+        cos: motion.cosine(harmonic).mean().0,
+        sin: motion.sine(harmonic).mean().0,
+    };
+    let size = |entry: &HarmonicValue| entry.cos.hypot(entry.sin);
+    let entries: Vec<HarmonicValue> = (0..=motion.highest_harmonic()).map(entry).collect();
+    let largest = entries.iter().skip(1).map(size).fold(0.0, f64::max);
+    entries
+        .into_iter()
+        .filter(|entry| size(entry) > NOISE * largest || !size(entry).is_finite())
+        .map(|entry| size(&entry).is_finite().then_some(entry))
+        .collect()
+}
+
+/// Exact values by their names.
+pub(super) fn values(values: &Values) -> Map<Constant> {
+    values
+        .iter()
+        .map(|(name, value)| (name.to_string(), Constant::of(value)))
+        .collect()
+}
+
+/// Numbers by their names.
+pub(super) fn numbers(numbers: &[(Symbol, f64)]) -> Map<f64> {
+    let numbers = numbers.iter();
+    numbers.map(|(name, value)| (name.to_string(), *value)).collect()
+}
+
+fn names(symbols: &[Symbol]) -> Vec<String> {
+    symbols.iter().map(ToString::to_string).collect()
+}
+
+fn symbols(names: &[String]) -> Vec<Symbol> {
+    names.iter().map(|name| Symbol::new(name)).collect()
+}
+
+impl SolutionDocument {
+    /// The solution that the document describes; its `verification` and the derivation are left out.
+    ///
+    /// # Errors
+    /// A document of another kind; a name, a fraction or an expression that is none.
+    pub fn read(&self) -> Result<Solution, JsonError> {
+        check_kind(&self.schema, Kind::Solution)?;
+        let method = Method::from_name(&self.method);
+        let amplitude = AmplitudeConvention::from_name(&self.amplitude);
+        let (Some(method), Some(amplitude)) = (method, amplitude) else {
+            return unexpected("method", "the name of a method, and `amplitude` that of a convention");
+        };
+        let definition = |(name, meaning): (&String, &String)| {
+            Ok(Definition {
+                symbol: Symbol::new(name),
+                meaning: expression(meaning, name)?,
+            })
+        };
+        Ok(Solution {
+            equation: self.equation.clone(),
+            method,
+            order: self.order,
+            degrees: self.degrees.map(<(u32, u32)>::from),
+            small_parameter: Symbol::new(&self.small_parameter),
+            amplitude,
+            parameters: symbols(&self.parameters),
+            definitions: self
+                .definitions
+                .iter()
+                .map(definition)
+                .collect::<Result<_, JsonError>>()?,
+            equilibrium: self.equilibrium.expression("equilibrium")?,
+            law: self.law()?,
+            displacement: self.displacement.read()?,
+            limit_cycle: self.limit_cycle.as_ref().map(LimitCycle::read).transpose()?,
+            numerical: self.numerical,
+            validity: self.validity.clone(),
+            steps: vec![],
+            derivation: vec![],
+        })
+    }
+
+    /// The law, of whose kinds a document holds one.
+    fn law(&self) -> Result<Law, JsonError> {
+        let optional = |law: &Option<Polynomial>, key| law.as_ref().map(|law| law.exact(key)).transpose();
+        let frequency = optional(&self.frequency, "frequency")?;
+        let squared = optional(&self.frequency_squared, "frequency_squared")?;
+        let form = self.closed_form.as_deref().map(closed_form).transpose()?;
+        let system = self.system.as_ref().map(System::read).transpose()?;
+        Ok(
+            match (optional(&self.relation, "relation")?, squared, frequency, form, system) {
+                (Some(relation), squared, _, form, _) => Law::Relation {
+                    relation,
+                    root: squared.map(Root::Polynomial).or(form.map(Root::Closed)),
+                },
+                (None, Some(squared), frequency, ..) => Law::Series { squared, frequency },
+                (None, None, Some(frequency), ..) => Law::Frequency(frequency),
+                (None, None, None, Some(form), _) => Law::Closed(form),
+                (None, None, None, None, Some(system)) => Law::System(system),
+                (None, None, None, None, None) => {
+                    let lines = self.by_quadrature.as_deref().map(|text| text.split("; "));
+                    Law::Quadrature(lines.into_iter().flatten().map(Line::words).collect())
+                }
+            },
+        )
+    }
+}
+
+/// `omega = ...` or `omega^2 = ...`.
+fn closed_form(text: &str) -> Result<ClosedForm, JsonError> {
+    let (squared, value) = match text.split_once(" = ") {
+        Some(("omega^2", value)) => (true, value),
+        Some(("omega", value)) => (false, value),
+        _ => return unexpected("closed_form", "`omega = ...` or `omega^2 = ...`"),
+    };
+    let value = expression(value, "closed_form")?;
+    Ok(ClosedForm { squared, value })
+}
+
+impl System {
+    fn read(&self) -> Result<solution::System, JsonError> {
+        let equations = self.equations.iter().map(|text| expression(text, "equations"));
+        Ok(solution::System {
+            unknowns: symbols(&self.unknowns),
+            equations: equations.collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl LimitCycle {
+    fn read(&self) -> Result<solution::LimitCycle, JsonError> {
+        let leading = |cycle: &Cycle| {
+            let attracts_where = cycle.attracts_where_positive.as_deref();
+            Ok(LeadingCycle {
+                amplitude: cycle.amplitude.expression("amplitude")?,
+                attracts_where: attracts_where
+                    .map(|text| expression(text, "attracts_where_positive"))
+                    .transpose()?,
+            })
+        };
+        Ok(solution::LimitCycle {
+            amplitude: self.amplitude.exact("limit_cycle")?,
+            number: self.number,
+            cycles: self.cycles.iter().map(leading).collect::<Result<_, JsonError>>()?,
+            small_with: symbols(&self.small_with),
+        })
+    }
+}
+
+impl Displacement {
+    fn read(&self) -> Result<FourierSeries<exact::Polynomial>, JsonError> {
+        /// No document of ours comes near it; a hostile one must not fill the memory.
+        const HIGHEST_HARMONIC: usize = 100_000;
+        let length = self
+            .harmonics
+            .iter()
+            .map(|entry| entry.harmonic)
+            .max()
+            .map_or(0, |k| k.saturating_add(1));
+        if length > HIGHEST_HARMONIC + 1 {
+            return unexpected("harmonic", "a whole number up to 100000");
+        }
+        let mut cosine = vec![exact::Polynomial::zero(); length];
+        let mut sine = cosine.clone();
+        for entry in &self.harmonics {
+            cosine[entry.harmonic] = entry.cos.exact("cos")?;
+            sine[entry.harmonic] = entry.sin.exact("sin")?;
+        }
+        Ok(FourierSeries::from_parts(cosine, sine, Integer::one()))
+    }
+}

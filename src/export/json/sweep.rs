@@ -1,0 +1,109 @@
+//! Kind `sweep`: many runs of equation (7), a row each.
+
+use std::io;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize, Serializer};
+
+use super::Kind;
+use super::simulation::State;
+use crate::damper::sweep::Summary;
+use crate::export::simulation::SweepReport;
+
+/// Many runs of the paper's equation (7) over one or two parameters, units as in a document of kind `simulation`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SweepDocument<Rows = Vec<Row>> {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Sweep.schema()))]
+    pub schema: String,
+    /// The parameters that are varied; the last varies fastest.
+    pub axes: Vec<Axis>,
+    /// A row for each run.
+    pub rows: Rows,
+}
+
+/// A parameter over a range, equally spaced.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Axis {
+    /// The parameter, by its name in problem files, whose unit its values have.
+    pub name: String,
+    /// The first value.
+    pub from: f64,
+    /// The last value.
+    pub to: f64,
+    /// The number of values.
+    pub count: usize,
+}
+
+/// What is kept of one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Row {
+    /// The values of the parameters, in the order of the axes.
+    pub values: Vec<f64>,
+    /// The number of contacts.
+    pub impacts: usize,
+    /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
+    pub rest_time: Option<f64>,
+    /// The greatest depth in a barrier, in radians; 0 without contact.
+    pub penetration: f64,
+    /// The greatest speed at a touch, in radians per unit of time; 0 without contact.
+    pub speed_in: f64,
+    /// The energy lost in contacts, in units of m g L.
+    pub energy_lost: f64,
+    /// The state at the end.
+    pub final_state: State,
+    /// Whether the run got where it was to get.
+    pub complete: bool,
+    /// Why the run ended, in words.
+    pub stopped: String,
+}
+
+/// The rows of a report, made one at a time while they are written, for there may be a million.
+struct Streamed<'a>(&'a SweepReport<'a>);
+
+impl Serialize for Streamed<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let rows = self.0.rows.iter().enumerate();
+        serializer.collect_seq(rows.map(|(index, summary)| row(self.0.values(index), summary)))
+    }
+}
+
+/// Writes the document of kind `sweep`, a row at a time.
+///
+/// # Errors
+/// What the writer says.
+pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
+    let axes = report.axes.iter().map(|axis| Axis {
+        name: axis.name.clone(),
+        from: axis.from,
+        to: axis.to,
+        count: axis.count,
+    });
+    let document = SweepDocument {
+        schema: Kind::Sweep.schema().to_owned(),
+        axes: axes.collect(),
+        rows: Streamed(report),
+    };
+    super::write(&document, to)
+}
+
+fn row(values: Vec<f64>, summary: &Summary) -> Row {
+    Row {
+        values,
+        impacts: summary.impacts,
+        rest_time: summary.rest_time.ok(),
+        penetration: summary.deepest,
+        speed_in: summary.fastest,
+        energy_lost: summary.energy_lost,
+        final_state: State {
+            t: summary.end_time,
+            x: summary.end_x,
+            velocity: summary.end_velocity,
+        },
+        complete: summary.stop.is_complete(),
+        stopped: summary.stop.to_string(),
+    }
+}

@@ -1,0 +1,438 @@
+//! JSON documents: what is printed is what the schema says and what reads back, every key is described, and a program that
+//! knows nothing but the standard library of Python rebuilds frequency and motion from them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use boon::{Compiler, SchemaIndex, Schemas};
+use lindstedt::export::json::{
+    self, CatalogDocument, ComparisonDocument, ImpactDocument, Kind, SimulationDocument, SolutionDocument,
+    SweepDocument,
+};
+use lindstedt::method::numbers::evaluate;
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::Method;
+use lindstedt::verify::judge;
+use lindstedt::{Oscillator, Symbol, Values};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+/// Standard output of a run that must succeed.
+fn output(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(arguments)
+        .output()
+        .expect("the program starts");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {errors}");
+    String::from_utf8(output.stdout).expect("the output is text")
+}
+
+fn document(arguments: &[&str]) -> Value {
+    let text = output(&[arguments, &["--format", "json"]].concat());
+    serde_json::from_str(&text).expect("the output is JSON")
+}
+
+/// The files of a folder with this ending, in alphabetical order.
+fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let mut files: Vec<PathBuf> = paths.filter(|path| path.to_string_lossy().ends_with(ending)).collect();
+    files.sort();
+    files
+}
+
+fn is_impact(file: &Path) -> bool {
+    file.file_name()
+        .is_some_and(|name| name.to_string_lossy().starts_with("impact"))
+}
+
+/// The schemas of all kinds, as the program prints them.
+struct Published {
+    schemas: Schemas,
+    indices: Vec<(Kind, SchemaIndex)>,
+}
+
+impl Published {
+    fn new() -> Self {
+        let mut schemas = Schemas::new();
+        let mut compiler = Compiler::new();
+        let index = |kind: Kind| {
+            let schema = serde_json::from_str(&output(&["schema", kind.name()])).expect("a schema is JSON");
+            compiler.add_resource(kind.name(), schema).expect("a schema");
+            (
+                kind,
+                compiler
+                    .compile(kind.name(), &mut schemas)
+                    .expect("a schema of draft 2020-12"),
+            )
+        };
+        let indices = Kind::ALL.map(index).into();
+        Self { schemas, indices }
+    }
+
+    /// What the schema of the kind that a document names has against it.
+    fn refusal(&self, document: &Value) -> Option<String> {
+        let of_kind = |(kind, _): &&(Kind, SchemaIndex)| document["schema"] == kind.schema();
+        let (_, index) = self.indices.iter().find(of_kind).expect("a known kind");
+        self.schemas
+            .validate(document, *index)
+            .err()
+            .map(|error| format!("{error:#}"))
+    }
+}
+
+/// What is written is what was read.
+fn reads_back(document: &Value) {
+    fn again<T: Serialize + DeserializeOwned>(document: &Value) -> Value {
+        let typed: T = serde_json::from_value(document.clone()).expect("a document reads");
+        serde_json::to_value(typed).expect("a document is written")
+    }
+    let kind = Kind::ALL.into_iter().find(|kind| document["schema"] == kind.schema());
+    let written = match kind.expect("a known kind") {
+        Kind::Solution => again::<SolutionDocument>(document),
+        Kind::Comparison => again::<ComparisonDocument>(document),
+        Kind::Impact => again::<ImpactDocument>(document),
+        Kind::Simulation => again::<SimulationDocument>(document),
+        Kind::Sweep => again::<SweepDocument>(document),
+        Kind::Catalog => again::<CatalogDocument>(document),
+    };
+    assert_eq!(written.to_string(), document.to_string());
+}
+
+/// Every document that the examples lead to.
+fn documents() -> Vec<(String, Value)> {
+    let mut documents = Vec::new();
+    let mut add = |arguments: &[&str]| documents.push((arguments.join(" "), document(arguments)));
+    for file in files("examples", ".toml") {
+        add(&[
+            if is_impact(&file) { "impact" } else { "derive" },
+            &file.to_string_lossy(),
+        ]);
+    }
+    for file in files("examples/compare", ".toml") {
+        add(&["compare", &file.to_string_lossy()]);
+    }
+    for file in files("examples/simulate", ".toml") {
+        add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
+    }
+    add(&["simulate", "--integrator", "both"]);
+    add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
+    add(&["catalog"]);
+    documents
+}
+
+#[test]
+fn every_document_is_what_its_schema_says_and_reads_back() {
+    let published = Published::new();
+    let documents = documents();
+    for (name, document) in &documents {
+        assert_eq!(published.refusal(document), None, "{name}");
+        reads_back(document);
+    }
+    for kind in Kind::ALL {
+        let of_kind = |entry: &&(String, Value)| entry.1["schema"] == kind.schema();
+        assert!(
+            documents.iter().any(|entry| of_kind(&entry)),
+            "no document of kind {}",
+            kind.name()
+        );
+    }
+    // What no value stands for is null, so no key may go, and none may come; a text is no number.
+    type Change = fn(&mut Value);
+    let changes: [(&str, Change); 4] = [
+        ("a key goes", |document| {
+            let map = document.as_object_mut().expect("an object");
+            let last = map.keys().next_back().expect("a key").clone();
+            map.shift_remove(&last);
+        }),
+        ("a key comes", |document| document["unheard_of"] = json!(1)),
+        ("a key comes inside", |document| {
+            innermost(document)["unheard_of"] = json!(1)
+        }),
+        ("a text for what is none", |document| {
+            let map = document.as_object_mut().expect("an object");
+            *map.values_mut().next_back().expect("a value") = json!("text");
+        }),
+    ];
+    for (name, document) in &documents {
+        for (what, change) in changes {
+            let mut changed = document.clone();
+            change(&mut changed);
+            assert!(
+                published.refusal(&changed).is_some(),
+                "{name}: {what}, and nobody minds"
+            );
+        }
+    }
+}
+
+/// An object inside an object that is no map of names.
+fn innermost(document: &mut Value) -> &mut Value {
+    let place = match document["schema"].as_str() {
+        Some("lindstedt/solution/1") => "/equilibrium",
+        Some("lindstedt/comparison/1") => "/methods/0",
+        Some("lindstedt/impact/1") => "/phases/1/coefficients/amplitude",
+        Some("lindstedt/simulation/1") => "/parameters/barrier",
+        Some("lindstedt/sweep/1") => "/rows/0/final_state",
+        _ => "/entries/0/methods/0",
+    };
+    document.pointer_mut(place).expect("an object")
+}
+
+/// A pinned document as it was printed: there, rounding noise and the number of steps are words, and a slope has two digits.
+fn unpinned(value: &mut Value) {
+    match value {
+        Value::String(text) if text == "noise" => *value = json!(0.0),
+        Value::String(text) if text == "some" => *value = json!(0),
+        Value::Array(list) => list.iter_mut().for_each(unpinned),
+        Value::Object(map) => {
+            for (key, entry) in map.iter_mut() {
+                let slope = entry.as_str().filter(|_| key == "slope");
+                match slope.and_then(|slope| slope.parse::<f64>().ok()) {
+                    Some(slope) => *entry = json!(slope),
+                    None => unpinned(entry),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_pinned_document_is_what_its_schema_says() {
+    let published = Published::new();
+    let mut count = 0;
+    for file in files("snapshots", ".snap") {
+        if !file.to_string_lossy().contains("json@") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).expect("a snapshot");
+        let body = text.splitn(3, "---\n").nth(2).expect("a head and a body");
+        let mut document: Value = serde_json::from_str(body).expect("JSON");
+        unpinned(&mut document);
+        assert_eq!(published.refusal(&document), None, "{}", file.display());
+        count += 1;
+    }
+    assert!(count >= 40, "only {count} pinned documents");
+}
+
+#[test]
+fn every_key_is_described_and_no_other_is_allowed() {
+    /// The keys of a schema without a description, and objects that allow more keys.
+    fn faults(place: &str, schema: &Value, found: &mut Vec<String>, keys: &mut usize) {
+        if let Some(properties) = schema["properties"].as_object() {
+            if schema["additionalProperties"] != json!(false) {
+                found.push(format!("{place} is open"));
+            }
+            for (key, property) in properties {
+                *keys += 1;
+                let description = property["description"].as_str().unwrap_or_default();
+                if !description.ends_with('.') || description.contains('\n') {
+                    found.push(format!("{place}.{key}: {description:?}"));
+                }
+            }
+        }
+        match schema {
+            Value::Object(map) => {
+                for (key, part) in map {
+                    faults(&format!("{place}/{key}"), part, found, keys);
+                }
+            }
+            Value::Array(list) => {
+                for part in list {
+                    faults(place, part, found, keys);
+                }
+            }
+            _ => {}
+        }
+    }
+    for kind in Kind::ALL {
+        let schema: Value = serde_json::from_str(&output(&["schema", kind.name()])).expect("a schema is JSON");
+        assert_eq!(schema, kind.json_schema());
+        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+        let (mut found, mut keys) = (Vec::new(), 0);
+        faults(kind.name(), &schema, &mut found, &mut keys);
+        assert_eq!(found, Vec::<String>::new());
+        assert!(keys >= 9, "{}: only {keys} keys", kind.name());
+    }
+    // What is easily taken for something else is said where it stands.
+    let said = |kind: Kind, place: &str, words: &[&str]| {
+        let schema = kind.json_schema();
+        let description = schema.pointer(place).and_then(Value::as_str).expect(place);
+        assert!(
+            words.iter().all(|word| description.contains(word)),
+            "{place}: {description}"
+        );
+    };
+    let key = |name: &str| format!("/properties/{name}/description");
+    said(
+        Kind::Solution,
+        &key("frequency_squared"),
+        &["judged before `frequency`"],
+    );
+    said(Kind::Solution, &key("closed_form"), &["parameter m"]);
+    said(Kind::Solution, &key("displacement"), &["equilibrium included"]);
+    said(Kind::Impact, "/$defs/Phase/description", &["s = t - start"]);
+    said(Kind::Impact, "/$defs/Phase/properties/start/description", &["clock"]);
+}
+
+#[test]
+fn an_unknown_kind_is_refused_with_the_known_ones() {
+    let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["schema", "derive"])
+        .output()
+        .expect("the program starts");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    assert!(Kind::ALL.iter().all(|kind| message.contains(kind.name())), "{message}");
+}
+
+#[test]
+fn hostile_documents_are_refused() {
+    let duffing = document(&["derive", "duffing"]);
+    let changes: [(&str, Value); 7] = [
+        ("/schema", json!("lindstedt/impact/1")),
+        ("/method", json!("magic")),
+        ("/displacement/harmonics/0/harmonic", json!(u64::MAX)),
+        ("/displacement/harmonics/0/harmonic", json!(100_001)),
+        ("/frequency/terms/1/monomial/A", json!(i32::MAX)),
+        ("/frequency/terms/1/monomial/A", json!(1e300)),
+        ("/frequency/terms/1/exact", json!("1/0")),
+    ];
+    for (place, value) in changes {
+        let mut changed = duffing.clone();
+        *changed.pointer_mut(place).expect("a place") = value.clone();
+        let refusal = json::read_solution(&changed).expect_err(place).to_string();
+        assert!(!refusal.is_empty(), "{place} = {value}");
+    }
+    let many = (0..1001).map(|k| (format!("p{k}"), json!(1))).collect();
+    let mut changed = duffing.clone();
+    changed["frequency"]["terms"][1]["monomial"] = Value::Object(many);
+    assert!(json::read_solution(&changed).is_err());
+    assert!(json::read_solution(&duffing).is_ok());
+    assert!(json::read_phases(&duffing).is_err());
+}
+
+/// Numbers that the reader in Python prints for a document, a list for each line.
+fn by_reader(folder: &Path, document: &Value, times: &[f64]) -> Vec<Vec<Value>> {
+    let reader = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/read_json.py");
+    let file = folder.join("document.json");
+    std::fs::write(&file, document.to_string()).expect("the document is written");
+    let output = Command::new("python3")
+        .arg(reader)
+        .arg(&file)
+        .args(times.iter().map(f64::to_string))
+        .output()
+        .expect("Python starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("text");
+    text.lines()
+        .map(|line| serde_json::from_str(line).expect("a list"))
+        .collect()
+}
+
+/// Names and values.
+type Given = &'static [(&'static str, &'static str)];
+
+/// The equation, its values, and how many methods must have an answer there.
+const READ: [(&str, Given, usize); 7] = [
+    ("x'' + x + eps*x^3 = 0", &[("A", "3/2"), ("eps", "1/2")], 14),
+    ("x'' + sin(x) = 0", &[("A", "6/5")], 13),
+    ("x'' + x + x^2 + x^3 - 1/5 = 0", &[("A", "3/10")], 9),
+    ("x'' + x + x^2 + x^3 - 1/5 = 0", &[("A", "-3/10")], 9),
+    ("x'' + x + x*abs(x) = 0", &[("A", "-1/2")], 10),
+    ("x'' + exp(x) - 1 = 0", &[("A", "-2/5")], 7),
+    ("x'' - mu*(1 - x^2)*x' + x = 0", &[("mu", "3/10")], 1),
+];
+
+#[test]
+fn a_reader_in_python_rebuilds_frequency_and_motion() {
+    let lines = include_str!("../examples/read_json.py").lines().count();
+    assert!(lines <= 40, "{lines} lines");
+    let version = Command::new("python3").arg("--version").output();
+    if !version.is_ok_and(|output| output.status.success()) {
+        eprintln!("python3 is not here: the reader was not run");
+        return;
+    }
+    let folder = std::env::temp_dir().join(format!("lindstedt-reader-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let near = |read: &Value, value: f64, size: f64| {
+        let read = read.as_f64().expect("a number");
+        (read - value).abs() <= 1e-11 * size
+    };
+    let times = [0.0, 0.4, 1.7, 6.1, 23.0];
+    for (equation, at, least) in READ {
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let mut values = Values::default();
+        for (name, value) in at {
+            values
+                .insert(Symbol::new(name), value.parse().expect("a value"))
+                .expect("a value");
+        }
+        let mut read = 0;
+        for method in Method::ALL {
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            let Ok(solution) = solve(&oscillator, &options) else {
+                continue;
+            };
+            let name = format!("{} on {equation} at {at:?}", method.name());
+            let verification = judge(&oscillator, &solution, &values, 0.01).expect(&name);
+            let written = serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
+            let numbers: BTreeMap<Symbol, f64> = verification
+                .at
+                .iter()
+                .map(|entry| entry.0)
+                .filter_map(|symbol| Some((symbol, values.get(symbol)?)))
+                .collect();
+            let own = evaluate(&oscillator, &solution, &numbers).expect(&name);
+            let (omega, motion) = (own.frequency_squared.sqrt(), own.motion.expect(&name));
+            let [line] = &by_reader(&folder, &written, &times)[..] else {
+                panic!("{name}: one line");
+            };
+            assert!(near(&line[0], omega, omega), "{name}: omega {} and {omega}", line[0]);
+            for (t, x) in times.iter().zip(&line[1..]) {
+                let value = motion.evaluate(omega * t);
+                assert!(near(x, value, 1.0 + t), "{name}: x({t}) {x} and {value}");
+            }
+            if solution.limit_cycle.is_none() {
+                let start = solution.equilibrium.evaluate(&numbers).expect("a number") + numbers[&"A".into()];
+                let found = motion.evaluate(0.0);
+                assert!(
+                    (found - start).abs() < 1e-9,
+                    "{name}: starts at {found} instead of {start}"
+                );
+            }
+            read += 1;
+        }
+        assert!(read >= least, "{equation}: only {read} methods");
+    }
+    for file in files("examples", ".toml").into_iter().filter(|file| is_impact(file)) {
+        let written = document(&["impact", &file.to_string_lossy()]);
+        let impact: ImpactDocument = serde_json::from_value(written.clone()).expect("an impact");
+        let phases = || impact.phases.iter().chain(&impact.energy_phases);
+        let middles: Vec<f64> = phases()
+            .flat_map(|phase| [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start)))
+            .collect();
+        let lines = by_reader(&folder, &written, &middles);
+        assert_eq!(lines.len(), 6, "{}", file.display());
+        for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
+            assert_eq!(line[0], phase.name);
+            let inside = middles.iter().filter(|t| (phase.start..=phase.end).contains(t));
+            let expected: Vec<f64> = inside.map(|t| phase.form.at(t - phase.start).0).collect();
+            assert_eq!(line.len(), 1 + expected.len());
+            assert!(expected.len() >= 3);
+            for (x, value) in line[1..].iter().zip(expected) {
+                assert!(near(x, value, 1.0), "{}: {x} and {value}", phase.name);
+            }
+        }
+    }
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}

@@ -1,11 +1,10 @@
 //! Floating-point numbers as people write them.
 
-use num_bigint::BigInt;
 use num_traits::{Pow, Signed, Zero};
 
-use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::exact::scaled::Scaled;
+use crate::exact::{Integer, Rational};
 
 /// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
 pub fn decimal(value: f64) -> String {
@@ -44,7 +43,7 @@ pub fn rounded_to(value: f64, digits: usize) -> Rational {
     let decimals = digits.saturating_sub(1);
     let text = format!("{value:.decimals$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let digits: BigInt = mantissa.replace('.', "").parse().unwrap_or_default();
+    let digits: Integer = mantissa.replace('.', "").parse().unwrap_or_default();
     let power = exponent.parse::<i32>().unwrap_or(0) - decimals as i32;
     let ten = Rational::from_integer(10.into());
     let scale = num_traits::pow(ten, power.unsigned_abs() as usize);
@@ -75,9 +74,9 @@ pub fn significant_fraction(value: &Rational, digits: usize) -> String {
 }
 
 /// A whole number of so many digits, and the power of ten that makes it the fraction, rounded.
-fn scientific(value: &Rational, digits: usize) -> (BigInt, i32) {
+fn scientific(value: &Rational, digits: usize) -> (Integer, i32) {
     if value.is_zero() {
-        return (BigInt::zero(), 0);
+        return (Integer::zero(), 0);
     }
     // The logarithm may be off by one: a digit too many or too few is seen and mended.
     let logarithm = Scaled::of_fraction(value).logarithm() / std::f64::consts::LN_10;

@@ -1,6 +1,6 @@
 //! Names of parameters, coordinates and derivatives.
 //!
-//! Every name is stored once for the life of the program, so a [`Symbol`] is one pointer wide, copies freely and
+//! Every name is stored once for the life of the program, so a [`Symbol`] is a pointer and a length, copies freely and
 //! compares by its text: the normal form of an expression, and with it every printed formula, is the same on every run.
 
 use std::collections::HashSet;

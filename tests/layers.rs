@@ -260,6 +260,20 @@ fn one_order_is_told_everywhere() {
     assert_eq!(drawn, layers);
 }
 
+/// The crate of the integers of any length is named where numbers live: elsewhere they are `exact::Integer`.
+#[test]
+fn long_integers_come_from_one_place() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let named = |file: &PathBuf| {
+        let text = std::fs::read_to_string(file).expect("a source file");
+        ["num_bigint", "num_rational"].iter().any(|name| text.contains(name))
+    };
+    let files = source_files(&folder).into_iter().filter(named);
+    let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| file.starts_with(folder.join("exact")));
+    assert!(!inside.is_empty());
+    assert_eq!(outside, Vec::<PathBuf>::new());
+}
+
 #[test]
 fn an_upward_use_is_seen() {
     let handed_on = handed_on("pub use oscillator::Oscillator;\npub mod ode;\npub use symbol::Symbol;\n");

@@ -8,13 +8,12 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use num_bigint::BigInt;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive};
 
 use super::function::Value;
 use super::{Expr, Function, Node};
-use crate::exact::rational::{Rational, to_f64};
+use crate::exact::rational::{Integer, Rational, to_f64};
 use crate::symbol::Symbol;
 
 /// Why an expression has no number.
@@ -319,7 +318,7 @@ impl Compiler<'_> {
 
     /// A sum over `2^bits`.
     fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> Slot {
-        let unit = Rational::new(BigInt::one(), BigInt::one() << bits);
+        let unit = Rational::new(Integer::one(), Integer::one() << bits);
         let mut total: Option<Slot> = None;
         for term in sum.terms() {
             let (coefficient, factors) = term.factors();
@@ -467,7 +466,7 @@ fn shift(base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
     let root_bits = longest.div_ceil(u64::from(denominator));
     Some(Shift {
         bits: root_bits * u64::from(denominator),
-        made_up: Rational::from_integer(BigInt::one() << root_bits).pow(numerator),
+        made_up: Rational::from_integer(Integer::one() << root_bits).pow(numerator),
     })
 }
 

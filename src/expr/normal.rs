@@ -3,12 +3,11 @@
 //! In come expressions that are each in normal form, out goes one; the rules are those listed in [`super`]. Each looks
 //! at the nodes it joins and never further down, so building costs what is joined and not what lies below.
 
-use num_bigint::BigInt;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use super::{Expr, ExprError, LARGEST_EXPONENT, Node, number, order, print};
-use crate::exact::rational::{self, Rational};
+use crate::exact::rational::{self, Integer, Rational};
 
 /// Flat, like terms merged, zeros gone, sorted.
 pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
@@ -203,8 +202,8 @@ fn rescaled(term: &Expr, by: &Rational) -> Expr {
 
 /// The greatest number whose removal leaves whole coefficients without common divisor, with the sign of the first.
 fn content(terms: &[Expr]) -> Rational {
-    let mut divisor = BigInt::zero();
-    let mut multiple = BigInt::one();
+    let mut divisor = Integer::zero();
+    let mut multiple = Integer::one();
     let mut negative = false;
     for (index, term) in terms.iter().enumerate() {
         let one = Rational::one();
@@ -272,7 +271,7 @@ pub(super) fn power(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
 
 /// Does a power with a rational exponent beyond the limit stand here, alone or as a factor?
 pub(super) fn has_large_exponent(expr: &Expr) -> bool {
-    let limit = BigInt::from(LARGEST_EXPONENT);
+    let limit = Integer::from(LARGEST_EXPONENT);
     expr.factors().1.iter().any(|factor| match factor.node() {
         Node::Power(_, exponent) => exponent
             .as_number()
@@ -324,7 +323,7 @@ fn number_power(base: &Rational, exponent: &Rational) -> Result<Expr, ExprError>
     if let Some(value) = rational::power(base, exponent) {
         return Ok(Expr::number(value));
     }
-    let within = |integer: &BigInt| {
+    let within = |integer: &Integer| {
         integer
             .magnitude()
             .to_u32()
@@ -355,7 +354,7 @@ fn number_power(base: &Rational, exponent: &Rational) -> Result<Expr, ExprError>
 }
 
 /// `base^exponent` of a whole number above zero as a number times a root `m^f`, `m` whole and 0 < f < 1.
-fn integer_root(base: BigInt, exponent: Rational) -> Option<(Rational, Option<Expr>)> {
+fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<Expr>)> {
     /// In bits; the roots of longer numbers stay as they are, because looking for divisors takes too long.
     const LONGEST: u64 = 4_096;
     let short = base.bits() <= LONGEST;
@@ -378,10 +377,10 @@ fn integer_root(base: BigInt, exponent: Rational) -> Option<(Rational, Option<Ex
         .filter(|degree| short && u64::from(*degree) <= inside.bits())
     {
         for divisor in 2_u32..100 {
-            let block = BigInt::from(divisor).pow(degree);
+            let block = Integer::from(divisor).pow(degree);
             while inside.is_multiple_of(&block) {
                 inside /= &block;
-                outside *= Rational::from_integer(BigInt::from(divisor).pow(broken.numer().to_u32()?));
+                outside *= Rational::from_integer(Integer::from(divisor).pow(broken.numer().to_u32()?));
             }
         }
     }
@@ -400,7 +399,7 @@ fn integer_root(base: BigInt, exponent: Rational) -> Option<(Rational, Option<Ex
 }
 
 /// The smallest base: `4^(1/3) = 2^(2/3)`, so that equal roots look equal.
-fn as_perfect_power(base: BigInt, exponent: Rational) -> (BigInt, Rational) {
+fn as_perfect_power(base: Integer, exponent: Rational) -> (Integer, Rational) {
     let largest = base.bits().min(64);
     for degree in (2..=largest).rev() {
         let fraction = Rational::new(1.into(), degree.into());

@@ -7,10 +7,9 @@
 
 use std::cmp::Ordering;
 
-use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
-use crate::exact::rational::Rational;
+use crate::exact::rational::{Integer, Rational};
 
 /// The sum, in lowest terms.
 pub(super) fn add(a: &Rational, b: &Rational) -> Rational {
@@ -38,7 +37,7 @@ pub(super) fn multiply(a: &Rational, b: &Rational) -> Rational {
 }
 
 /// The fraction `numerator / denominator` in lowest terms, for a denominator above zero.
-pub(super) fn lowest_terms(numerator: BigInt, denominator: BigInt) -> Rational {
+pub(super) fn lowest_terms(numerator: Integer, denominator: Integer) -> Rational {
     let common = greatest_common_divisor(&numerator, &denominator);
     match common.is_one() {
         true => Rational::new_raw(numerator, denominator),
@@ -47,10 +46,10 @@ pub(super) fn lowest_terms(numerator: BigInt, denominator: BigInt) -> Rational {
 }
 
 /// The greatest common divisor, not negative; that of 0 and 0 is 0.
-pub(super) fn greatest_common_divisor(a: &BigInt, b: &BigInt) -> BigInt {
+pub(super) fn greatest_common_divisor(a: &Integer, b: &Integer) -> Integer {
     // Most numbers are whole.
     if a.is_one() || b.is_one() {
-        return BigInt::one();
+        return Integer::one();
     }
     let (mut larger, mut smaller) = (a.abs(), b.abs());
     while !smaller.is_zero() {

@@ -23,12 +23,11 @@ mod mistakes;
 use std::fmt;
 use std::ops::Range;
 
-use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
 use super::typed::{Typed, TypedTerm};
 use super::{Expr, ExprError, Function, LARGEST_EXPONENT, normal, number};
-use crate::exact::rational::Rational;
+use crate::exact::rational::{Integer, Rational};
 use crate::symbol::Symbol;
 
 pub use error::ParseError;
@@ -383,8 +382,8 @@ impl<'a> Parser<'a> {
             let message = format!("the exponent of this number is beyond {LARGEST_DECIMAL_EXPONENT}");
             return Err(self.error(token.span(), &message, ""));
         };
-        let digits = BigInt::parse_bytes(format!("0{whole}{fraction}").as_bytes(), 10).unwrap_or_else(BigInt::zero);
-        let ten_to = |power: usize| (0..power).fold(BigInt::one(), |product, _| product * 10);
+        let digits = Integer::parse_bytes(format!("0{whole}{fraction}").as_bytes(), 10).unwrap_or_else(Integer::zero);
+        let ten_to = |power: usize| (0..power).fold(Integer::one(), |product, _| product * 10);
         let (mut numerator, mut denominator) = (digits, ten_to(fraction.len()));
         if exponent.starts_with('-') {
             denominator *= ten_to(size);

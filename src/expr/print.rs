@@ -7,11 +7,10 @@
 
 use std::fmt::{self, Write};
 
-use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
 use super::{Expr, Function, Node};
-use crate::exact::rational::{Rational, ratio};
+use crate::exact::rational::{Integer, Rational, ratio};
 
 /// A term as sign, numerator and denominator, for printing.
 pub struct Fraction {
@@ -27,7 +26,7 @@ impl Expr {
     /// Sign, numerator and denominator. A sum is its own numerator, with its sign inside.
     pub fn fraction(&self) -> Fraction {
         let (coefficient, factors) = self.factors();
-        let whole = |value: &BigInt| {
+        let whole = |value: &Integer| {
             let value = value.magnitude().clone();
             (!value.is_one()).then(|| Expr::number(Rational::from_integer(value.into())))
         };

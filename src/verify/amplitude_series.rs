@@ -11,11 +11,10 @@
 //! The inversion loses more digits than a double has, so the sums run in whole numbers over a large power of two. The
 //! coefficients are then those of a force that differs from the given one by the rounding of its Taylor coefficients.
 
-use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use crate::exact::Rational;
 use crate::exact::rational::to_f64;
+use crate::exact::{Integer, Rational};
 
 /// Bits behind the point.
 const BITS: usize = 768;
@@ -25,7 +24,7 @@ const BITS: usize = 768;
 pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     let fixed = |value: f64| Some(whole(&Rational::from_float(value)?));
     // 2 V/y^2: the coefficient of y^(k-1) is 2 f_k/(k+1).
-    let potential: Vec<BigInt> = force
+    let potential: Vec<Integer> = force
         .iter()
         .enumerate()
         .skip(1)
@@ -33,14 +32,14 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
         .collect::<Option<_>>()?;
     let length = potential.len();
     let inverse_root = power(&potential, -1);
-    let mut square = vec![BigInt::zero(); length];
+    let mut square = vec![Integer::zero(); length];
     for (n, value) in potential.iter().enumerate().take(length.saturating_sub(2)) {
         square[n + 2] = value.clone();
     }
-    let mut one = vec![BigInt::zero(); length];
-    one[0] = BigInt::one() << BITS;
-    let (mut period, mut of_energy, mut of_inverse) = (vec![BigInt::zero(); length], one, inverse_root.clone());
-    let mut mean = BigInt::one() << BITS;
+    let mut one = vec![Integer::zero(); length];
+    one[0] = Integer::one() << BITS;
+    let (mut period, mut of_energy, mut of_inverse) = (vec![Integer::zero(); length], one, inverse_root.clone());
+    let mut mean = Integer::one() << BITS;
     for j in (0..length).step_by(2) {
         let weight = (&of_inverse[j] * &mean) >> BITS;
         for (sum, value) in period.iter_mut().zip(&of_energy) {
@@ -52,7 +51,7 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
         mean = mean * (j + 1) / (j + 2);
     }
     let squared = power(&period, -4);
-    let scale = BigInt::one() << BITS;
+    let scale = Integer::one() << BITS;
     Some(
         squared
             .into_iter()
@@ -61,25 +60,25 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     )
 }
 
-fn whole(value: &Rational) -> BigInt {
+fn whole(value: &Rational) -> Integer {
     (value.numer() << BITS) / value.denom()
 }
 
-fn multiply(left: &[BigInt], right: &[BigInt]) -> Vec<BigInt> {
+fn multiply(left: &[Integer], right: &[Integer]) -> Vec<Integer> {
     (0..left.len())
         .map(|n| {
             let terms = (0..=n).filter(|&k| !left[k].is_zero() && !right[n - k].is_zero());
-            terms.map(|k| &left[k] * &right[n - k]).sum::<BigInt>() >> BITS
+            terms.map(|k| &left[k] * &right[n - k]).sum::<Integer>() >> BITS
         })
         .collect()
 }
 
 /// `u^(halves/2)` of a series that begins with one: `n p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)`.
-fn power(u: &[BigInt], halves: i64) -> Vec<BigInt> {
-    let mut p = vec![BigInt::one() << BITS];
+fn power(u: &[Integer], halves: i64) -> Vec<Integer> {
+    let mut p = vec![Integer::one() << BITS];
     for n in 1..u.len() {
         let term = |k: usize| &u[k] * &p[n - k] * (halves * k as i64 + 2 * k as i64 - 2 * n as i64);
-        let sum: BigInt = (1..=n).filter(|&k| !u[k].is_zero()).map(term).sum();
+        let sum: Integer = (1..=n).filter(|&k| !u[k].is_zero()).map(term).sum();
         p.push((sum >> BITS) / (2 * n));
     }
     p

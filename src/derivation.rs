@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use crate::exact::Polynomial;
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -17,7 +17,7 @@ pub struct Step {
     /// The order `n`; at order zero there is no force, and `y_0 = cos(theta)`.
     pub order: u32,
     /// What drives `y_n` beside the secular term.
-    pub right_side: FourierSeries<Polynomial>,
+    pub right_side: FourierSeries<Polynomials>,
     /// The coefficient of the secular `cos(theta)` that the nonlinear terms leave.
     pub resonance: Polynomial,
     /// `W_n`, which the secular condition fixes.
@@ -25,7 +25,7 @@ pub struct Step {
     /// What pins down the homogeneous solution.
     pub conditions: Vec<Condition>,
     /// `y_n`.
-    pub displacement: FourierSeries<Polynomial>,
+    pub displacement: FourierSeries<Polynomials>,
     /// Limit cycles: what fixes the amplitude of `y_n`.
     pub amplitude: Option<AmplitudeCondition>,
 }
@@ -69,7 +69,7 @@ pub enum Formula {
     /// An expression.
     Expression(Expr),
     /// A motion or a force along it.
-    Waves(FourierSeries<Polynomial>),
+    Waves(FourierSeries<Polynomials>),
     /// `y'' + square*y`, derivatives in theta or, with `square` = omega^2, in time.
     Oscillator {
         /// `y`.
@@ -168,12 +168,12 @@ impl From<Symbol> for Formula {
 
 impl From<&Polynomial> for Formula {
     fn from(polynomial: &Polynomial) -> Self {
-        Self::Waves(FourierSeries::constant(polynomial.clone(), 1.into()))
+        Self::Waves(FourierSeries::constant(POLYNOMIALS, polynomial.clone()))
     }
 }
 
-impl From<FourierSeries<Polynomial>> for Formula {
-    fn from(series: FourierSeries<Polynomial>) -> Self {
+impl From<FourierSeries<Polynomials>> for Formula {
+    fn from(series: FourierSeries<Polynomials>) -> Self {
         Self::Waves(series)
     }
 }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use num_traits::Zero;
 
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Polynomial, Rational, Ring};
+use crate::exact::{Polynomial, Rational};
 use crate::expr::{Equation, Expr, ExprError, ParseError, Typed, parse_equation};
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::Definition;

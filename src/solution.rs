@@ -17,10 +17,10 @@ pub use method::{Counts, Method};
 
 use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::derivation::{Line, Step};
-use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Rational;
 use crate::exact::scaled::Scaled;
+use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::Expr;
 use crate::series::{FourierSeries, terms};
 use crate::symbol::{Symbol, fresh};
@@ -164,7 +164,7 @@ pub struct Solution {
     /// What ties the frequency to the amplitude.
     pub law: Law,
     /// The motion, equilibrium included.
-    pub displacement: FourierSeries<Polynomial>,
+    pub displacement: FourierSeries<Polynomials>,
     /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
     pub limit_cycle: Option<LimitCycle>,
     /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
@@ -296,15 +296,19 @@ impl Solution {
         if let Some(cycle) = &mut self.limit_cycle {
             cycle.amplitude = rounded(&cycle.amplitude);
         }
-        self.displacement = self.displacement.map(|coefficient, _| rounded(coefficient));
+        self.displacement = self
+            .displacement
+            .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
         for step in &mut self.steps {
             if let Some(condition) = &mut step.amplitude {
                 condition.sine = rounded(&condition.sine);
             }
             step.resonance = rounded(&step.resonance);
             step.correction = rounded(&step.correction);
-            step.right_side = step.right_side.map(|coefficient, _| rounded(coefficient));
-            step.displacement = step.displacement.map(|coefficient, _| rounded(coefficient));
+            step.right_side = step.right_side.map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
+            step.displacement = step
+                .displacement
+                .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
         }
         self.numerical = true;
         self.validity
@@ -481,7 +485,7 @@ impl Solution {
     ///
     /// # Errors
     /// The first symbol without a value.
-    pub fn motion(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<FourierSeries<f64>, Symbol> {
+    pub fn motion(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<FourierSeries<Doubles>, Symbol> {
         let harmonics = self.displacement.harmonics();
         let length = harmonics.last().map_or(0, |last| last.0 + 1);
         let (mut cosine, mut sine) = (vec![0.0; length], vec![0.0; length]);
@@ -504,7 +508,7 @@ impl Solution {
             cosine[k] = self.evaluate(&cosines, &value_of)?;
             sine[k] = self.evaluate(&sines, &value_of)?;
         }
-        Ok(FourierSeries::from_parts(cosine, sine, 1.into()))
+        Ok(FourierSeries::from_parts(Doubles, cosine, sine))
     }
 
     /// Whether any polynomial of the solution contains the amplitude symbol: not so for linear equations and limit cycles.

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use lindstedt::Values;
 use lindstedt::exact::rational::{factorial, ratio};
-use lindstedt::exact::{Polynomial, Rational, Ring};
+use lindstedt::exact::{Integer, POLYNOMIALS, Polynomial, Polynomials, Rational};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::oscillator::OscillatorError;
@@ -342,9 +342,9 @@ fn rayleighs_velocity_is_van_der_pols_motion() {
     let order = 7;
     let van_der_pol = derive("x'' + x = mu*(1 - x^2)*x'", order, None).displacement;
     let rayleigh = derive("x'' + x = mu*(1 - x'^2/3)*x'", order, None);
-    let frequency = FourierSeries::constant(law(&rayleigh).clone(), 1.into());
+    let frequency = FourierSeries::constant(POLYNOMIALS, law(&rayleigh).clone());
     let velocity = rayleigh.displacement.derivative().product(&frequency);
-    let truncated = |series: FourierSeries<Polynomial>| series.mean().0.truncated("mu".into(), order as i32);
+    let truncated = |series: FourierSeries<Polynomials>| series.mean().0.truncated("mu".into(), order as i32);
     for k in 0..=van_der_pol.highest_harmonic() {
         // cos k(theta + pi/2) and sin k(theta + pi/2) in terms of those of k theta.
         let (cosine_sign, sine_sign, swapped) = [(1, 1, false), (1, -1, true), (-1, -1, false), (-1, 1, true)][k % 4];
@@ -368,7 +368,7 @@ fn rayleighs_velocity_is_van_der_pols_motion() {
 /// `c_n^2` of `K(m) = (pi/2) sum c_n^2 m^n`, `c_n = (2 n)! / (2^n n!)^2`.
 fn elliptic_coefficient(n: usize) -> Rational {
     let root = factorial(2 * n as u32);
-    let half = num_bigint::BigInt::from(2).pow(n as u32) * factorial(n as u32);
+    let half = Integer::from(2).pow(n as u32) * factorial(n as u32);
     let coefficient = Rational::new(root, half.pow(2_u32));
     &coefficient * &coefficient
 }
@@ -433,7 +433,7 @@ fn periods_by_elliptic_integrals_to_any_order() {
     let binomial = |k: usize| {
         let (top, bottom) = (
             factorial(2 * k as u32),
-            num_bigint::BigInt::from(2).pow(k as u32) * factorial(k as u32),
+            Integer::from(2).pow(k as u32) * factorial(k as u32),
         );
         Rational::new(top * sign(k), bottom.pow(2_u32))
     };

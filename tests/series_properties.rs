@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use lindstedt::Symbol;
 use lindstedt::exact::polynomial::Monomial;
 use lindstedt::exact::rational::{ratio, to_f64};
-use lindstedt::exact::{Integer, Polynomial, Rational, Ring};
+use lindstedt::exact::{Doubles, Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
 use lindstedt::expr::{Expr, Function, Node, parse_expression};
 use lindstedt::series::FourierSeries;
 use lindstedt::series::convolution::Convolutions;
@@ -20,16 +20,16 @@ fn parts() -> impl Strategy<Value = (Vec<i64>, Vec<i64>, i64)> {
     (numerators(), numerators(), 1_i64..=12)
 }
 
-fn whole((cosine, sine, denominator): &(Vec<i64>, Vec<i64>, i64)) -> FourierSeries<Integer> {
+fn whole((cosine, sine, denominator): &(Vec<i64>, Vec<i64>, i64)) -> FourierSeries<Integers> {
     let integers = |list: &[i64]| list.iter().map(|&value| Integer::from(value)).collect();
-    FourierSeries::from_parts(integers(cosine), integers(sine), (*denominator).into())
+    FourierSeries::from_parts(Integers, integers(cosine), integers(sine)).divided_by(*denominator)
 }
 
-fn fractions(series: &FourierSeries<Integer>) -> FourierSeries<Rational> {
-    series.map(fraction)
+fn fractions(series: &FourierSeries<Integers>) -> FourierSeries<Rationals> {
+    series.map(Rationals, fraction)
 }
 
-fn series() -> impl Strategy<Value = FourierSeries<Integer>> {
+fn series() -> impl Strategy<Value = FourierSeries<Integers>> {
     parts().prop_map(|parts| whole(&parts))
 }
 
@@ -43,7 +43,7 @@ fn polynomial() -> impl Strategy<Value = Polynomial> {
 }
 
 /// Series with whole polynomials in `A` and `k` over one denominator.
-fn symbolic_series() -> impl Strategy<Value = FourierSeries<Polynomial<Integer>>> {
+fn symbolic_series() -> impl Strategy<Value = FourierSeries<Polynomials<Integers>>> {
     let numerator = || {
         prop::collection::vec((-9_i64..=9, 0_i32..=2, -1_i32..=2), 0..3).prop_map(|terms| {
             let term = |(c, a, k): (i64, i32, i32)| {
@@ -58,7 +58,9 @@ fn symbolic_series() -> impl Strategy<Value = FourierSeries<Polynomial<Integer>>
     };
     let numerators = move || prop::collection::vec(numerator(), 0..4);
     let parts = (numerators(), numerators(), 1_i64..=12);
-    parts.prop_map(|(cosine, sine, denominator)| FourierSeries::from_parts(cosine, sine, denominator.into()))
+    parts.prop_map(|(cosine, sine, denominator)| {
+        FourierSeries::from_parts(Polynomials(Integers), cosine, sine).divided_by(denominator)
+    })
 }
 
 proptest! {
@@ -125,17 +127,17 @@ proptest! {
         prop_assert_eq!(a.product(&b.sum(&c)), a.product(&b).sum(&a.product(&c)));
         prop_assert_eq!(a.sum(&b).difference(&b), a.clone());
         prop_assert_eq!(a.sum(&b.sum(&c)), a.sum(&b).sum(&c));
-        prop_assert_eq!(a.product(&FourierSeries::zero()), FourierSeries::zero());
+        prop_assert_eq!(a.product(&FourierSeries::zero(Rationals)), FourierSeries::zero(Rationals));
         prop_assert_eq!(a.times(-6).divided_by(-3), a.times(2));
-        let power = (0..n).fold(FourierSeries::integer(1), |power, _| power.product(&a));
+        let power = (0..n).fold(FourierSeries::integer(Rationals, 1), |power, _| power.product(&a));
         prop_assert_eq!(a.power(n), power);
     }
 
     #[test]
     fn symbols_over_one_denominator_or_over_fractions(a in symbolic_series(), b in symbolic_series()) {
         // Polynomials with whole coefficients and one denominator, or with fractions.
-        let fractions = |series: &FourierSeries<Polynomial<Integer>>| -> FourierSeries<Polynomial> {
-            series.map(|numerator, denominator| numerator.map(|coefficient| fraction(coefficient, denominator)))
+        let fractions = |series: &FourierSeries<Polynomials<Integers>>| -> FourierSeries<Polynomials> {
+            series.map(POLYNOMIALS, |numerator, denominator| numerator.map(|coefficient| fraction(coefficient, denominator)))
         };
         prop_assert_eq!(fractions(&a.product(&b)), fractions(&a).product(&fractions(&b)));
         prop_assert_eq!(fractions(&a.sum(&b)), fractions(&a).sum(&fractions(&b)));
@@ -150,7 +152,7 @@ proptest! {
 
     #[test]
     fn division_undoes_multiplication(a in series(), p in -9_i64..=9, q in 1_i64..=9) {
-        let divisor = FourierSeries::constant(Integer::from(p), q.into());
+        let divisor = FourierSeries::integer(Integers, p).divided_by(q);
         match a.divided_by_constant(&divisor) {
             Some(quotient) => prop_assert_eq!(quotient.product(&divisor), a),
             None => prop_assert_eq!(p, 0),
@@ -162,7 +164,7 @@ proptest! {
         u in prop::collection::vec(series(), 4), v in prop::collection::vec(series(), 4), exponent in 1_u32..=5
     ) {
         // Order by order, against the product of the whole polynomials in the small parameter.
-        let mut convolutions = Convolutions::new();
+        let mut convolutions = Convolutions::new(Integers);
         let (left, right) = (convolutions.leaf(), convolutions.leaf());
         let power = convolutions.power(left, exponent);
         let node = convolutions.product(power, right);
@@ -172,8 +174,8 @@ proptest! {
             convolutions.push(right, v[order].clone());
             convolutions.advance(order);
         }
-        let cauchy = |a: &[FourierSeries<Integer>], b: &[FourierSeries<Integer>]| -> Vec<FourierSeries<Integer>> {
-            let entry = |n: usize| (0..=n).fold(FourierSeries::zero(), |sum, i| sum.sum(&a[i].product(&b[n - i])));
+        let cauchy = |a: &[FourierSeries<Integers>], b: &[FourierSeries<Integers>]| -> Vec<FourierSeries<Integers>> {
+            let entry = |n: usize| (0..=n).fold(FourierSeries::zero(Integers), |sum, i| sum.sum(&a[i].product(&b[n - i])));
             (0..4).map(entry).collect()
         };
         let expected = cauchy(&(1..exponent).fold(u.clone(), |product, _| cauchy(&product, &u)), &v);
@@ -187,8 +189,8 @@ proptest! {
         prop_assert_eq!(a.product(&b), b.product(&a));
         prop_assert_eq!(a.product(&b).product(&c), a.product(&b.product(&c)));
         prop_assert_eq!(a.product(&b.sum(&c)), a.product(&b).sum(&a.product(&c)));
-        prop_assert_eq!(a.difference(&a), FourierSeries::zero());
-        prop_assert_eq!(a.product(&FourierSeries::integer(1)), a);
+        prop_assert_eq!(a.difference(&a), FourierSeries::zero(Integers));
+        prop_assert_eq!(a.product(&FourierSeries::integer(Integers, 1)), a);
     }
 
     #[test]
@@ -208,7 +210,7 @@ proptest! {
     fn the_oscillator_is_solved_but_for_its_resonance(right_side in series()) {
         let (solution, resonance) = right_side.solve_oscillator();
         let left = solution.derivative().derivative().sum(&solution);
-        let [cosine, sine] = [FourierSeries::cos(1), FourierSeries::sin(1)];
+        let [cosine, sine] = [FourierSeries::cos(Integers, 1), FourierSeries::sin(Integers, 1)];
         let resonant = resonance.cosine.product(&cosine).sum(&resonance.sine.product(&sine));
         prop_assert_eq!(left.sum(&resonant), right_side);
         prop_assert!(solution.cosine(1).is_zero() && solution.sine(1).is_zero());
@@ -216,7 +218,7 @@ proptest! {
 
     #[test]
     fn values_add_and_differentiate(a in parts(), b in parts(), theta in -4.0_f64..4.0) {
-        let float = |series: &FourierSeries<Integer>| series.map(|n, d| to_f64(&fraction(n, d)));
+        let float = |series: &FourierSeries<Integers>| series.map(Doubles, |n, d| to_f64(&fraction(n, d)));
         let by_hand = |(cosine, sine, denominator): &(Vec<i64>, Vec<i64>, i64)| {
             let cosines = cosine.iter().enumerate().map(|(k, c)| *c as f64 * (k as f64 * theta).cos());
             let sines = sine.iter().enumerate().map(|(k, s)| *s as f64 * (k as f64 * theta).sin());
@@ -236,7 +238,7 @@ proptest! {
 
     #[test]
     fn values_multiply(a in parts(), b in parts(), theta in -4.0_f64..4.0) {
-        let float = |series: &FourierSeries<Integer>| series.map(|n, d| to_f64(&fraction(n, d)));
+        let float = |series: &FourierSeries<Integers>| series.map(Doubles, |n, d| to_f64(&fraction(n, d)));
         let (a, b) = (whole(&a), whole(&b));
         let product = float(&a.product(&b)).evaluate(theta);
         let factors = float(&a).evaluate(theta) * float(&b).evaluate(theta);

@@ -3,14 +3,15 @@
 //! A frequency law such as `omega0 + 3*eps*A^2/(8*omega0)` is one of these: terms in a fixed order, no zero among them, so
 //! that equal polynomials are equal values. Products cost (number of terms)^2 coefficient products.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::collections::btree_map::{BTreeMap, Entry};
 use std::ops::Add;
 
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
 use super::rational::{Integer, Rational, to_f64};
-use super::ring::{Ring, common_content};
+use super::ring::{Indivisible, Number, Rationals, Ring};
 use super::scaled::Scaled;
 use crate::symbol::Symbol;
 
@@ -102,75 +103,65 @@ impl Monomial {
 }
 
 impl Ord for Monomial {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+    fn cmp(&self, other: &Self) -> Ordering {
         // A higher power of an earlier symbol comes first among equal degrees.
         self.degree().cmp(&other.degree()).then_with(|| {
-            let names: BTreeSet<Symbol> = self.0.iter().chain(&other.0).map(|factor| factor.0).collect();
-            names
-                .into_iter()
-                .map(|name| other.exponent(name).cmp(&self.exponent(name)))
-                .find(|o| o.is_ne())
-                .unwrap_or(std::cmp::Ordering::Equal)
+            let (mut left, mut right) = (self.0.iter().peekable(), other.0.iter().peekable());
+            loop {
+                let order = match (left.peek(), right.peek()) {
+                    (None, None) => return Ordering::Equal,
+                    (Some((_, m)), None) => 0.cmp(m),
+                    (None, Some((_, n))) => n.cmp(&0),
+                    (Some((a, m)), Some((b, n))) => match a.cmp(b) {
+                        Ordering::Equal => n.cmp(m),
+                        Ordering::Less => 0.cmp(m),
+                        Ordering::Greater => n.cmp(&0),
+                    },
+                };
+                if order.is_ne() {
+                    return order;
+                }
+                // Equal powers of the same symbol: no exponent is zero.
+                left.next();
+                right.next();
+            }
         })
     }
 }
 
 impl PartialOrd for Monomial {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-/// A sum of monomials with coefficients in `K`; [`Rational`] unless said otherwise.
+/// A sum of monomials with coefficients `K`; [`Rational`] unless said otherwise.
+///
+/// The arithmetic is that of the ring [`Polynomials`]. Where the coefficients are [`Number`]s, whose ring needs no naming, it
+/// stands here as well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial<K = Rational> {
     terms: BTreeMap<Monomial, K>,
 }
 
-impl<K: Ring> Polynomial<K> {
-    /// `coefficient * monomial`.
-    pub fn term(monomial: Monomial, coefficient: K) -> Self {
-        let mut result = Self::zero();
-        result.add_term(monomial, coefficient);
-        result
-    }
+/// The ring of polynomials with coefficients in another ring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Polynomials<R = Rationals>(
+    /// The ring of the coefficients.
+    pub R,
+);
 
-    /// A number.
-    pub fn constant(value: K) -> Self {
-        Self::term(Monomial::one(), value)
-    }
+/// The ring of [`Polynomial`]s with fractions as coefficients: that of the formulas in an answer.
+pub const POLYNOMIALS: Polynomials = Polynomials(Rationals);
 
-    /// The polynomial that is this symbol.
-    pub fn symbol(symbol: Symbol) -> Self {
-        Self::term(Monomial::power_of(symbol, 1), K::from_integer(&Integer::one()))
-    }
+impl<K: Number> Number for Polynomial<K> {
+    type Ring = Polynomials<K::Ring>;
+}
 
+impl<K> Polynomial<K> {
     /// The terms, lowest total degree first.
     pub fn terms(&self) -> impl DoubleEndedIterator<Item = (&Monomial, &K)> + ExactSizeIterator {
         self.terms.iter()
-    }
-
-    /// The coefficient of `monomial`, zero when it does not occur.
-    pub fn coefficient(&self, monomial: &Monomial) -> K {
-        self.terms.get(monomial).cloned().unwrap_or_else(K::zero)
-    }
-
-    /// `self += coefficient * monomial`.
-    pub fn add_term(&mut self, monomial: Monomial, coefficient: K) {
-        if coefficient.is_zero() {
-            return;
-        }
-        match self.terms.entry(monomial) {
-            Entry::Vacant(place) => {
-                place.insert(coefficient);
-            }
-            Entry::Occupied(mut place) => {
-                place.get_mut().accumulate(&coefficient);
-                if place.get().is_zero() {
-                    place.remove();
-                }
-            }
-        }
     }
 
     /// The only term, where there is exactly one.
@@ -192,7 +183,9 @@ impl<K: Ring> Polynomial<K> {
         let exponents = || self.terms.keys().map(|monomial| monomial.exponent(symbol));
         Some((exponents().min()?, exponents().max()?))
     }
+}
 
+impl<K: Clone> Polynomial<K> {
     /// The terms whose exponent of `symbol` is at most `highest`: a series cut off at its order.
     pub fn truncated(&self, symbol: Symbol, highest: i32) -> Self {
         let keep = |monomial: &Monomial| monomial.exponent(symbol) <= highest;
@@ -216,9 +209,62 @@ impl<K: Ring> Polynomial<K> {
                 .collect(),
         }
     }
+}
+
+impl<K: Number> Polynomial<K> {
+    /// `coefficient * monomial`.
+    pub fn term(monomial: Monomial, coefficient: K) -> Self {
+        ring_of::<K>().term(monomial, coefficient)
+    }
+
+    /// A number.
+    pub fn constant(value: K) -> Self {
+        Self::term(Monomial::one(), value)
+    }
+
+    /// The polynomial that is this symbol.
+    pub fn symbol(symbol: Symbol) -> Self {
+        Self::term(Monomial::power_of(symbol, 1), K::Ring::default().integer(1))
+    }
+
+    /// The coefficient of `monomial`, zero when it does not occur.
+    pub fn coefficient(&self, monomial: &Monomial) -> K {
+        let coefficient = self.terms.get(monomial).cloned();
+        coefficient.unwrap_or_else(|| K::Ring::default().zero())
+    }
+
+    /// `self += coefficient * monomial`.
+    pub fn add_term(&mut self, monomial: Monomial, coefficient: K) {
+        ring_of::<K>().add_term(self, monomial, coefficient);
+    }
+
+    /// `self += other`, in place.
+    pub fn accumulate(&mut self, other: &Self) {
+        ring_of::<K>().accumulate(self, other);
+    }
+
+    /// `-self`, in place.
+    pub fn negate(&mut self) {
+        ring_of::<K>().negate(self);
+    }
+
+    /// `self * other`.
+    pub fn product(&self, other: &Self) -> Self {
+        ring_of::<K>().product(self, other)
+    }
+
+    /// `unit` and `integer` with `self * unit = integer`, where this is a single term that has them: see [`Ring::inverse`].
+    pub fn inverse(&self) -> Option<(Self, Integer)> {
+        ring_of::<K>().inverse(self)
+    }
+
+    /// The `exponent`-th power; negative powers only of a single term whose coefficient is a unit.
+    pub fn power(&self, exponent: i32) -> Option<Self> {
+        ring_of::<K>().power(self, exponent)
+    }
 
     /// The same polynomial over other coefficients.
-    pub fn map<L: Ring>(&self, mut change: impl FnMut(&K) -> L) -> Polynomial<L> {
+    pub fn map<L: Number>(&self, mut change: impl FnMut(&K) -> L) -> Polynomial<L> {
         let mut result = Polynomial::zero();
         for (monomial, coefficient) in &self.terms {
             result.add_term(monomial.clone(), change(coefficient));
@@ -243,31 +289,55 @@ impl<K: Ring> Polynomial<K> {
         }
         Some(result)
     }
+}
+
+fn ring_of<K: Number>() -> Polynomials<K::Ring> {
+    Polynomials::default()
+}
+
+impl<R: Ring> Polynomials<R> {
+    /// `coefficient * monomial`.
+    pub fn term(&self, monomial: Monomial, coefficient: R::Element) -> Polynomial<R::Element> {
+        let mut result = self.zero();
+        self.add_term(&mut result, monomial, coefficient);
+        result
+    }
+
+    /// `polynomial += coefficient * monomial`.
+    pub fn add_term(&self, polynomial: &mut Polynomial<R::Element>, monomial: Monomial, coefficient: R::Element) {
+        if self.0.is_certainly_zero(&coefficient) {
+            return;
+        }
+        match polynomial.terms.entry(monomial) {
+            Entry::Vacant(place) => {
+                place.insert(coefficient);
+            }
+            Entry::Occupied(mut place) => {
+                self.0.add(place.get_mut(), coefficient);
+                if self.0.is_certainly_zero(place.get()) {
+                    place.remove();
+                }
+            }
+        }
+    }
 
     /// The `exponent`-th power; negative powers only of a single term whose coefficient is a unit.
-    pub fn power(&self, exponent: i32) -> Option<Self> {
-        let base = if exponent < 0 {
-            let (unit, integer) = self.inverse()?;
-            let mut inverse = unit;
-            if K::FIELD {
-                inverse.divide(&integer);
-            } else if !integer.is_one() {
-                return None;
-            }
-            inverse
-        } else {
-            self.clone()
-        };
-        let mut result = Self::constant(K::from_integer(&Integer::one()));
-        let mut square = base;
+    pub fn power(&self, base: &Polynomial<R::Element>, exponent: i32) -> Option<Polynomial<R::Element>> {
+        let mut square = base.clone();
+        if exponent < 0 {
+            let (unit, integer) = self.inverse(base)?;
+            square = unit;
+            self.divide([&mut square], &integer).ok()?;
+        }
+        let mut result = self.integer(1);
         let mut rest = exponent.unsigned_abs();
         while rest > 0 {
             if rest & 1 == 1 {
-                result = result.product(&square);
+                result = self.product(&result, &square);
             }
             rest >>= 1;
             if rest > 0 {
-                square = square.product(&square);
+                square = self.product(&square, &square);
             }
         }
         Some(result)
@@ -343,7 +413,7 @@ impl Polynomial<Rational> {
     }
 }
 
-impl<K: Ring> Add for Polynomial<K> {
+impl<K: Number> Add for Polynomial<K> {
     type Output = Self;
 
     fn add(mut self, other: Self) -> Self {
@@ -353,7 +423,7 @@ impl<K: Ring> Add for Polynomial<K> {
 }
 
 /// Zero is the polynomial without terms.
-impl<K: Ring> Zero for Polynomial<K> {
+impl<K: Number> Zero for Polynomial<K> {
     fn zero() -> Self {
         Self { terms: BTreeMap::new() }
     }
@@ -363,50 +433,103 @@ impl<K: Ring> Zero for Polynomial<K> {
     }
 }
 
-impl<K: Ring> Ring for Polynomial<K> {
-    const FIELD: bool = K::FIELD;
+impl<R: Ring> Ring for Polynomials<R> {
+    type Element = Polynomial<R::Element>;
 
-    fn from_integer(value: &Integer) -> Self {
-        Self::constant(K::from_integer(value))
+    const FIELD: bool = R::FIELD;
+
+    fn zero(&self) -> Self::Element {
+        Polynomial { terms: BTreeMap::new() }
     }
-    fn accumulate(&mut self, other: &Self) {
-        for (monomial, coefficient) in &other.terms {
-            self.add_term(monomial.clone(), coefficient.clone());
+    fn integer(&self, value: i64) -> Self::Element {
+        self.term(Monomial::one(), self.0.integer(value))
+    }
+    fn is_certainly_zero(&self, element: &Self::Element) -> bool {
+        element.terms.is_empty()
+    }
+    fn may_be_zero(&self, element: &Self::Element) -> bool {
+        element
+            .terms
+            .values()
+            .all(|coefficient| self.0.may_be_zero(coefficient))
+    }
+    fn accumulate(&self, sum: &mut Self::Element, term: &Self::Element) {
+        if sum.terms.is_empty() {
+            sum.terms.clone_from(&term.terms);
+            return;
+        }
+        for (monomial, coefficient) in &term.terms {
+            let Some(place) = sum.terms.get_mut(monomial) else {
+                sum.terms.insert(monomial.clone(), coefficient.clone());
+                continue;
+            };
+            self.0.accumulate(place, coefficient);
+            if self.0.is_certainly_zero(place) {
+                sum.terms.remove(monomial);
+            }
         }
     }
-    fn scale(&mut self, factor: &Integer) {
-        if factor.is_zero() {
-            self.terms.clear();
+    fn add(&self, sum: &mut Self::Element, term: Self::Element) {
+        if sum.terms.is_empty() {
+            *sum = term;
+            return;
         }
-        for coefficient in self.terms.values_mut() {
-            coefficient.scale(factor);
+        for (monomial, coefficient) in term.terms {
+            self.add_term(sum, monomial, coefficient);
         }
     }
-    fn product(&self, other: &Self) -> Self {
-        let mut result = Self::zero();
-        for (left, a) in &self.terms {
-            for (right, b) in &other.terms {
-                result.add_term(left.product(right), a.product(b));
+    fn negate(&self, element: &mut Self::Element) {
+        element
+            .terms
+            .values_mut()
+            .for_each(|coefficient| self.0.negate(coefficient));
+    }
+    fn product(&self, left: &Self::Element, right: &Self::Element) -> Self::Element {
+        let mut result = self.zero();
+        for (m, a) in &left.terms {
+            for (n, b) in &right.terms {
+                self.add_term(&mut result, m.product(n), self.0.product(a, b));
             }
         }
         result
     }
-    fn divide(&mut self, divisor: &Integer) {
-        for coefficient in self.terms.values_mut() {
-            coefficient.divide(divisor);
+    fn scale(&self, element: &mut Self::Element, factor: i64) {
+        for coefficient in element.terms.values_mut() {
+            self.0.scale(coefficient, factor);
         }
+        self.prune(element);
     }
-    fn content(&self) -> Integer {
-        if K::FIELD {
-            Integer::one()
-        } else {
-            common_content(Zero::zero(), self.terms.values())
+    fn scale_by(&self, element: &mut Self::Element, factor: &Integer) {
+        for coefficient in element.terms.values_mut() {
+            self.0.scale_by(coefficient, factor);
         }
+        self.prune(element);
     }
-    fn inverse(&self) -> Option<(Self, Integer)> {
-        let (monomial, coefficient) = self.single_term()?;
-        let (unit, integer) = coefficient.inverse()?;
-        Some((Self::term(monomial.power(-1), unit), integer))
+    fn divide<'a>(
+        &self,
+        elements: impl IntoIterator<Item = &'a mut Self::Element>,
+        divisor: &Integer,
+    ) -> Result<(), Indivisible> {
+        let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
+        self.0.divide(coefficients, divisor)
+    }
+    fn reduce<'a>(&self, elements: impl IntoIterator<Item = &'a mut Self::Element>, denominator: &mut Integer) {
+        let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
+        self.0.reduce(coefficients, denominator);
+    }
+    fn inverse(&self, element: &Self::Element) -> Option<(Self::Element, Integer)> {
+        let (monomial, coefficient) = element.single_term()?;
+        let (unit, integer) = self.0.inverse(coefficient)?;
+        Some((self.term(monomial.power(-1), unit), integer))
+    }
+}
+
+impl<R: Ring> Polynomials<R> {
+    /// What a factor made zero is left out: zero itself, or a multiple of a prime.
+    fn prune(&self, element: &mut Polynomial<R::Element>) {
+        element
+            .terms
+            .retain(|_, coefficient| !self.0.is_certainly_zero(coefficient));
     }
 }
 
@@ -436,6 +559,31 @@ mod tests {
                 "9/64 [(A, 4), (eps, 2), (omega0, -2)]"
             ]
         );
+    }
+
+    /// The order against its definition, symbol by symbol, over all small exponents of two symbols out of three.
+    #[test]
+    fn monomials_are_ordered_by_degree_and_then_by_their_first_difference() {
+        let names = ["a", "b", "c"].map(Symbol::new);
+        let mut all = vec![];
+        for exponents in (0..125).map(|code| [code / 25, code / 5 % 5, code % 5].map(|digit| digit - 2)) {
+            let powers = names.into_iter().zip(exponents);
+            let monomial = powers.fold(Monomial::one(), |product, (name, exponent)| {
+                product.product(&Monomial::power_of(name, exponent))
+            });
+            all.push((monomial, exponents));
+        }
+        for (left, m) in &all {
+            for (right, n) in &all {
+                let first = m.iter().zip(n).map(|(m, n)| n.cmp(m)).find(|order| order.is_ne());
+                let degree = m.iter().sum::<i32>().cmp(&n.iter().sum::<i32>());
+                assert_eq!(
+                    left.cmp(right),
+                    degree.then(first.unwrap_or(Ordering::Equal)),
+                    "{left:?} {right:?}"
+                );
+            }
+        }
     }
 
     #[test]

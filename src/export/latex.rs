@@ -15,7 +15,7 @@ pub use super::steps::latex as steps;
 use crate::contact::phases::{Column, Form, Phase};
 use crate::decimal::{decimal, significant, significant_fraction};
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::Impact;
 use crate::series::FourierSeries;
@@ -248,7 +248,7 @@ pub(super) const NOTATION: Notation = Notation {
     brackets: ["\\left(", "\\right)"],
 };
 
-pub(super) fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
+pub(super) fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) -> Vec<String> {
     terms::waves(series, |coefficient| law(coefficient, solution), &NOTATION)
 }
 

@@ -7,7 +7,7 @@ use num_traits::Zero;
 use super::latex::{self, symbol};
 use super::text::by_order;
 use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, NOTATION, Step};
-use crate::exact::Polynomial;
+use crate::exact::{Polynomial, Polynomials};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::series::terms;
@@ -79,7 +79,7 @@ pub fn text(solution: &Solution) -> String {
 fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     let n = step.order;
     let [y, w] = letters(solution);
-    let waves = |series: &FourierSeries<Polynomial>| {
+    let waves = |series: &FourierSeries<Polynomials>| {
         terms::sum(terms::waves(
             series,
             |coefficient| by_order(coefficient, solution),

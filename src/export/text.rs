@@ -13,7 +13,7 @@ use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant, significant_fraction};
 use crate::derivation::NOTATION;
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{Polynomial, Polynomials, Rational};
 use crate::impact::Impact;
 use crate::method::homotopy_analysis::HBAR;
 use crate::series::FourierSeries;
@@ -158,7 +158,7 @@ fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> 
     }
 }
 
-fn waves(series: &FourierSeries<Polynomial>, solution: &Solution) -> Vec<String> {
+fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) -> Vec<String> {
     terms::waves(series, |coefficient| by_order(coefficient, solution), &NOTATION)
 }
 

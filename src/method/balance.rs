@@ -22,11 +22,10 @@ use std::f64::consts::PI;
 use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
-use num_traits::One;
 
 use crate::conservative::force::Force;
 use crate::decimal::significant;
-use crate::exact::Integer;
+use crate::exact::Doubles;
 use crate::ode::quadrature::nodes_and_weights;
 use crate::ode::root::find_root;
 use crate::series::FourierSeries;
@@ -36,7 +35,7 @@ pub struct Balance {
     /// omega^2.
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
-    pub motion: FourierSeries<f64>,
+    pub motion: FourierSeries<Doubles>,
     /// Where the branch from rest ends before this amplitude: the motion is then one about several wells, followed down from
     /// large amplitudes.
     pub rest_ends_at: Option<f64>,
@@ -89,7 +88,7 @@ pub fn balance(force: &Force, degree: Option<u32>, harmonics: &[usize], amplitud
     for (&k, value) in harmonics.iter().zip(state.shape(problem.count).iter()) {
         cosine[k] = value * amplitude.abs();
     }
-    let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    let motion = FourierSeries::from_parts(Doubles, cosine, vec![]);
     let (low, high) = problem.range(&state);
     if degree.is_none()
         && let Some(place) = force.gap(low, high)

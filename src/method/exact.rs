@@ -34,7 +34,7 @@ use crate::conservative::potential::potential;
 use crate::conservative::{is_odd, linear_in, split, take_powers};
 use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
@@ -49,7 +49,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     const METHOD: Method = Method::Exact;
     let force = conservative_force(oscillator, options, METHOD)?;
     let mut solution = unsolved(oscillator, options, METHOD, 0);
-    solution.displacement = FourierSeries::zero();
+    solution.displacement = FourierSeries::zero(POLYNOMIALS);
     let law = match polynomial_coefficients(oscillator, &force)? {
         Some(coefficients) => of_polynomial(&coefficients)?,
         None => of_function(oscillator, &force)?,

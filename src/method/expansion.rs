@@ -13,7 +13,7 @@ use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, Scheme, Sec
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
-use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::exact::{Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rational, Ring};
 use crate::expr::Expr;
 use crate::oscillator::Term;
 use crate::series::FourierSeries;
@@ -26,7 +26,7 @@ pub struct ExactSeries {
     /// omega^2.
     pub frequency_squared: Polynomial,
     /// The motion.
-    pub displacement: FourierSeries<Polynomial>,
+    pub displacement: FourierSeries<Polynomials>,
     /// Each order by itself, the unperturbed one first.
     pub steps: Vec<Step>,
 }
@@ -34,7 +34,8 @@ pub struct ExactSeries {
 impl ExactSeries {
     /// Rewrites every coefficient.
     pub fn change_coefficients(&mut self, change: &dyn Fn(&Polynomial) -> Polynomial) {
-        let series = |series: &FourierSeries<Polynomial>| series.map(|coefficient, _| change(coefficient));
+        let series =
+            |series: &FourierSeries<Polynomials>| series.map(POLYNOMIALS, |coefficient, _| change(coefficient));
         self.frequency = change(&self.frequency);
         self.frequency_squared = change(&self.frequency_squared);
         self.displacement = series(&self.displacement);
@@ -88,9 +89,10 @@ pub fn expand_exactly(
     let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
     match numbers {
         Some(numbers) if inverse_slope.is_none() => {
-            let constant = |number: Rational| FourierSeries::constant(number.numer().clone(), number.denom().clone());
+            let constant =
+                |number: Rational| FourierSeries::constant(Integers, number.numer().clone()).over(number.denom());
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
-            let expansion = expand::<Integer>(&force, order as usize, scheme)?;
+            let expansion = expand(&Integers, &force, order as usize, scheme)?;
             let polynomial = |numerator: &Integer, denominator: &Integer| {
                 Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
             };
@@ -99,7 +101,7 @@ pub fn expand_exactly(
         _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
             let inverse_slope = inverse_slope.map(|inverse| over_integers(&without(inverse, &scales)));
-            let expansion = expand_from_root::<Polynomial<Integer>>(&force, order as usize, scheme, inverse_slope)?;
+            let expansion = expand_from_root(&Polynomials(Integers), &force, order as usize, scheme, inverse_slope)?;
             let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
                 numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
             };
@@ -108,7 +110,7 @@ pub fn expand_exactly(
     }
 }
 
-fn force_terms<C>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeries<C>>) -> Vec<ForceTerm<C>> {
+fn force_terms<R: Ring>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeries<R>>) -> Vec<ForceTerm<R>> {
     let pairs = terms.iter().zip(coefficients);
     let force = |(term, coefficient): (&Term, _)| ForceTerm {
         order: term.order,
@@ -120,12 +122,12 @@ fn force_terms<C>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeri
 }
 
 /// A polynomial as whole coefficients over one denominator.
-fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomial<Integer>> {
+fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomials<Integers>> {
     let common = polynomial
         .terms()
         .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
     let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
-    FourierSeries::constant(numerators, common)
+    FourierSeries::constant(Polynomials(Integers), numerators).over(&common)
 }
 
 /// Every symbol whose exponent is the same multiple of the order in all terms, with that multiple: such a symbol enters the
@@ -167,23 +169,25 @@ fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomia
 }
 
 /// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
-fn collect<C: Ring>(
-    expansion: &Expansion<C>,
+fn collect<R: Ring>(
+    expansion: &Expansion<R>,
     scheme: &Scheme,
-    polynomial: impl Fn(&C, &Integer) -> Polynomial,
+    polynomial: impl Fn(&R::Element, &Integer) -> Polynomial,
     restore: impl Fn(usize) -> Monomial,
     taken: &[Symbol],
 ) -> ExactSeries {
     let letter = fresh_stem("B", taken);
-    let exact = |series: &FourierSeries<C>, n: usize| {
+    let exact = |series: &FourierSeries<R>, n: usize| {
         let monomial = restore(n);
-        series.map(|numerator, denominator| polynomial(numerator, denominator).times_monomial(&monomial))
+        series.map(POLYNOMIALS, |numerator, denominator| {
+            polynomial(numerator, denominator).times_monomial(&monomial)
+        })
     };
-    let sum = |orders: &[FourierSeries<C>]| {
+    let sum = |orders: &[FourierSeries<R>]| {
         let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
-        exact.fold(FourierSeries::zero(), |sum, term| sum.sum(&term))
+        exact.fold(FourierSeries::zero(POLYNOMIALS), |sum, term| sum.sum(&term))
     };
-    let constant = |series: &FourierSeries<C>, n: usize| exact(series, n).mean().0;
+    let constant = |series: &FourierSeries<R>, n: usize| exact(series, n).constant_term();
     let amplitude = |n: usize| {
         let fixed = expansion.amplitudes.get(n.checked_sub(1)?)?;
         let unknown = Symbol::new(&format!("{letter}{n}"));
@@ -196,23 +200,23 @@ fn collect<C: Ring>(
         })
     };
     let step = |n: usize| {
-        let driven = |series: &[FourierSeries<C>]| {
+        let driven = |series: &[FourierSeries<R>]| {
             n.checked_sub(1)
-                .map_or_else(FourierSeries::zero, |index| exact(&series[index], n))
+                .map_or_else(|| FourierSeries::zero(POLYNOMIALS), |index| exact(&series[index], n))
         };
         Step {
             order: n as u32,
             right_side: driven(&expansion.right_side),
-            resonance: driven(&expansion.removed).mean().0,
-            correction: driven(&expansion.frequency_squared[1..]).mean().0,
+            resonance: driven(&expansion.removed).constant_term(),
+            correction: driven(&expansion.frequency_squared[1..]).constant_term(),
             conditions: conditions(n, scheme),
             displacement: exact(&expansion.displacement[n], n),
             amplitude: amplitude(n),
         }
     };
     ExactSeries {
-        frequency: sum(&expansion.frequency).mean().0,
-        frequency_squared: sum(&expansion.frequency_squared).mean().0,
+        frequency: sum(&expansion.frequency).constant_term(),
+        frequency_squared: sum(&expansion.frequency_squared).constant_term(),
         displacement: sum(&expansion.displacement),
         steps: (0..expansion.displacement.len()).map(step).collect(),
     }

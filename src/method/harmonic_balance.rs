@@ -30,7 +30,7 @@ use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
@@ -79,7 +79,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     for (&k, &name) in harmonics.iter().zip(&names) {
         cosine[k] = Polynomial::symbol(name);
     }
-    solution.displacement = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
     solution.derivation = projections(oscillator, &force, &harmonics, &names, &solution.displacement)?;
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
@@ -112,7 +112,7 @@ fn projections(
     force: &Expr,
     harmonics: &[usize],
     names: &[Symbol],
-    motion: &FourierSeries<Polynomial>,
+    motion: &FourierSeries<Polynomials>,
 ) -> Result<Vec<Line>, Refusal> {
     /// Beyond so many harmonics one line stands for all.
     const MOST_LINES: usize = 8;
@@ -169,7 +169,7 @@ fn equations(
     force: &Expr,
     harmonics: &[usize],
     names: &[Symbol],
-    motion: &FourierSeries<Polynomial>,
+    motion: &FourierSeries<Polynomials>,
 ) -> Result<Option<Vec<Expr>>, Refusal> {
     let inertia = |k: usize, name: Symbol| {
         let square = Polynomial::constant(-Rational::from_integer((k * k).into()));

@@ -22,17 +22,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use num_traits::{One, Zero};
+use num_traits::One;
 
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::secular::SecularError;
 use super::{Options, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Node};
 use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
+use crate::series::convolution::{self, Convolutions};
 use crate::series::fourier::{linear_combination, sum_of_products};
 use crate::solution::{Definition, Law, Method, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
@@ -46,7 +47,7 @@ const HIGHEST: u32 = 20;
 const MOST_TERMS: usize = 20_000;
 
 /// Above this power of the force, coefficients have hundreds of digits and are counted: so many products of them are the most.
-const HIGH_POWER: usize = 30;
+const HIGH_POWER: u32 = 30;
 const MOST_PRODUCTS: usize = 1_000_000;
 
 /// The name of the convergence-control parameter, with underscores behind it where the equation uses the name.
@@ -87,11 +88,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         },
     };
     let series = expand(&force, order as usize, hbar, &mut solution)?;
-    let sum = |series: &[FourierSeries<Polynomial>]| {
+    let sum = |series: &[FourierSeries<Polynomials>]| {
         let terms: Vec<_> = series.iter().map(|term| (1, term)).collect();
-        linear_combination(&terms)
+        linear_combination(&POLYNOMIALS, &terms)
     };
-    solution.law = Law::Frequency(constant(&sum(&series.frequency)));
+    solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
     solution.validity.push(match order {
@@ -122,21 +123,29 @@ fn corrections(count: u32) -> String {
 }
 
 struct Series {
-    frequency: Vec<FourierSeries<Polynomial>>,
-    displacement: Vec<FourierSeries<Polynomial>>,
+    frequency: Vec<FourierSeries<Polynomials>>,
+    displacement: Vec<FourierSeries<Polynomials>>,
 }
 
 fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut Solution) -> Result<Series, Refusal> {
     let amplitude = Symbol::new("A");
-    let constant_series = |value: Polynomial| FourierSeries::constant(value, Integer::one());
-    let highest_power = force.terms.iter().map(|term| term.position as usize).max().unwrap_or(1);
+    let constant_series = |value: Polynomial| FourierSeries::constant(POLYNOMIALS, value);
+    let highest_power = force.terms.iter().map(|term| term.position).max().unwrap_or(1);
     let start = cosine(Polynomial::symbol(amplitude));
-    // powers[j][k]: the coefficient of q^k in u^(j+1).
-    let mut powers: Vec<Vec<FourierSeries<Polynomial>>> = vec![vec![]; highest_power];
-    let mut displacement: Vec<FourierSeries<Polynomial>> = vec![start];
-    let mut frequency: Vec<FourierSeries<Polynomial>> = Vec::new();
+    let mut products = Convolutions::new(POLYNOMIALS);
+    let motion = products.leaf();
+    let powers: Vec<convolution::Node> = force
+        .terms
+        .iter()
+        .map(|term| products.power(motion, term.position))
+        .collect();
+    powers.iter().for_each(|&power| products.require(power, order - 1));
+    let mut squares = Squares::new(order - 1);
+    let mut displacement: Vec<FourierSeries<Polynomials>> = vec![start];
+    let mut accelerations: Vec<FourierSeries<Polynomials>> = Vec::new();
+    let mut frequency: Vec<FourierSeries<Polynomials>> = Vec::new();
     let hbar = constant_series(hbar);
-    let mut inverse = FourierSeries::zero();
+    let mut inverse = FourierSeries::zero(POLYNOMIALS);
     let mut linear = force.linear.clone();
     let names = solution.names();
     let [u, w, r] = ["u", "w", "R"].map(|letter| fresh_stem(letter, &names));
@@ -144,24 +153,40 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
     let (control, mut start_name) = (convergence_control(solution), numbered(&w, 0));
     let mut lines = vec![Line::equation(numbered(&u, 0), displacement[0].clone())];
     for m in 1..=order {
-        extend_powers(&mut powers, &displacement, m - 1)?;
-        let mut right_side = powers[0][m - 1].product(&constant_series(linear.clone()));
-        for term in &force.terms {
-            let power = &powers[term.position as usize - 1][m - 1];
-            right_side = right_side.sum(&power.product(&constant_series(term.coefficient.clone())));
-        }
+        within_reach(&products, &displacement, m - 1, highest_power)?;
+        products.push(motion, displacement[m - 1].clone());
+        products.advance(m - 1);
+        accelerations.push(displacement[m - 1].derivative().derivative());
+        let linear_series = constant_series(linear.clone());
+        let mut terms = vec![(1, &linear_series, &displacement[m - 1])];
+        let coefficients = force.terms.iter().map(|term| constant_series(term.coefficient.clone()));
+        let coefficients: Vec<_> = coefficients.collect();
+        let known = powers.iter().map(|&power| products.order(power, m - 1));
+        terms.extend(
+            coefficients
+                .iter()
+                .zip(known)
+                .filter_map(|(c, power)| Some((1, c, power?))),
+        );
+        let mut right_side = sum_of_products(&POLYNOMIALS, &terms);
         if m == 1 {
             // w_0^2 A = c_1
-            let squared = constant(&right_side.cosine(1)).times_monomial(&Monomial::power_of(amplitude, -1));
+            let squared = right_side
+                .cosine(1)
+                .constant_term()
+                .times_monomial(&Monomial::power_of(amplitude, -1));
             let first = linear_frequency(&squared, solution);
             // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by term.
             linear = squared.clone();
             linear.negate();
             linear.accumulate(&force.linear);
             linear.accumulate(&first.product(&first));
-            inverse = first.inverse().map_or_else(FourierSeries::zero, |(unit, integer)| {
-                FourierSeries::constant(unit, Integer::one()).divided_by(i64::try_from(&integer).unwrap_or(1))
-            });
+            inverse = first.inverse().map_or_else(
+                || FourierSeries::zero(POLYNOMIALS),
+                |(unit, integer)| {
+                    FourierSeries::constant(POLYNOMIALS, unit).divided_by(i64::try_from(&integer).unwrap_or(1))
+                },
+            );
             let name = first.single_term().filter(|(_, number)| number.is_one());
             let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
             let name = name.filter(|name| solution.definitions.iter().any(|entry| entry.symbol == *name));
@@ -176,9 +201,10 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
                 &squared,
             ));
             right_side = right_side.sum(&inertia(first.product(&first)));
+            squares.push(0, constant_series(first.clone()));
             frequency.push(constant_series(first));
         } else {
-            right_side = right_side.sum(&inertia_without_last(&frequency, &displacement, m - 1));
+            right_side = right_side.sum(&squares.inertia_without_last(&accelerations, m - 1));
             // -2 w_0 w_(m-1) A + r = 0
             let by_amplitude = constant_series(Polynomial::term(Monomial::power_of(amplitude, -1), Rational::one()));
             let next = right_side
@@ -195,8 +221,9 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
                 numbered(&r, m),
                 &right_side.sum(&unknown),
                 name.into(),
-                &constant(&next),
+                &next.constant_term(),
             ));
+            squares.push(m - 1, next.clone());
             frequency.push(next);
         }
         if m == order {
@@ -205,7 +232,7 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
         // What is left of the first harmonic has been removed by w_(m-1).
         let (particular, _) = right_side.solve_oscillator();
         let scaled = particular.product(&hbar).product(&inverse).product(&inverse);
-        let mut next = scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(1)));
+        let mut next = scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(POLYNOMIALS, 1)));
         if m > 1 {
             next = next.sum(&displacement[m - 1]);
         }
@@ -236,8 +263,8 @@ fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut
 }
 
 /// `R_m` with the unknown frequency in it, and the condition that fixes that.
-fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomial>, unknown: Expr, value: &Polynomial) -> Vec<Line> {
-    let secular = constant(&residual.cosine(1));
+fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomials>, unknown: Expr, value: &Polynomial) -> Vec<Line> {
+    let secular = residual.cosine(1).constant_term();
     vec![
         Line::equation(name, residual.clone()),
         Line::equation(&secular, Expr::zero()).because(format!("no cos(theta) in {name}")),
@@ -245,63 +272,70 @@ fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomial>, unknown: Ex
     ]
 }
 
-/// Adds the coefficient of q^k to every power of u.
+/// An error where order `k` of the powers of `u` would take far more algebra than anyone waits for.
 ///
-/// # Errors
-/// A high power would take far more algebra than anyone waits for.
-fn extend_powers(
-    powers: &mut [Vec<FourierSeries<Polynomial>>],
-    displacement: &[FourierSeries<Polynomial>],
+/// Counted are the products of terms with which each power follows from the one before; of the powers that the force does not
+/// need the size is that of the others.
+fn within_reach(
+    products: &Convolutions<Polynomials>,
+    displacement: &[FourierSeries<Polynomials>],
     k: usize,
+    highest: u32,
 ) -> Result<(), SecularError> {
-    let size = |series: &FourierSeries<Polynomial>| {
-        let harmonics = series.harmonics();
-        harmonics.iter().map(|entry| entry.1.terms().len()).sum::<usize>()
-    };
-    if powers.len() > HIGH_POWER {
-        let products = |i: usize| {
-            size(&displacement[i])
-                * powers
-                    .iter()
-                    .map(|power| power.get(k - i).map_or(0, size))
-                    .sum::<usize>()
-        };
-        if (1..=k).map(products).sum::<usize>() > MOST_PRODUCTS {
-            let harmonics = displacement[k].highest_harmonic() + powers.len() - 1;
-            let degree = u32::try_from(powers.len()).unwrap_or(u32::MAX);
-            return Err(SecularError::TooManyHarmonics { degree, harmonics });
-        }
+    if highest <= HIGH_POWER {
+        return Ok(());
     }
-    for j in 0..powers.len() {
-        let next = match j.checked_sub(1) {
-            None => displacement[k].clone(),
-            Some(lower) => {
-                let pairs: Vec<_> = (0..=k).map(|i| (1, &displacement[i], &powers[lower][k - i])).collect();
-                sum_of_products(&pairs)
-            }
-        };
-        powers[j].push(next);
+    let size = |series: &FourierSeries<Polynomials>| series.numerators().map(|c| c.terms().len()).sum::<usize>();
+    let of_order = |i: usize| size(&displacement[i]) * products.orders(k - i).map(size).sum::<usize>();
+    let count = (1..=k).map(of_order).sum::<usize>() * highest as usize / products.count();
+    match count > MOST_PRODUCTS {
+        true => Err(SecularError::TooManyHarmonics {
+            degree: highest,
+            harmonics: displacement[k].highest_harmonic() + highest as usize - 1,
+        }),
+        false => Ok(()),
     }
-    Ok(())
 }
 
-/// The coefficient of `q^k` in `w^2 u''` without the term of the unknown `w_k`.
-fn inertia_without_last(
-    frequency: &[FourierSeries<Polynomial>],
-    displacement: &[FourierSeries<Polynomial>],
-    k: usize,
-) -> FourierSeries<Polynomial> {
-    let squared = |n: usize| {
-        let pairs: Vec<_> = (0..=n)
-            .filter_map(|i| Some((1, frequency.get(i)?, frequency.get(n - i)?)))
-            .collect();
-        sum_of_products(&pairs)
-    };
-    let mut sum = FourierSeries::zero();
-    for n in 0..=k {
-        sum = sum.sum(&squared(n).product(&displacement[k - n].derivative().derivative()));
+/// `w^2` order by order: each order but the last of `w`, which is not known yet.
+struct Squares {
+    products: Convolutions<Polynomials>,
+    frequency: convolution::Node,
+    square: convolution::Node,
+}
+
+impl Squares {
+    fn new(highest: usize) -> Self {
+        let mut products = Convolutions::new(POLYNOMIALS);
+        let frequency = products.leaf();
+        let square = products.product(frequency, frequency);
+        products.require(square, highest);
+        Self {
+            products,
+            frequency,
+            square,
+        }
     }
-    sum
+
+    /// Supplies the next `w_k`.
+    fn push(&mut self, k: usize, series: FourierSeries<Polynomials>) {
+        self.products.push(self.frequency, series);
+        self.products.advance(k);
+    }
+
+    /// The coefficient of `q^k` in `w^2 u''` without the term of the unknown `w_k`; `accelerations` are those of `u`.
+    fn inertia_without_last(
+        &self,
+        accelerations: &[FourierSeries<Polynomials>],
+        k: usize,
+    ) -> FourierSeries<Polynomials> {
+        let w = |i: usize| self.products.order(self.frequency, i);
+        let known: Vec<_> = (1..k).filter_map(|i| Some((1, w(i)?, w(k - i)?))).collect();
+        let last = sum_of_products(&POLYNOMIALS, &known);
+        let mut terms = vec![(1, &last, &accelerations[0])];
+        terms.extend((0..k).filter_map(|n| Some((1, self.products.order(self.square, n)?, &accelerations[k - n]))));
+        sum_of_products(&POLYNOMIALS, &terms)
+    }
 }
 
 /// `w_0` as a single term where its square has such a root, else as a symbol with its definition.
@@ -318,13 +352,4 @@ fn linear_frequency(squared: &Polynomial, solution: &mut Solution) -> Polynomial
     };
     solution.definitions.push(Definition { symbol, meaning });
     Polynomial::symbol(symbol)
-}
-
-fn constant(series: &FourierSeries<Polynomial>) -> Polynomial {
-    let (numerator, denominator) = series.mean();
-    let mut value = numerator;
-    if !value.is_zero() {
-        value.divide(denominator);
-    }
-    value
 }

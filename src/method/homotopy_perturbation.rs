@@ -32,7 +32,7 @@ use super::{Options, Refusal};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
-use crate::exact::{Polynomial, Rational, Ring};
+use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter, Term};
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Root, Solution};
@@ -129,9 +129,9 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         definitions: force.definitions,
         equilibrium: Expr::zero(),
         law: Law::Relation { relation, root },
-        displacement: series
-            .displacement
-            .map(|coefficient, _| coefficient.product(&Polynomial::symbol(amplitude))),
+        displacement: series.displacement.map(POLYNOMIALS, |coefficient, _| {
+            coefficient.product(&Polynomial::symbol(amplitude))
+        }),
         limit_cycle: None,
         numerical: false,
         validity,

@@ -22,7 +22,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
 use super::energy_balance::positive_amplitude;
 use super::harmonic_balance::{coefficient_names, harmonics};
@@ -35,7 +35,7 @@ use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
-use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
@@ -120,12 +120,15 @@ fn integrating_factor(growth: &Expr, coordinate: Symbol) -> Option<Expr> {
     Some(Expr::product(factors))
 }
 
+/// omega^2 and the motion.
+type AtNumbers = (f64, FourierSeries<Doubles>);
+
 /// How a method takes equations whose inertia depends on the position.
 #[derive(Clone, Copy)]
 pub struct Approach {
     solve: fn(&VariableMass, &Oscillator, &Options) -> Result<Solution, Refusal>,
-    /// omega^2 and the motion, where the law is not explicit.
-    numbers: fn(&Question) -> Option<(f64, FourierSeries<f64>)>,
+    /// The answer at numbers, where the law is not explicit.
+    numbers: fn(&Question) -> Option<AtNumbers>,
 }
 
 /// The true motion.
@@ -217,7 +220,7 @@ fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line
 
 fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let mut solution = unsolved(oscillator, options, Method::Exact, 0);
-    solution.displacement = FourierSeries::zero();
+    solution.displacement = FourierSeries::zero(POLYNOMIALS);
     let x = oscillator.coordinate;
     let (mass, force) = match (&moving.mass, moving.weighted_force()) {
         (Some(mass), Some(force)) => (mass.clone(), force),
@@ -469,7 +472,7 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
     for (&k, &name) in harmonics.iter().zip(&names) {
         cosine[k] = Polynomial::symbol(name);
     }
-    solution.displacement = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
     let typed = Line::equal([(&oscillator.residual).into(), Expr::zero().into()]);
     solution.derivation = vec![
         typed.because("balanced as it stands"),
@@ -477,14 +480,14 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
     ];
     let terms = typed_terms(oscillator)?.filter(|_| harmonics.len() <= WRITTEN_OUT);
     let balances: Option<Vec<Polynomial>> = terms.map(|terms| {
-        let omega = FourierSeries::constant(Polynomial::symbol("omega".into()), Integer::one());
+        let omega = FourierSeries::constant(POLYNOMIALS, Polynomial::symbol("omega".into()));
         let motion = &solution.displacement;
         let velocity = motion.derivative().product(&omega);
         let acceleration = velocity.derivative().product(&omega);
         let factors = [motion, &velocity, &acceleration];
-        let mut along = FourierSeries::zero();
+        let mut along = FourierSeries::zero(POLYNOMIALS);
         for (powers, coefficient) in &terms {
-            let mut product = FourierSeries::constant(coefficient.clone(), Integer::one());
+            let mut product = FourierSeries::constant(POLYNOMIALS, coefficient.clone());
             for (factor, &power) in factors.iter().zip(powers) {
                 if power > 0 {
                     product = product.product(&factor.power(power));
@@ -492,12 +495,7 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
             }
             along = along.sum(&product);
         }
-        let balance = |&k: &usize| {
-            let coefficient = along.cosine(k);
-            let (mut value, denominator) = coefficient.mean();
-            value.divide(denominator);
-            value
-        };
+        let balance = |&k: &usize| along.cosine(k).constant_term();
         harmonics.iter().map(balance).collect()
     });
     let squared = Expr::symbol("omega").integer_power(2)?;
@@ -560,7 +558,7 @@ pub(super) fn at_numbers(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Option<(f64, FourierSeries<f64>)> {
+) -> Option<AtNumbers> {
     // Seen from the equilibrium, as the formulas are.
     let equilibrium = solution.equilibrium.clone();
     let moved = &Expr::from(oscillator.coordinate) + &equilibrium;
@@ -601,22 +599,22 @@ impl Question<'_> {
         (self.mass)(x) * self.force.at(x)
     }
 
-    fn one_term(&self, squared: f64) -> Option<(f64, FourierSeries<f64>)> {
-        let motion = FourierSeries::from_parts(vec![0.0, self.amplitude], vec![], Integer::one());
+    fn one_term(&self, squared: f64) -> Option<AtNumbers> {
+        let motion = FourierSeries::from_parts(Doubles, vec![0.0, self.amplitude], vec![]);
         squared.is_finite().then_some((squared, motion))
     }
 }
 
-fn exact_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+fn exact_at(question: &Question) -> Option<AtNumbers> {
     let (mass, weighted) = (question.mass, |x| question.weighted(x));
     let force = period::Force::smooth(&weighted);
     let (period, cosine) = period::weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
     let frequency = std::f64::consts::TAU / period;
-    let motion = FourierSeries::from_parts(cosine, vec![], Integer::one());
+    let motion = FourierSeries::from_parts(Doubles, cosine, vec![]);
     Some((frequency * frequency, motion))
 }
 
-fn energy_balance_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+fn energy_balance_at(question: &Question) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
     let eighth = amplitude / f64::sqrt(2.0);
     let rise = integrate_smooth(|x| question.weighted(x), eighth, amplitude, 1e-12)
@@ -625,7 +623,7 @@ fn energy_balance_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
     question.one_term(4.0 * rise / (amplitude * amplitude * (question.mass)(eighth)))
 }
 
-fn hamiltonian_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
     let growth = compiled(question.oscillator, &question.moving.growth, question.numbers)?;
     let mean = |function: &dyn Fn(f64, f64) -> f64| {
@@ -640,7 +638,7 @@ fn hamiltonian_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
     question.one_term(work.ok()? / (amplitude * inertia.ok()?))
 }
 
-fn harmonic_balance_at(question: &Question) -> Option<(f64, FourierSeries<f64>)> {
+fn harmonic_balance_at(question: &Question) -> Option<AtNumbers> {
     let odd = question.moving.is_odd(question.oscillator).ok()?;
     let harmonics = harmonics(question.order, odd);
     balanced(question.oscillator, question.numbers, &harmonics, question.amplitude)
@@ -652,7 +650,7 @@ fn balanced(
     numbers: &BTreeMap<Symbol, f64>,
     harmonics: &[usize],
     amplitude: f64,
-) -> Option<(f64, FourierSeries<f64>)> {
+) -> Option<AtNumbers> {
     const FEWEST_STEPS: i32 = 16;
     const SMALLEST_STEP: f64 = 1e-4;
     let first = harmonics.iter().position(|&k| k == 1)?;
@@ -685,7 +683,7 @@ fn balanced(
     for (index, &k) in harmonics.iter().enumerate() {
         cosine[k] = unknowns[index + 1];
     }
-    Some((unknowns[0], FourierSeries::from_parts(cosine, vec![], Integer::one())))
+    Some((unknowns[0], FourierSeries::from_parts(Doubles, cosine, vec![])))
 }
 
 /// The equation as typed and its slopes in `x`, `x'` and `x''`, sampled along a motion.

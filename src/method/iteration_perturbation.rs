@@ -28,7 +28,7 @@ use super::{Options, Refusal};
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Integer, Polynomial, Rational, Ring};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
@@ -111,8 +111,14 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
         // The constant term of the series is half of c_0.
         let divisor = if k == 0 { -2 } else { (k * k - 1) as i64 };
         polynomial = polynomial.times_monomial(&Monomial::power_of(Symbol::new("omega"), -2));
-        let wave = linear_combination(&[(1, &FourierSeries::cos(k)), (-1, &FourierSeries::cos(1))]);
-        let term = wave.product(&FourierSeries::constant(polynomial, Integer::one()));
+        let wave = linear_combination(
+            &POLYNOMIALS,
+            &[
+                (1, &FourierSeries::cos(POLYNOMIALS, k)),
+                (-1, &FourierSeries::cos(POLYNOMIALS, 1)),
+            ],
+        );
+        let term = wave.product(&FourierSeries::constant(POLYNOMIALS, polynomial));
         motion = motion.sum(&term.divided_by(divisor));
     }
     if degree.is_none() && motion != solution.displacement {
@@ -145,15 +151,11 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     for number in 1..=passes {
         let pass = Pass::new(oscillator, &coefficients, &motion)?;
         let (particular, resonance) = pass.right_side.solve_oscillator();
-        secular = over_one(&resonance.cosine);
-        let particular = particular.map(|numerator, denominator| {
-            let mut polynomial = numerator.times_monomial(&inverse);
-            polynomial.divide(denominator);
-            polynomial
-        });
+        secular = resonance.cosine.constant_term();
+        let particular = particular.map(POLYNOMIALS, |coefficient, _| coefficient.times_monomial(&inverse));
         let rest =
-            FourierSeries::constant(Polynomial::symbol(amplitude), Integer::one()).difference(&particular.at_zero());
-        motion = particular.sum(&rest.product(&FourierSeries::cos(1)));
+            FourierSeries::constant(POLYNOMIALS, Polynomial::symbol(amplitude)).difference(&particular.at_zero());
+        motion = particular.sum(&rest.product(&FourierSeries::cos(POLYNOMIALS, 1)));
         lines.extend(pass.lines(oscillator, number, (number < passes).then_some(&motion))?);
     }
     let relation = secular.times_monomial(&Monomial::power_of(amplitude, -1));
@@ -173,15 +175,15 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
 
 /// One pass: the factor frozen at the motion before, and what it leaves on the right side.
 struct Pass {
-    factor: FourierSeries<Polynomial>,
-    right_side: FourierSeries<Polynomial>,
+    factor: FourierSeries<Polynomials>,
+    right_side: FourierSeries<Polynomials>,
 }
 
 impl Pass {
     fn new(
         oscillator: &Oscillator,
         coefficients: &[Polynomial],
-        motion: &FourierSeries<Polynomial>,
+        motion: &FourierSeries<Polynomials>,
     ) -> Result<Self, Refusal> {
         // f(0) = 0, so f/x is a polynomial as well.
         let quotient = coefficients.get(1..).unwrap_or_default();
@@ -190,7 +192,7 @@ impl Pass {
         }
         let factor = horner(quotient, motion)?;
         let squared = Polynomial::term(Monomial::power_of(Symbol::new("omega"), 2), Rational::one());
-        let squared = FourierSeries::constant(squared, Integer::one());
+        let squared = FourierSeries::constant(POLYNOMIALS, squared);
         Ok(Self {
             right_side: squared.difference(&factor).product(motion),
             factor,
@@ -202,7 +204,7 @@ impl Pass {
         &self,
         oscillator: &Oscillator,
         number: u32,
-        next: Option<&FourierSeries<Polynomial>>,
+        next: Option<&FourierSeries<Polynomials>>,
     ) -> Result<Vec<Line>, Refusal> {
         let (before, after) = (numbered(oscillator, number - 1), numbered(oscillator, number));
         let omega = Expr::symbol("omega").integer_power(2)?;
@@ -213,7 +215,7 @@ impl Pass {
             of: after,
             square: omega,
         };
-        let secular = over_one(&self.right_side.cosine(1));
+        let secular = self.right_side.cosine(1).constant_term();
         let mut lines = vec![
             Line::equation(factor, self.factor.clone())
                 .because(format!("pass {number}, the factor frozen at {before}")),
@@ -261,13 +263,6 @@ fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, R
     ])
 }
 
-fn over_one(series: &FourierSeries<Polynomial>) -> Polynomial {
-    let (numerator, denominator) = series.mean();
-    let mut value = numerator;
-    value.divide(denominator);
-    value
-}
-
 /// The coefficients of a polynomial force, lowest power first; `None` for any other force.
 pub(super) fn polynomial_coefficients(
     oscillator: &Oscillator,
@@ -294,13 +289,13 @@ const MOST_TERMS: usize = 5000;
 /// The force along a motion.
 pub(super) fn horner(
     coefficients: &[Polynomial],
-    motion: &FourierSeries<Polynomial>,
-) -> Result<FourierSeries<Polynomial>, Refusal> {
-    let mut value = FourierSeries::zero();
+    motion: &FourierSeries<Polynomials>,
+) -> Result<FourierSeries<Polynomials>, Refusal> {
+    let mut value = FourierSeries::zero(POLYNOMIALS);
     for coefficient in coefficients.iter().rev() {
         value = value
             .product(motion)
-            .sum(&FourierSeries::constant(coefficient.clone(), Integer::one()));
+            .sum(&FourierSeries::constant(POLYNOMIALS, coefficient.clone()));
         let longest = value.harmonics().iter().map(|entry| entry.1.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });

@@ -26,7 +26,7 @@ use crate::derivation::AmplitudeCondition;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::{power, ratio};
 use crate::exact::real_roots::{RealRoot, derivative, inverse_modulo, positive_roots, remainder};
-use crate::exact::{Polynomial, Rational, Ring};
+use crate::exact::{Polynomial, Polynomials, Rational, Rationals};
 use crate::expr::Expr;
 use crate::oscillator::PerturbedForce;
 use crate::series::FourierSeries;
@@ -408,10 +408,10 @@ pub(super) fn chosen(cycles: &[Cycle], asked: Option<u32>, none: impl Fn() -> Re
 }
 
 /// The amplitude of a motion in a convention.
-pub(super) fn amplitude_of(displacement: &FourierSeries<Polynomial>, convention: AmplitudeConvention) -> Polynomial {
+pub(super) fn amplitude_of(displacement: &FourierSeries<Polynomials>, convention: AmplitudeConvention) -> Polynomial {
     match convention {
-        AmplitudeConvention::Initial => displacement.at_zero().mean().0,
-        AmplitudeConvention::FirstHarmonic => displacement.cosine(1).mean().0,
+        AmplitudeConvention::Initial => displacement.at_zero().constant_term(),
+        AmplitudeConvention::FirstHarmonic => displacement.cosine(1).constant_term(),
     }
 }
 
@@ -423,9 +423,9 @@ fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
         .iter()
         .filter(|term| term.order == 1 && term.velocity % 2 == 1);
     for term in first {
-        let sine = FourierSeries::<Rational>::cos(1)
+        let sine = FourierSeries::cos(Rationals, 1)
             .power(term.position)
-            .product(&FourierSeries::sin(1).times(-1).power(term.velocity))
+            .product(&FourierSeries::sin(Rationals, 1).times(-1).power(term.velocity))
             .sine(1);
         let (weight, _) = sine.mean();
         if weight.is_zero() {

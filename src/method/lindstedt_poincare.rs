@@ -34,7 +34,7 @@ use super::secular::{Amplitude, Detuning, Normalisation, Scheme, SecularError, b
 use super::{Options, Refusal, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Polynomial, Rational, Ring};
+use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
@@ -197,9 +197,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let times = |series: Polynomial, factor: &Polynomial| series.product(factor);
     let squared_unit = times(linear_frequency.clone(), &linear_frequency);
-    let displacement = series
-        .displacement
-        .map(|coefficient, _| in_numbers(reduced(coefficient.product(&unit))));
+    let displacement = series.displacement.map(POLYNOMIALS, |coefficient, _| {
+        in_numbers(reduced(coefficient.product(&unit)))
+    });
     let limit_cycle = cycles.as_ref().map(|(cycles, number)| LimitCycle {
         amplitude: amplitude_of(&displacement, convention),
         number: *number,

@@ -34,12 +34,12 @@ pub use harmonic_balance::MOST_HARMONICS;
 
 use std::collections::BTreeMap;
 
-use num_traits::{One, Zero};
+use num_traits::Zero;
 use table::{Choice, Entry, that_take};
 
 use crate::decimal::decimal;
 use crate::equilibrium::{Centred, centred};
-use crate::exact::{Integer, Polynomial};
+use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::{Expr, ExprError, parse_expression};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
@@ -391,7 +391,7 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     let position = written.unwrap_or_else(Polynomial::zero);
     // A motion known by numbers alone is left to them.
     if !solution.displacement.is_zero() {
-        let position = FourierSeries::constant(position, Integer::one());
+        let position = FourierSeries::constant(POLYNOMIALS, position);
         solution.displacement = solution.displacement.sum(&position);
     }
     solution.equation = oscillator.equation();

@@ -11,6 +11,7 @@ use std::fmt;
 
 use super::numbers::{NoNumbers, evaluate};
 use crate::decimal::significant;
+use crate::exact::Doubles;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::{FourierSeries, terms};
 use crate::solution::Solution;
@@ -34,8 +35,8 @@ pub struct Motion {
     /// The letter of the displacement.
     coordinate: Symbol,
     frequency: f64,
-    displacement: FourierSeries<f64>,
-    velocity: FourierSeries<f64>,
+    displacement: FourierSeries<Doubles>,
+    velocity: FourierSeries<Doubles>,
 }
 
 impl Motion {
@@ -55,7 +56,7 @@ impl Motion {
     }
 
     /// The displacement as a Fourier series in `theta = omega t`.
-    pub fn displacement(&self) -> &FourierSeries<f64> {
+    pub fn displacement(&self) -> &FourierSeries<Doubles> {
         &self.displacement
     }
 }
@@ -64,7 +65,7 @@ impl Motion {
 impl fmt::Display for Motion {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         let coefficients = (0..=self.displacement.highest_harmonic()).flat_map(|k| {
-            let part = |series: FourierSeries<f64>| series.mean().0;
+            let part = |series: FourierSeries<Doubles>| series.mean().0;
             let cosine = part(self.displacement.cosine(k));
             let sine = if k == 0 { 0.0 } else { part(self.displacement.sine(k)) };
             [(k, "cos", cosine), (k, "sin", sine)]

@@ -5,14 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::One;
-
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
-use crate::exact::{Integer, Polynomial};
+use crate::exact::{Doubles, Polynomial};
 use crate::expr::{EvaluationError, Rounded};
 use crate::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
@@ -36,7 +34,7 @@ pub struct Numbers {
     /// How far rounding of the formula's coefficients may move omega^2, relatively; zero where omega^2 is solved for.
     pub rounding: f64,
     /// The motion in theta; `None` where the frequency is not real.
-    pub motion: Option<FourierSeries<f64>>,
+    pub motion: Option<FourierSeries<Doubles>>,
     /// Values that were chosen or solved for: hbar, the coefficients of a balance.
     pub chosen: Vec<(Symbol, f64)>,
     /// What a reader should know of these numbers beside them.
@@ -173,7 +171,11 @@ fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Sym
 }
 
 /// The coefficients of a balance, by their names; the equilibrium is no part of the mean.
-fn balanced(solution: &Solution, motion: &FourierSeries<f64>, numbers: &BTreeMap<Symbol, f64>) -> Vec<(Symbol, f64)> {
+fn balanced(
+    solution: &Solution,
+    motion: &FourierSeries<Doubles>,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Vec<(Symbol, f64)> {
     if Entry::of(solution.method).motion != Motion::Balance {
         return vec![];
     }
@@ -380,7 +382,7 @@ fn formula_motion(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
-) -> Option<FourierSeries<f64>> {
+) -> Option<FourierSeries<Doubles>> {
     if squared <= 0.0 {
         return None;
     }
@@ -408,7 +410,7 @@ fn formula_motion(
     // which have kept their signs, need it with the other sign.
     let start = solution.equilibrium.evaluate(numbers).ok()? + numbers.get(&amplitude)?;
     let missing = start - motion.evaluate(0.0);
-    Some(motion.sum(&FourierSeries::from_parts(vec![0.0, missing], vec![], Integer::one())))
+    Some(motion.sum(&FourierSeries::from_parts(Doubles, vec![0.0, missing], vec![])))
 }
 
 /// Whether the motion is that of the size of the amplitude, half a period later; polynomials in the amplitude know its sign.
@@ -500,7 +502,7 @@ fn iterate_by_definition(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
-) -> Option<FourierSeries<f64>> {
+) -> Option<FourierSeries<Doubles>> {
     let projections = lost_projections(oscillator, solution, numbers, squared)?;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mut cosine = vec![0.0; solution.displacement.highest_harmonic().max(1) + 1];
@@ -515,7 +517,7 @@ fn iterate_by_definition(
     let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
     cosine[0] += equilibrium;
     let finite = cosine.iter().all(|value| value.is_finite());
-    finite.then(|| FourierSeries::from_parts(cosine, vec![], Integer::one()))
+    finite.then(|| FourierSeries::from_parts(Doubles, cosine, vec![]))
 }
 
 /// The `c_k` of a first iterate by quadrature, where their closed forms have lost digits that show beside the amplitude.
@@ -557,14 +559,14 @@ fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<(f64, FourierSeries<f64>, Option<String>), NoNumbers> {
+) -> Result<(f64, FourierSeries<Doubles>, Option<String>), NoNumbers> {
     if oscillator.force.contains(oscillator.velocity()) {
         let found = || {
             let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
             let (squared, motion) = inertia::at_numbers(oscillator, solution, numbers)?;
             Some((
                 squared,
-                motion.sum(&FourierSeries::constant(equilibrium, Integer::one())),
+                motion.sum(&FourierSeries::constant(Doubles, equilibrium)),
                 None,
             ))
         };
@@ -579,7 +581,7 @@ fn solve(
         Some((equilibrium, amplitude, force_of(oscillator, solution, numbers)?))
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
-    let shift = FourierSeries::constant(equilibrium, Integer::one());
+    let shift = FourierSeries::constant(Doubles, equilibrium);
     if Entry::of(solution.method).motion == Motion::Balance {
         let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
@@ -593,7 +595,7 @@ fn solve(
     }
     stays_defined(oscillator, solution, numbers)?;
     let squared = by_definition(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-    let motion = FourierSeries::from_parts(vec![0.0, amplitude], vec![], Integer::one());
+    let motion = FourierSeries::from_parts(Doubles, vec![0.0, amplitude], vec![]);
     Ok((squared, motion.sum(&shift), None))
 }
 
@@ -602,13 +604,13 @@ fn exact_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<(f64, FourierSeries<f64>), NoNumbers> {
+) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
     let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let (period, cosine) = force.motion(amplitude_of(solution, numbers))?;
     let frequency = std::f64::consts::TAU / period;
     Ok((
         frequency * frequency,
-        FourierSeries::from_parts(cosine, vec![], Integer::one()),
+        FourierSeries::from_parts(Doubles, cosine, vec![]),
     ))
 }
 

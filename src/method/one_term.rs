@@ -14,15 +14,13 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use num_traits::One;
-
 use super::{Options, Refusal, first_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::parity::twice_even_part;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
-use crate::exact::{Integer, Polynomial};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::oscillator::{Oscillator, SmallParameter};
@@ -121,8 +119,8 @@ pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Metho
 }
 
 /// `coefficient * cos(theta)`.
-pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomial> {
-    FourierSeries::cos(1).product(&FourierSeries::constant(coefficient, Integer::one()))
+pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomials> {
+    FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, coefficient))
 }
 
 /// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form otherwise.

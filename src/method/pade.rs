@@ -29,7 +29,7 @@ use crate::decimal::decimal;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
-use crate::exact::{Polynomial, Rational, Ring};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
@@ -350,14 +350,10 @@ fn normalise(coefficients: &mut [Polynomial], first: &Polynomial) {
 }
 
 /// The motion up to the first power of the expansion variable beyond the leading term.
-fn first_correction(motion: &FourierSeries<Polynomial>, small: Symbol, step: i32) -> FourierSeries<Polynomial> {
+fn first_correction(motion: &FourierSeries<Polynomials>, small: Symbol, step: i32) -> FourierSeries<Polynomials> {
     let leading = if small == Symbol::new("A") { 1 } else { 0 };
-    motion.map(|numerator, denominator| {
-        let mut kept = numerator.truncated(small, leading + step);
-        if !kept.is_zero() {
-            kept.divide(denominator);
-        }
-        kept
+    motion.map(POLYNOMIALS, |coefficient, _| {
+        coefficient.truncated(small, leading + step)
     })
 }
 

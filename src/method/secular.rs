@@ -16,12 +16,13 @@
 use std::collections::HashMap;
 
 use crate::exact::Ring;
+use crate::exact::ring::Indivisible;
 use crate::series::convolution::{Convolutions, Node};
-use crate::series::fourier::{FourierSeries, linear_combination, sum_of_products};
+use crate::series::fourier::{FourierSeries, sum_of_products};
 
 /// One term `delta^order * coefficient * y^position * y'^velocity` of the force beside the linear `y`.
 #[derive(Clone, Debug)]
-pub struct ForceTerm<C> {
+pub struct ForceTerm<R: Ring> {
     /// Power of the small parameter, at least one.
     pub order: usize,
     /// Power of `y`.
@@ -30,7 +31,7 @@ pub struct ForceTerm<C> {
     /// before `y`).
     pub velocity: u32,
     /// A constant series.
-    pub coefficient: FourierSeries<C>,
+    pub coefficient: FourierSeries<R>,
 }
 
 /// What pins down the homogeneous solution at each order.
@@ -73,47 +74,57 @@ pub struct Scheme {
 
 /// The result, order by order.
 #[derive(Clone, Debug)]
-pub struct Expansion<C> {
+pub struct Expansion<R: Ring> {
     /// `W_n`: omega^2 in powers of the small parameter, constant series; `W_0 = 1`.
-    pub frequency_squared: Vec<FourierSeries<C>>,
+    pub frequency_squared: Vec<FourierSeries<R>>,
     /// omega itself, likewise.
-    pub frequency: Vec<FourierSeries<C>>,
+    pub frequency: Vec<FourierSeries<R>>,
     /// `y_n(tau)`.
-    pub displacement: Vec<FourierSeries<C>>,
+    pub displacement: Vec<FourierSeries<R>>,
     /// `r_n + W_n cos tau`, the right-hand side after the secular term is removed, from order one on.
-    pub right_side: Vec<FourierSeries<C>>,
+    pub right_side: Vec<FourierSeries<R>>,
     /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
-    pub removed: Vec<FourierSeries<C>>,
+    pub removed: Vec<FourierSeries<R>>,
     /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where it is free.
-    pub amplitudes: Vec<SecularSine<C>>,
+    pub amplitudes: Vec<SecularSine<R>>,
 }
 
 /// The condition `sine + slope B_n = 0` of order `n + 1`, which fixes the amplitude of `y_n`.
 #[derive(Clone, Debug)]
-pub struct SecularSine<C> {
+pub struct SecularSine<R: Ring> {
     /// The secular sine with `B_n = 0`.
-    pub sine: FourierSeries<C>,
+    pub sine: FourierSeries<R>,
     /// Its derivative in `B_n`.
-    pub slope: FourierSeries<C>,
+    pub slope: FourierSeries<R>,
     /// `B_n`.
-    pub amplitude: FourierSeries<C>,
+    pub amplitude: FourierSeries<R>,
 }
 
 /// Why no periodic expansion exists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SecularError {
-    /// A sine at the natural frequency that neither frequency nor amplitude can remove: energy is lost or gained.
+    /// A sine at the natural frequency that neither frequency nor amplitude can remove: energy is lost or gained. One that
+    /// [may be zero](Ring::may_be_zero) is taken to be zero.
     #[error("a secular sine remains at order {order}: the motion gains or loses energy")]
     Growth {
         /// The order at which it appears.
         order: usize,
     },
-    /// The amplitude equation at this order is degenerate, or its solution would divide by a sum of symbols.
+    /// The amplitude equation at this order is degenerate, or its solution would divide by a sum of symbols, or by what may be
+    /// zero in the ring: an interval around zero, a multiple of the prime.
     #[error("the amplitude cannot be determined at order {order}")]
     Degenerate {
         /// The order at which it fails.
         order: usize,
+    },
+    /// The ring of the coefficients has no inverse of a divisor of this order: another prime is needed.
+    #[error("{indivisible}, which order {order} needs")]
+    Indivisible {
+        /// The order at which it fails.
+        order: usize,
+        /// The divisor and the ring.
+        indivisible: Indivisible,
     },
     /// Far more algebra than anyone waits for.
     #[error(
@@ -151,15 +162,20 @@ pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Res
     }
 }
 
-/// Expands frequency and displacement to `highest`, inclusive.
+/// Expands frequency and displacement to `highest`, inclusive, with coefficients in `ring`.
 ///
 /// Cost: with `H` harmonics at the highest order, every product of the equation takes `O(highest^2 H^2)` coefficient
 /// products in all.
 ///
 /// # Errors
 /// See [`SecularError`].
-pub fn expand<C: Ring>(force: &[ForceTerm<C>], highest: usize, scheme: &Scheme) -> Result<Expansion<C>, SecularError> {
-    expand_from_root(force, highest, scheme, None)
+pub fn expand<R: Ring>(
+    ring: &R,
+    force: &[ForceTerm<R>],
+    highest: usize,
+    scheme: &Scheme,
+) -> Result<Expansion<R>, SecularError> {
+    expand_from_root(ring, force, highest, scheme, None)
 }
 
 /// As [`expand`], about a limit cycle whose amplitude is a symbol for a root: `inverse_slope` is `1/J`, a constant series.
@@ -167,16 +183,17 @@ pub fn expand<C: Ring>(force: &[ForceTerm<C>], highest: usize, scheme: &Scheme) 
 ///
 /// # Errors
 /// See [`SecularError`].
-pub fn expand_from_root<C: Ring>(
-    force: &[ForceTerm<C>],
+pub fn expand_from_root<R: Ring>(
+    ring: &R,
+    force: &[ForceTerm<R>],
     highest: usize,
     scheme: &Scheme,
-    inverse_slope: Option<FourierSeries<C>>,
-) -> Result<Expansion<C>, SecularError> {
+    inverse_slope: Option<FourierSeries<R>>,
+) -> Result<Expansion<R>, SecularError> {
     let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
     let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
     bounded(powers, highest.saturating_add(of_amplitude))?;
-    let mut order_by_order = OrderByOrder::new(force, highest, *scheme, inverse_slope);
+    let mut order_by_order = OrderByOrder::new(ring, force, highest, *scheme, inverse_slope);
     for order in 1..=highest {
         order_by_order.solve_order(order)?;
     }
@@ -184,25 +201,32 @@ pub fn expand_from_root<C: Ring>(
     Ok(order_by_order.result)
 }
 
-struct OrderByOrder<'a, C> {
-    force: &'a [ForceTerm<C>],
+struct OrderByOrder<'a, R: Ring> {
+    ring: &'a R,
+    force: &'a [ForceTerm<R>],
     products: Vec<Option<Node>>,
-    convolutions: Convolutions<C>,
+    convolutions: Convolutions<R>,
     position: Node,
     velocity: Node,
     scheme: Scheme,
     /// `1/J`, where it was given.
-    inverse_slope: Option<FourierSeries<C>>,
+    inverse_slope: Option<FourierSeries<R>>,
     /// How each series changes when the amplitude of `y_0` does.
-    variations: Vec<FourierSeries<C>>,
+    variations: Vec<FourierSeries<R>>,
     /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
-    detuned: Vec<FourierSeries<C>>,
-    result: Expansion<C>,
+    detuned: Vec<FourierSeries<R>>,
+    result: Expansion<R>,
 }
 
-impl<'a, C: Ring> OrderByOrder<'a, C> {
-    fn new(force: &'a [ForceTerm<C>], highest: usize, scheme: Scheme, inverse_slope: Option<FourierSeries<C>>) -> Self {
-        let mut convolutions = Convolutions::new();
+impl<'a, R: Ring> OrderByOrder<'a, R> {
+    fn new(
+        ring: &'a R,
+        force: &'a [ForceTerm<R>],
+        highest: usize,
+        scheme: Scheme,
+        inverse_slope: Option<FourierSeries<R>>,
+    ) -> Self {
+        let mut convolutions = Convolutions::new(ring.clone());
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
         let last = if scheme.amplitude == Amplitude::Determined {
@@ -210,7 +234,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         } else {
             highest
         };
-        let mut product_of = |term: &ForceTerm<C>| {
+        let mut product_of = |term: &ForceTerm<R>| {
             let powers = [(position, term.position), (velocity, term.velocity)];
             let powers = powers.into_iter().filter(|power| power.1 > 0);
             let nodes: Vec<Node> = powers
@@ -225,15 +249,15 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
             Some(node)
         };
         let products = force.iter().map(&mut product_of).collect();
-        let start = FourierSeries::cos(1);
+        let start = FourierSeries::cos(ring.clone(), 1);
         convolutions.push(position, start.clone());
         convolutions.push(velocity, start.derivative());
         convolutions.advance(0);
         let leaves = HashMap::from([(position, start.clone()), (velocity, start.derivative())]);
         let variations = convolutions.variations(&leaves);
         let result = Expansion {
-            frequency_squared: vec![FourierSeries::integer(1)],
-            frequency: vec![FourierSeries::integer(1)],
+            frequency_squared: vec![FourierSeries::integer(ring.clone(), 1)],
+            frequency: vec![FourierSeries::integer(ring.clone(), 1)],
             displacement: vec![start.clone()],
             right_side: vec![],
             removed: vec![],
@@ -242,6 +266,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         // y_0'' and -y_0 are the same.
         let detuned = vec![start.times(-1)];
         Self {
+            ring,
             force,
             products,
             convolutions,
@@ -256,28 +281,29 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
     }
 
     fn solve_order(&mut self, order: usize) -> Result<(), SecularError> {
-        let mut right_side = self.right_side(order);
+        let mut right_side = divided(order, self.right_side(order))?;
         if self.scheme.amplitude == Amplitude::Determined && order > 1 {
             right_side = self.fix_amplitude(order, right_side)?;
         }
         let (particular, resonance) = right_side.solve_oscillator();
-        if !resonance.sine.is_zero() && self.inverse_slope.is_none() {
+        let particular = divided(order, particular)?;
+        if !resonance.sine.may_be_zero() && self.inverse_slope.is_none() {
             return Err(SecularError::Growth { order });
         }
         let frequency_squared = resonance.cosine.times(-1);
-        let balanced = right_side.sum(&frequency_squared.product(&FourierSeries::cos(1)));
+        let balanced = right_side.sum(&frequency_squared.product(&self.wave()));
         self.result.removed.push(resonance.cosine);
         self.result.right_side.push(balanced);
         self.result.frequency_squared.push(frequency_squared);
-        self.push_frequency(order);
-        let displacement = self.normalised(particular);
+        self.push_frequency(order)?;
+        let displacement = divided(order, self.normalised(particular))?;
         self.push_displacement(order, displacement);
         Ok(())
     }
 
     /// `r_n` as in the head of this file.
-    fn right_side(&self, order: usize) -> FourierSeries<C> {
-        let one = FourierSeries::integer(1);
+    fn right_side(&self, order: usize) -> FourierSeries<R> {
+        let one = FourierSeries::integer(self.ring.clone(), 1);
         let mut terms = Vec::new();
         for (term, product) in self.force.iter().zip(&self.products) {
             let Some(of_product) = order.checked_sub(term.order) else {
@@ -296,12 +322,12 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         for lower in 1..order {
             terms.push((-1, &self.result.frequency_squared[lower], &self.detuned[order - lower]));
         }
-        sum_of_products(&terms)
+        sum_of_products(self.ring, &terms)
     }
 
     /// Chooses the amplitude of `y_(order-1)` so that `right_side` of `order` has no secular sine, and carries the choice
     /// through everything already computed.
-    fn fix_amplitude(&mut self, order: usize, right_side: FourierSeries<C>) -> Result<FourierSeries<C>, SecularError> {
+    fn fix_amplitude(&mut self, order: usize, right_side: FourierSeries<R>) -> Result<FourierSeries<R>, SecularError> {
         let mut terms = Vec::new();
         for (term, product) in self.force.iter().zip(&self.products) {
             if let (1, Some(node)) = (term.order, product) {
@@ -315,48 +341,52 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
         if let Some(first) = self.result.frequency_squared.get(1) {
             terms.push((-1, first, &self.detuned[0]));
         }
-        let change = sum_of_products(&terms);
+        let change = sum_of_products(self.ring, &terms);
         let (sine, slope) = (right_side.sine(1), change.sine(1));
         let needed = sine.times(-1);
         let correction = match &self.inverse_slope {
-            _ if needed.is_zero() => FourierSeries::zero(),
+            _ if needed.is_zero() => FourierSeries::zero(self.ring.clone()),
             Some(inverse) => needed.product(inverse),
             None => needed
                 .divided_by_constant(&slope)
                 .ok_or(SecularError::Degenerate { order })?,
         };
+        let correction = divided(order, correction)?;
         self.result.amplitudes.push(SecularSine {
             sine,
             slope,
             amplitude: correction.clone(),
         });
         self.convolutions.correct(order - 1, &correction, &self.variations);
-        let corrected = self.result.displacement[order - 1].sum(&correction.product(&FourierSeries::cos(1)));
+        let corrected = self.result.displacement[order - 1].sum(&correction.product(&self.wave()));
         self.detuned[order - 1] = self.detuned(&corrected);
         self.result.displacement[order - 1] = corrected;
-        Ok(linear_combination(&[
-            (1, &right_side),
-            (1, &correction.product(&change)),
-        ]))
+        divided(order, right_side.sum(&correction.product(&change)))
     }
 
     fn fix_last_amplitude(&mut self, highest: usize) -> Result<(), SecularError> {
         if self.scheme.amplitude == Amplitude::Determined && highest > 0 {
-            let right_side = self.right_side(highest + 1);
+            let right_side = divided(highest + 1, self.right_side(highest + 1))?;
             self.fix_amplitude(highest + 1, right_side)?;
         }
         Ok(())
     }
 
-    fn push_frequency(&mut self, order: usize) {
+    fn push_frequency(&mut self, order: usize) -> Result<(), SecularError> {
         let lower = &self.result.frequency;
         let products: Vec<_> = (1..order).map(|i| (-1, &lower[i], &lower[order - i])).collect();
-        let squares = sum_of_products(&products);
-        let frequency = linear_combination(&[(1, &self.result.frequency_squared[order]), (1, &squares)]).divided_by(2);
-        self.result.frequency.push(frequency);
+        let squares = sum_of_products(self.ring, &products);
+        let frequency = self.result.frequency_squared[order].sum(&squares).divided_by(2);
+        self.result.frequency.push(divided(order, frequency)?);
+        Ok(())
     }
 
-    fn detuned(&self, displacement: &FourierSeries<C>) -> FourierSeries<C> {
+    /// `cos tau`.
+    fn wave(&self) -> FourierSeries<R> {
+        FourierSeries::cos(self.ring.clone(), 1)
+    }
+
+    fn detuned(&self, displacement: &FourierSeries<R>) -> FourierSeries<R> {
         match self.scheme.detuning {
             Detuning::Acceleration => displacement.derivative().derivative(),
             Detuning::Displacement => displacement.times(-1),
@@ -364,19 +394,19 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
     }
 
     /// Adds the homogeneous solution that the amplitude convention asks for.
-    fn normalised(&self, particular: FourierSeries<C>) -> FourierSeries<C> {
+    fn normalised(&self, particular: FourierSeries<R>) -> FourierSeries<R> {
         if self.scheme.normalisation == Normalisation::FirstHarmonic {
             return particular;
         }
         let sine = particular.derivative().at_zero();
-        let with_phase = particular.difference(&sine.product(&FourierSeries::sin(1)));
+        let with_phase = particular.difference(&sine.product(&FourierSeries::sin(self.ring.clone(), 1)));
         match self.scheme.amplitude {
             Amplitude::Determined => with_phase,
-            Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&FourierSeries::cos(1))),
+            Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&self.wave())),
         }
     }
 
-    fn push_displacement(&mut self, order: usize, displacement: FourierSeries<C>) {
+    fn push_displacement(&mut self, order: usize, displacement: FourierSeries<R>) {
         let detuned = self.detuned(&displacement);
         self.detuned.push(detuned);
         self.convolutions.push(self.position, displacement.clone());
@@ -389,7 +419,7 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
                 let products: Vec<_> = (0..=order)
                     .map(|i| (1, &self.result.frequency[i], &derivatives[order - i]))
                     .collect();
-                sum_of_products(&products)
+                sum_of_products(self.ring, &products)
             }
         };
         self.convolutions.push(self.velocity, velocity);
@@ -397,14 +427,22 @@ impl<'a, C: Ring> OrderByOrder<'a, C> {
     }
 }
 
+/// A series of order `order`, where its ring could divide by all that it had to.
+fn divided<R: Ring>(order: usize, series: FourierSeries<R>) -> Result<FourierSeries<R>, SecularError> {
+    let divided = series.divided();
+    divided
+        .map(|()| series)
+        .map_err(|indivisible| SecularError::Indivisible { order, indivisible })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::exact::rational::ratio;
-    use crate::exact::{Integer, Rational};
+    use crate::exact::{Integers, Rational};
     use crate::series::fourier::fraction;
 
-    fn numbers(series: &[FourierSeries<Integer>]) -> Vec<Rational> {
+    fn numbers(series: &[FourierSeries<Integers>]) -> Vec<Rational> {
         series
             .iter()
             .map(|constant| constant.mean())
@@ -412,8 +450,8 @@ mod tests {
             .collect()
     }
 
-    fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integer> {
-        let coefficient = FourierSeries::constant(value.0.into(), value.1.into());
+    fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integers> {
+        let coefficient = FourierSeries::integer(Integers, value.0).divided_by(value.1);
         ForceTerm {
             order,
             position,
@@ -432,7 +470,7 @@ mod tests {
 
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
-        let duffing = expand(&[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free)).expect("periodic");
+        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free)).expect("periodic");
         let expected = [
             ratio(1, 1),
             ratio(3, 4),
@@ -443,7 +481,7 @@ mod tests {
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
-        let cycle = expand(&force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
+        let cycle = expand(&Integers, &force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
         let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
         assert_eq!(numbers(&cycle.frequency), expected);
         let amplitudes: Vec<_> = cycle
@@ -464,7 +502,7 @@ mod tests {
 
     #[test]
     fn viscous_damping_leaves_a_secular_sine() {
-        let damped = expand(&[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
+        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
         assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
     }
 }

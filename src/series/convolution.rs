@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use super::fourier::{FourierSeries, linear_combination, sum_of_products};
+use super::fourier::{FourierSeries, sum_of_products};
 use crate::exact::Ring;
 
 /// One series in the graph: a leaf, or a product of two others.
@@ -14,26 +14,28 @@ use crate::exact::Ring;
 pub struct Node(usize);
 
 #[derive(Debug)]
-struct Orders<C> {
+struct Orders<R: Ring> {
     /// `None` for a leaf.
     factors: Option<(Node, Node)>,
     /// The orders known so far.
-    known: Vec<FourierSeries<C>>,
+    known: Vec<FourierSeries<R>>,
     /// The highest order anyone asked for.
     needed: Option<usize>,
 }
 
 /// Series in a small parameter and their products.
-#[derive(Debug, Default)]
-pub struct Convolutions<C> {
-    nodes: Vec<Orders<C>>,
+#[derive(Debug)]
+pub struct Convolutions<R: Ring> {
+    ring: R,
+    nodes: Vec<Orders<R>>,
     products: HashMap<(Node, Node), Node>,
 }
 
-impl<C: Ring> Convolutions<C> {
-    /// No series yet.
-    pub fn new() -> Self {
+impl<R: Ring> Convolutions<R> {
+    /// No series yet; those to come are over `ring`.
+    pub fn new(ring: R) -> Self {
         Self {
+            ring,
             nodes: vec![],
             products: HashMap::new(),
         }
@@ -79,13 +81,23 @@ impl<C: Ring> Convolutions<C> {
     }
 
     /// Supplies the next order of a leaf.
-    pub fn push(&mut self, leaf: Node, series: FourierSeries<C>) {
+    pub fn push(&mut self, leaf: Node, series: FourierSeries<R>) {
         self.nodes[leaf.0].known.push(series);
     }
 
     /// Order `order` of a series, where it is known.
-    pub fn order(&self, node: Node, order: usize) -> Option<&FourierSeries<C>> {
+    pub fn order(&self, node: Node, order: usize) -> Option<&FourierSeries<R>> {
         self.nodes[node.0].known.get(order)
+    }
+
+    /// Order `order` of every series that is known that far.
+    pub fn orders(&self, order: usize) -> impl Iterator<Item = &FourierSeries<R>> {
+        self.nodes.iter().filter_map(move |entry| entry.known.get(order))
+    }
+
+    /// How many series there are, the leaves among them.
+    pub fn count(&self) -> usize {
+        self.nodes.len()
     }
 
     /// Computes `order` of every product that needs it; the leaves must be known that far.
@@ -97,30 +109,35 @@ impl<C: Ring> Convolutions<C> {
                 continue;
             }
             let (left, right, same) = (&self.nodes[left.0].known, &self.nodes[right.0].known, left == right);
-            let product = if same {
+            let terms: Vec<_> = match same {
                 // A square: u_i u_j and u_j u_i are the same product.
-                let terms: Vec<_> = (0..=order / 2)
+                true => (0..=order / 2)
                     .map(|i| (if 2 * i == order { 1 } else { 2 }, &left[i], &left[order - i]))
-                    .collect();
-                sum_of_products(&terms)
-            } else {
-                let terms: Vec<_> = (0..=order).map(|i| (1, &left[i], &right[order - i])).collect();
-                sum_of_products(&terms)
+                    .collect(),
+                false => (0..=order).map(|i| (1, &left[i], &right[order - i])).collect(),
             };
+            let product = sum_of_products(&self.ring, &terms);
             self.nodes[index].known.push(product);
         }
     }
 
-    /// The first variation of every series at order zero when the leaves vary by `of_leaves`.
-    pub fn variations(&self, of_leaves: &HashMap<Node, FourierSeries<C>>) -> Vec<FourierSeries<C>> {
-        let mut variations: Vec<FourierSeries<C>> = Vec::with_capacity(self.nodes.len());
+    /// The first variation of every series at order zero when the leaves vary by `of_leaves`; zero of products that nobody
+    /// asked for.
+    pub fn variations(&self, of_leaves: &HashMap<Node, FourierSeries<R>>) -> Vec<FourierSeries<R>> {
+        let mut variations: Vec<FourierSeries<R>> = Vec::with_capacity(self.nodes.len());
         for (index, entry) in self.nodes.iter().enumerate() {
             let variation = match entry.factors {
-                None => of_leaves.get(&Node(index)).cloned().unwrap_or_else(FourierSeries::zero),
+                None => of_leaves
+                    .get(&Node(index))
+                    .cloned()
+                    .unwrap_or_else(|| FourierSeries::zero(self.ring.clone())),
                 Some((left, right)) => {
-                    let zeroth = |node: Node| &self.nodes[node.0].known[0];
-                    let (of_left, of_right) = (&variations[left.0], &variations[right.0]);
-                    sum_of_products(&[(1, of_left, zeroth(right)), (1, zeroth(left), of_right)])
+                    let pairs = [(&variations[left.0], right), (&variations[right.0], left)];
+                    let terms: Vec<_> = pairs
+                        .into_iter()
+                        .filter_map(|(variation, other)| Some((1, variation, self.order(other, 0)?)))
+                        .collect();
+                    sum_of_products(&self.ring, &terms)
                 }
             };
             variations.push(variation);
@@ -129,16 +146,16 @@ impl<C: Ring> Convolutions<C> {
     }
 
     /// Adds `factor` times the variation of each series to its order `order`, where that order is already known.
-    pub fn correct(&mut self, order: usize, factor: &FourierSeries<C>, variations: &[FourierSeries<C>]) {
+    pub fn correct(&mut self, order: usize, factor: &FourierSeries<R>, variations: &[FourierSeries<R>]) {
         for (entry, variation) in self.nodes.iter_mut().zip(variations) {
             if let Some(series) = entry.known.get_mut(order) {
-                *series = linear_combination(&[(1, series), (1, &factor.product(variation))]);
+                *series = series.sum(&factor.product(variation));
             }
         }
     }
 
     /// The variation that belongs to `node` in the list of [`Convolutions::variations`].
-    pub fn variation_of(variations: &[FourierSeries<C>], node: Node) -> &FourierSeries<C> {
+    pub fn variation_of(variations: &[FourierSeries<R>], node: Node) -> &FourierSeries<R> {
         &variations[node.0]
     }
 
@@ -154,17 +171,18 @@ impl<C: Ring> Convolutions<C> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fourier::linear_combination;
     use super::*;
-    use crate::exact::Integer;
+    use crate::exact::Integers;
 
     #[test]
     fn powers_agree_with_repeated_products() {
         let orders = [
-            FourierSeries::<Integer>::cos(1),
-            FourierSeries::cos(3),
-            FourierSeries::sin(2),
+            FourierSeries::cos(Integers, 1),
+            FourierSeries::cos(Integers, 3),
+            FourierSeries::sin(Integers, 2),
         ];
-        let mut graph = Convolutions::new();
+        let mut graph = Convolutions::new(Integers);
         let leaf = graph.leaf();
         let fifth = graph.power(leaf, 5);
         graph.require(fifth, 2);
@@ -174,10 +192,13 @@ mod tests {
         }
         // (u0 + d u1 + d^2 u2)^5 at d^2: 5 u0^4 u2 + 10 u0^3 u1^2.
         let [zeroth, first, second] = &orders;
-        let expected = linear_combination(&[
-            (5, &zeroth.power(4).product(second)),
-            (10, &zeroth.power(3).product(&first.power(2))),
-        ]);
+        let expected = linear_combination(
+            &Integers,
+            &[
+                (5, &zeroth.power(4).product(second)),
+                (10, &zeroth.power(3).product(&first.power(2))),
+            ],
+        );
         assert_eq!(graph.order(fifth, 2), Some(&expected));
     }
 }

@@ -15,7 +15,8 @@
 //! products of them: `(1 - cos(x))/x`, whose singularity is removable, has the series of the function with its limit put in.
 //!
 //! Each function costs `O(degree^2)` products of coefficients. Coefficients are expressions, so `sin(1/2)`, `sqrt(k)` or
-//! `exp(eps)` stay what they are.
+//! `exp(eps)` stay what they are: values that no [`Ring`](crate::exact::Ring) has. What an expansion in another ring starts from is
+//! the image of these coefficients where they are fractions.
 
 use std::cell::Cell;
 

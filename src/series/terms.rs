@@ -4,7 +4,7 @@ use num_traits::Zero;
 
 use super::FourierSeries;
 use crate::exact::polynomial::Monomial;
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{Polynomial, Polynomials, Rational};
 
 /// How a format writes a harmonic.
 pub struct Notation {
@@ -49,7 +49,7 @@ pub fn polynomial(
 
 /// The terms of a Fourier series, a minus in front of those that have one; `law` writes a coefficient.
 pub fn waves(
-    series: &FourierSeries<Polynomial>,
+    series: &FourierSeries<Polynomials>,
     law: impl Fn(&Polynomial) -> String,
     notation: &Notation,
 ) -> Vec<String> {

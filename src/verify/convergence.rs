@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use super::amplitude_series::amplitude_series;
 use super::validity::Range;
 use crate::decimal::significant;
-use crate::exact::Integer;
+use crate::exact::Doubles;
 use crate::expr::Expr;
 use crate::method::secular::{Amplitude, Detuning, ForceTerm, Normalisation, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
@@ -201,14 +201,14 @@ fn in_a_parameter(
     if !largest.is_normal() {
         return None;
     }
-    let terms: Vec<ForceTerm<f64>> = values
+    let terms: Vec<ForceTerm<Doubles>> = values
         .iter()
         .zip(&force.terms)
         .map(|(value, term)| ForceTerm {
             order: term.order,
             position: term.position,
             velocity: term.velocity,
-            coefficient: FourierSeries::constant(value / largest.powi(term.order as i32), Integer::from(1)),
+            coefficient: FourierSeries::constant(Doubles, value / largest.powi(term.order as i32)),
         })
         .collect();
     let scheme = Scheme {
@@ -216,7 +216,7 @@ fn in_a_parameter(
         amplitude: Amplitude::Free,
         detuning: Detuning::Acceleration,
     };
-    let expansion = expand(&terms, SERIES_TERMS, &scheme).ok()?;
+    let expansion = expand(&Doubles, &terms, SERIES_TERMS, &scheme).ok()?;
     Some(Series {
         coefficients: expansion
             .frequency_squared

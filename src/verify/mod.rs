@@ -29,6 +29,7 @@ use std::f64::consts::TAU;
 use crate::conservative::features::Features;
 use crate::conservative::force::Force as RestForce;
 use crate::decimal::decimal;
+use crate::exact::Doubles;
 use crate::exact::rational::Rational;
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of, half_a_period, symbol_values};
@@ -104,7 +105,7 @@ pub struct Verification {
     /// theta at `t = 0`: pi for a negative amplitude whose size stands in `values`, else 0.
     pub phase: f64,
     /// The motion in theta; `None` where the frequency is not real or the motion is not known.
-    pub motion: Option<FourierSeries<f64>>,
+    pub motion: Option<FourierSeries<Doubles>>,
     /// The verdict on the frequency.
     pub verdict: Verdict,
 }
@@ -372,7 +373,7 @@ fn formula_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Option<(f64, FourierSeries<f64>)> {
+) -> Option<(f64, FourierSeries<Doubles>)> {
     let found = evaluate(oscillator, solution, numbers).ok()?;
     Some((found.frequency_squared.sqrt(), found.motion?))
 }
@@ -510,7 +511,7 @@ impl TrueMotion {
     }
 
     /// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path is not known.
-    fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<f64>) -> Option<f64> {
+    fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<Doubles>) -> Option<f64> {
         self.orbit.as_ref()?;
         let deviation = |index: usize| {
             let t = self.period() * index as f64 / SAMPLES as f64;
@@ -680,7 +681,7 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
     (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
 }
 
-fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<f64>) -> f64 {
+fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) -> f64 {
     let velocity = motion.derivative();
     let acceleration = velocity.derivative();
     let (mut defects, mut forces) = (0.0, 0.0);

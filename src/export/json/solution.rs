@@ -1,13 +1,13 @@
 //! Kind `solution`: a derived law and motion, and what the judge says of it.
 
-use num_traits::{One, Zero};
+use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number::{expression, finite};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, unexpected};
 use crate::derivation::Line;
-use crate::exact::{self, Integer};
+use crate::exact::{self, Doubles, POLYNOMIALS, Polynomials};
 use crate::series::FourierSeries;
 use crate::solution::{self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Root, Solution};
 use crate::symbol::Symbol;
@@ -293,7 +293,7 @@ pub fn verification(verification: &verify::Verification) -> Verification {
 }
 
 /// The harmonics of a motion in numbers but for rounding noise; nothing where one of them is not finite.
-fn motion(motion: &FourierSeries<f64>) -> Option<Vec<HarmonicValue>> {
+fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
     /// Beside the largest swing: what quadrature leaves of harmonics that are not there.
     const NOISE: f64 = 1e-14;
     let entry = |harmonic: usize| HarmonicValue {
@@ -443,7 +443,7 @@ impl LimitCycle {
 }
 
 impl Displacement {
-    fn read(&self) -> Result<FourierSeries<exact::Polynomial>, JsonError> {
+    fn read(&self) -> Result<FourierSeries<Polynomials>, JsonError> {
         /// No document of ours comes near it; a hostile one must not fill the memory.
         const HIGHEST_HARMONIC: usize = 100_000;
         let length = self
@@ -461,6 +461,6 @@ impl Displacement {
             cosine[entry.harmonic] = entry.cos.exact("cos")?;
             sine[entry.harmonic] = entry.sin.exact("sin")?;
         }
-        Ok(FourierSeries::from_parts(cosine, sine, Integer::one()))
+        Ok(FourierSeries::from_parts(POLYNOMIALS, cosine, sine))
     }
 }

@@ -233,7 +233,7 @@ impl<'a> Rates<'a> {
         start: f64,
         end: f64,
     ) -> Result<Self, QuadratureError> {
-        let knots = force.knots(end, start);
+        let knots = resolved(force, force.knots(end, start));
         // A single piece needs no sums.
         let pieces = knots.windows(2).filter(|_| knots.len() > 2);
         let pieces = pieces.map(|pair| integral(force.value, pair[0], pair[1], 0.0));
@@ -461,26 +461,39 @@ fn running_integral(nodes: &[(f64, f64)], values: &[f64], from: f64, to: f64) ->
     polynomials.iter().map(integral).collect()
 }
 
-/// The integral of a force: panels are doubled until the value settles, or until doubling no longer brings it closer,
-/// which is where the rounding of the force itself begins. Errors below `negligible` do not count.
-fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) -> Result<f64, QuadratureError> {
-    const MOST_PANELS: i32 = 64;
-    let with_panels = |panels: i32| {
-        let place = |k: i32| from + (to - from) * f64::from(k) / f64::from(panels);
-        let nodes = (0..panels).flat_map(|k| nodes_and_weights(place(k), place(k + 1)));
-        nodes.map(|(x, weight)| weight * function(x)).sum::<f64>()
-    };
-    let (mut value, mut change) = (with_panels(1), f64::INFINITY);
-    let mut panels = 2;
-    while panels <= MOST_PANELS {
-        let finer = with_panels(panels);
-        let next = (finer - value).abs();
-        if next <= f64::max(TOLERANCE * finer.abs(), negligible) || (next >= 0.5 * change && next <= 1e-9 * finer.abs())
-        {
-            return Ok(finer);
+/// Knots so close that the force between two of them is integrated by a few panels, where between these ones it waves too
+/// often for many: an integral of its own for every instant would then cost as much as the square of the waves.
+fn resolved(force: &Force, knots: Vec<f64>) -> Vec<f64> {
+    const FEW_PANELS: i32 = 4;
+    const MOST_KNOTS: usize = 1 << 15;
+    const HALVINGS: u32 = 15;
+    let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
+    for pair in knots.windows(2) {
+        if settled(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some() {
+            found.push(pair[1]);
+            continue;
         }
-        (value, change) = (finer, next);
-        panels *= 2;
+        let mut open = vec![(pair[0], pair[1], 0)];
+        while let Some((from, to, halvings)) = open.pop() {
+            let fine = halvings == HALVINGS || found.len() + open.len() > MOST_KNOTS;
+            if fine || settled(force.value, from, to, 0.0, FEW_PANELS).is_some() {
+                found.push(to);
+                continue;
+            }
+            let middle = 0.5 * (from + to);
+            open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
+        }
+    }
+    found
+}
+
+/// Panels after which an integral is left to adaptive quadrature.
+const MOST_PANELS: i32 = 64;
+
+/// The integral of a force: panels are doubled until the value settles. Errors below `negligible` do not count.
+fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) -> Result<f64, QuadratureError> {
+    if let Some(value) = settled(function, from, to, negligible, MOST_PANELS) {
+        return Ok(value);
     }
     match integrate_smooth(function, from, to, TOLERANCE) {
         // Where pull and push cancel, the integral is as good as the forces in it allow.
@@ -489,6 +502,29 @@ fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) 
         }) if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) => Ok(value),
         result => result.map(|(value, _)| value),
     }
+}
+
+/// The value at which the integral settles while panels are doubled, or from which on doubling no longer brings it closer, which is
+/// where the rounding of the force itself begins.
+fn settled(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64, most_panels: i32) -> Option<f64> {
+    let with_panels = |panels: i32| {
+        let place = |k: i32| from + (to - from) * f64::from(k) / f64::from(panels);
+        let nodes = (0..panels).flat_map(|k| nodes_and_weights(place(k), place(k + 1)));
+        nodes.map(|(x, weight)| weight * function(x)).sum::<f64>()
+    };
+    let (mut value, mut change) = (with_panels(1), f64::INFINITY);
+    let mut panels = 2;
+    while panels <= most_panels {
+        let finer = with_panels(panels);
+        let next = (finer - value).abs();
+        if next <= f64::max(TOLERANCE * finer.abs(), negligible) || (next >= 0.5 * change && next <= 1e-9 * finer.abs())
+        {
+            return Some(finer);
+        }
+        (value, change) = (finer, next);
+        panels *= 2;
+    }
+    None
 }
 
 /// The integral of the size of a function, roughly.
@@ -515,9 +551,10 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     if is_symmetric(force, equilibrium, amplitude) {
         return Ok(equilibrium - amplitude);
     }
-    let gained = |from: f64, to: f64, before: f64| integral(force.value, to, from, 1e-17 * before);
+    // Against the largest energy on the way, errors below the last digit are none.
+    let gained = |from: f64, to: f64, largest: f64| integral(force.value, to, from, 0.5 * f64::EPSILON * largest);
     // Windows of growing length: to the mirror image of the start, as far again, twice as far, ...
-    let (mut x, mut energy, mut window) = (start, 0.0, 2.0 * amplitude.abs());
+    let (mut x, mut energy, mut largest, mut window) = (start, 0.0, 0.0, 2.0 * amplitude.abs());
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
         let from = x;
         let mut places = force.knots(from, from - side * window);
@@ -529,7 +566,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
             stretches.reverse();
             let mut halvings = 0;
             while let Some((here, next)) = stretches.pop() {
-                let gain = match gained(here, next, energy) {
+                let gain = match gained(here, next, largest) {
                     // Towards a pole, by half of the way at a time.
                     Err(_) if halvings < HALVINGS => {
                         halvings += 1;
@@ -543,7 +580,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
                 if after <= 0.0 {
                     let mut failure = None;
                     let root = find_root(
-                        |candidate| match gained(here, candidate, energy) {
+                        |candidate| match gained(here, candidate, largest) {
                             Ok(gain) => energy + gain,
                             Err(error) => {
                                 failure = Some(error);
@@ -560,6 +597,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
                     };
                 }
                 energy = after;
+                largest = f64::max(largest, energy);
             }
         }
         x = places[places.len() - 1];

@@ -5,8 +5,7 @@ use lindstedt::Values;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
-use lindstedt::verify::Range;
-use lindstedt::verify::{Verification, judge};
+use lindstedt::verify::{Range, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn judged_by(oscillator: &Oscillator, options: &Options, at: &[(&str, &str)]) -> Verification {
@@ -345,4 +344,19 @@ fn what_is_left_over_and_how_far_the_motion_strays() {
         deviation("x'' + x + x^3/1000000 = 0", "2000"),
     );
     assert!((one / other - 1.0).abs() < 1e-6 && one > 0.01, "{one} {other}");
+}
+
+/// Released beyond the pole so far out that its energy is lost in rounding: the motion ends at the pole all the same.
+#[test]
+fn a_pole_that_rounding_hides_ends_the_motion() {
+    let oscillator = Oscillator::parse("x'' + 2.51*x/(1.07 - x)^2 + x = 0").unwrap();
+    let solution = solve(&oscillator, &Options::default()).unwrap();
+    for amplitude in ["7.26", "72600", "7260000", "1e9"] {
+        let at = format!("A = {amplitude}").parse().unwrap();
+        let error = judge(&oscillator, &solution, &at, 0.01).unwrap_err().to_string();
+        assert_eq!(
+            error, "the motion runs into x = 1.07, where the force has no finite value",
+            "A = {amplitude}"
+        );
+    }
 }

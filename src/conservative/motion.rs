@@ -57,6 +57,11 @@ impl Force {
                 None => run(&force, end),
             },
             Err(error @ (PeriodError::Quadrature(_) | PeriodError::Root(_))) => Err(pole(-start).unwrap_or(error)),
+            // Beyond a pole that the search has passed unseen nothing is known.
+            Err(error @ PeriodError::Escapes { searched, .. }) => Err(match pole(searched) {
+                Some(pole @ PeriodError::Pole { .. }) => pole,
+                _ => error,
+            }),
             Err(error) => Err(error),
         };
         found.map_err(|error| error.moved(self.equilibrium()))

@@ -78,6 +78,12 @@ pub enum NoNumbers {
         /// The symbol.
         name: Symbol,
     },
+    /// A symbol that the law is written with is larger than any number.
+    #[error("{name} is beyond the range of double precision, 1.8e308")]
+    Beyond {
+        /// The symbol.
+        name: Symbol,
+    },
     /// The branch of a balance does not reach the amplitude asked for.
     #[error(transparent)]
     Balance(#[from] balance::Lost),
@@ -634,6 +640,9 @@ fn best_hbar(
         // Without a first frequency there is none for any hbar.
         let undefined = |error| match error {
             EvaluationError::MissingSymbol(_) => NoNumbers::NoValue,
+            EvaluationError::Undefined { .. } if definition.meaning.overflow(&numbers).is_some() => NoNumbers::Beyond {
+                name: definition.symbol,
+            },
             EvaluationError::Undefined { .. } => NoNumbers::Undefined {
                 name: definition.symbol,
             },

@@ -45,8 +45,13 @@
 //!
 //! | feature | what it adds |
 //! | --- | --- |
-//! | `cli` | the command-line program, and with it all of the others |
+//! | `cli` | the command-line program, with `json`, `toml` and `parallel` |
+//! | `json` | documents, their readers and their schemas |
+//! | `toml` | problem files |
+//! | `parallel` | sweeps on all cores |
 //! | `plot` | pictures in SVG |
+//!
+//! `cli` and `plot` are on unless default features are turned off.
 
 #![warn(missing_docs)]
 
@@ -89,6 +94,7 @@ pub mod contact;
 pub mod damper;
 pub mod impact;
 
+#[cfg(feature = "toml")]
 pub mod problem;
 
 pub mod catalog;

@@ -17,6 +17,7 @@
 
 use std::str::FromStr;
 
+#[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -147,7 +148,7 @@ impl Summary {
     }
 }
 
-/// Follows every motion by Taylor series, on all threads of the current pool; `progress` hears how many more are done.
+/// Follows every motion by Taylor series, on all threads of the current pool (on one without the feature `parallel`); `progress` hears how many more are done.
 ///
 /// # Errors
 /// [`SimulationError`] and the number of the first motion that cannot begin.
@@ -171,15 +172,16 @@ pub fn sweep(
         keep_path: false,
         ..*options
     };
-    let parts: Vec<Result<Vec<Summary>, (usize, SimulationError)>> = motions
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, motions)| {
-            let runs = simulate_many(motions, &options).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
-            progress(motions.len());
-            Ok(runs.iter().map(Summary::of).collect())
-        })
-        .collect();
+    let run = |(chunk, motions): (usize, &[(Model, Start)])| {
+        let runs = simulate_many(motions, &options).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
+        progress(motions.len());
+        Ok(runs.iter().map(Summary::of).collect::<Vec<Summary>>())
+    };
+    #[cfg(feature = "parallel")]
+    let chunks = motions.par_chunks(CHUNK);
+    #[cfg(not(feature = "parallel"))]
+    let chunks = motions.chunks(CHUNK);
+    let parts: Vec<Result<Vec<Summary>, (usize, SimulationError)>> = chunks.enumerate().map(run).collect();
     let mut summaries = Vec::with_capacity(motions.len());
     for part in parts {
         summaries.extend(part?);
@@ -191,6 +193,7 @@ pub fn sweep(
 ///
 /// # Errors
 /// As [`sweep`].
+#[cfg(feature = "parallel")]
 pub fn sweep_on(
     threads: usize,
     motions: &[(Model, Start)],

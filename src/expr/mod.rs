@@ -53,6 +53,8 @@ use crate::symbol::Symbol;
 
 pub use evaluate::{CompiledFunction, EvaluationError};
 pub use function::Function;
+// Problem files point at their mistakes in the same way.
+#[cfg(feature = "toml")]
 pub(crate) use parse::excerpt;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The law comes from [`method::solve`] on `x'' + sin x = 0`, the phases from
-//! [`contact::phases`](crate::contact::phases), the judgement from Runge-Kutta on equation (9) as it stands.
+//! [`contact::three_phases`](crate::contact::three_phases), the judgement from Runge-Kutta on equation (9) as it stands.
 
 use crate::contact::hertz::Design;
 use crate::contact::linearisation::Rule;

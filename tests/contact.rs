@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
+use lindstedt::contact::Rule;
 use lindstedt::contact::hertz::{self, Design, elastic_force};
-use lindstedt::contact::linearisation::Rule;
-use lindstedt::contact::phases::{Column, Form, Swing, ThreePhases, three_phases};
-use lindstedt::contact::true_motion::{TrueMotion, deviation, true_motion};
+use lindstedt::contact::{Column, Form, Swing, ThreePhases, three_phases};
+use lindstedt::contact::{TrueMotion, deviation, true_motion};
 use lindstedt::impact::{self, Setup};
 use lindstedt::ode::Options;
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use lindstedt::Symbol;
 use lindstedt::exact::Rational;
-use lindstedt::exact::rational::{ratio, to_f64};
+use lindstedt::exact::{ratio, to_f64};
 use lindstedt::expr::{CompiledFunction, Expr, Function, parse_equation, parse_expression};
 use num_traits::Zero;
 use proptest::prelude::*;

@@ -12,8 +12,8 @@
 use std::f64::consts::PI;
 
 use lindstedt::Values;
-use lindstedt::exact::rational::{factorial, ratio};
 use lindstedt::exact::{Integer, POLYNOMIALS, Polynomial, Polynomials, Rational};
+use lindstedt::exact::{factorial, ratio};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, Refusal, solve};
 use lindstedt::oscillator::OscillatorError;

@@ -1,8 +1,8 @@
 //! The same series and the same elimination of secular terms over rings that this crate does not have: residues modulo a prime
 //! chosen at run time, and intervals.
 
-use lindstedt::exact::polynomial::Monomial;
-use lindstedt::exact::ring::Indivisible;
+use lindstedt::exact::Indivisible;
+use lindstedt::exact::Monomial;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring};
 use lindstedt::method::secular::{
     Amplitude, Detuning, Expansion, ForceTerm, Normalisation, Scheme, SecularError, expand,

@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use lindstedt::Symbol;
-use lindstedt::exact::polynomial::Monomial;
-use lindstedt::exact::rational::{ratio, to_f64};
+use lindstedt::exact::Monomial;
 use lindstedt::exact::{Doubles, Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
+use lindstedt::exact::{ratio, to_f64};
 use lindstedt::expr::{Expr, Function, Node, parse_expression};
+use lindstedt::series::Convolutions;
 use lindstedt::series::FourierSeries;
-use lindstedt::series::convolution::Convolutions;
-use lindstedt::series::fourier::fraction;
-use lindstedt::series::taylor::taylor;
+use lindstedt::series::fraction;
+use lindstedt::series::taylor;
 use num_traits::{One, Zero};
 use proptest::prelude::*;
 
@@ -257,7 +257,7 @@ proptest! {
             return Ok(());
         };
         prop_assert!(!corner, "{} at {point} has no series", FUNCTIONS[which]);
-        let at = [("x".into(), lindstedt::exact::rational::to_f64(&point))].into();
+        let at = [("x".into(), lindstedt::exact::to_f64(&point))].into();
         let (mut derivative, mut factorial) = (function, 1.0);
         for (k, part) in parts.iter().enumerate() {
             let coefficient = part.evaluate(&[("x".into(), 1.0)].into()).expect("a number");

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use lindstedt::Symbol;
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::ode::{self, Point, integrate_first_order};
-use lindstedt::series::recurrence::RecurrenceError;
+use lindstedt::series::RecurrenceError;
 use lindstedt::system::{End, Event, Integrator, Options, Path, System, SystemError};
 
 fn expression(text: &str) -> Expr {

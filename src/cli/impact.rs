@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lindstedt::contact::phases::Column;
+use lindstedt::contact::Column;
 use lindstedt::export::{json, latex, text};
 use lindstedt::impact::{Impact, Setup, solve};
 use lindstedt::problem::{Barrier, Order, Problem, Reader};

@@ -5,14 +5,14 @@
 //! free swing. Out: the motion in three closed forms, and the true motion beside it.
 //!
 //! - [`hertz`]: the contact alone: depth, duration, and gamma from mass, radius, length and modulus, equation (8).
-//! - [`linearisation`]: the straight line that replaces F while in contact, equation (15).
-//! - [`phases`]: approach | contact | return in closed form, equations (13) to (16).
-//! - [`true_motion`]: the Runge-Kutta judge of the original equation, and the deviation from it.
+//! - [`Rule`] and [`fit`]: the straight line that replaces F while in contact, equation (15).
+//! - [`three_phases`]: approach | contact | return in closed form, equations (13) to (16).
+//! - [`true_motion()`]: the Runge-Kutta judge of the original equation, and the deviation from it.
 //!
 //! ```
 //! use lindstedt::contact::hertz::{Design, elastic_force};
-//! use lindstedt::contact::linearisation::Rule;
-//! use lindstedt::contact::phases::{Column, Swing, three_phases};
+//! use lindstedt::contact::Rule;
+//! use lindstedt::contact::{Column, Swing, three_phases};
 //!
 //! let swing = Swing {
 //!     amplitude: 1.5,
@@ -31,6 +31,10 @@
 //! ```
 
 pub mod hertz;
-pub mod linearisation;
-pub mod phases;
-pub mod true_motion;
+pub(crate) mod linearisation;
+pub(crate) mod phases;
+pub(crate) mod true_motion;
+
+pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
+pub use phases::{Column, Form, Phase, PhasesError, Swing, ThreePhases, three_phases};
+pub use true_motion::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation, true_motion};

@@ -23,11 +23,6 @@ pub fn to_f64(value: &Rational) -> f64 {
     value.to_f64().unwrap_or(f64::NAN)
 }
 
-/// The fraction as people write it: `-1/8`, `3`.
-pub fn to_text(value: &Rational) -> String {
-    value.to_string()
-}
-
 /// The exact `p/q`-th power, where one exists among the fractions: `(4/9)^(1/2) = 2/3`.
 ///
 /// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None` where the result is

@@ -7,5 +7,5 @@ pub mod figure;
 pub mod json;
 pub mod latex;
 pub mod simulation;
-pub mod steps;
+pub(crate) mod steps;
 pub mod text;

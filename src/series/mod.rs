@@ -1,10 +1,13 @@
-//! Series with exact coefficients: [`taylor`] of a function, [`fourier`] in `theta = omega t`, and running [`convolution`]s
-//! of powers, order by order; with floating-point ones by [`recurrence`].
+//! Series with exact coefficients: Taylor's of a function ([`taylor()`]), [`FourierSeries`] in `theta = omega t`, and running
+//! [`Convolutions`] of powers, order by order; with floating-point ones by recurrence ([`numeric_taylor`]).
 
-pub mod convolution;
-pub mod fourier;
-pub mod recurrence;
-pub mod taylor;
-pub mod terms;
+pub(crate) mod convolution;
+pub(crate) mod fourier;
+pub(crate) mod recurrence;
+pub(crate) mod taylor;
+pub(crate) mod terms;
 
-pub use fourier::FourierSeries;
+pub use convolution::{Convolutions, Node};
+pub use fourier::{FourierSeries, Resonance, fraction, linear_combination, sum_of_products};
+pub use recurrence::{RecurrenceError, numeric_taylor};
+pub use taylor::{HIGHEST_DEGREE, TaylorError, taylor};

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use lindstedt::Values;
 use lindstedt::catalog::CATALOG;
 use lindstedt::exact::Rational;
-use lindstedt::exact::rational::ratio;
+use lindstedt::exact::ratio;
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::frequency_squared_of;
 use lindstedt::method::{Options, Refusal, solve};
@@ -158,7 +158,7 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
         let scale = Expr::symbol("A").integer_power(2).ok()?;
         let numerator = (&form.value * &scale).expand().ok()?;
         let zero = Rational::from_integer(0.into());
-        let parts = lindstedt::series::taylor::taylor(&numerator, &[(small, zero)], HIGHEST + 2).ok()?;
+        let parts = lindstedt::series::taylor(&numerator, &[(small, zero)], HIGHEST + 2).ok()?;
         Expr::divide(&Expr::sum(parts), &scale).ok()? - Expr::from(exact)
     };
     let difference = difference

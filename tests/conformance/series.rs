@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use lindstedt::Values;
 use lindstedt::exact::Rational;
-use lindstedt::exact::rational::ratio;
+use lindstedt::exact::ratio;
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, Refusal};
@@ -107,7 +107,7 @@ fn pade_approximants_agree_with_the_series() {
             let zero: Rational = ratio(0, 1);
             let even = small == "A" && equation.contains("sin");
             let highest = (degrees.0 + degrees.1) * if even { 2 } else { 1 };
-            let parts = lindstedt::series::taylor::taylor(value, &[(small.into(), zero)], highest).expect("a series");
+            let parts = lindstedt::series::taylor(value, &[(small.into(), zero)], highest).expect("a series");
             let law = by_options(
                 equation,
                 Options {
@@ -179,7 +179,7 @@ fn lindstedt_poincare_is_the_expansion_of_the_exact_frequency() {
     }
     let root: Expr = "sqrt(1 + eps)".parse().unwrap();
     let law = Expr::divide(&root, &series).unwrap();
-    let parts = lindstedt::series::taylor::taylor(&law, &[("eps".into(), ratio(0, 1))], order).unwrap();
+    let parts = lindstedt::series::taylor(&law, &[("eps".into(), ratio(0, 1))], order).unwrap();
     let expected = Expr::sum(parts).expand().unwrap();
     let solution = by_options(
         "x'' + x + eps*x^3 = 0",

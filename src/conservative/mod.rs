@@ -18,6 +18,8 @@ pub(crate) mod projection;
 
 pub use force::Force;
 pub use parity::is_odd;
+pub use potential::potential;
+pub use projection::cosine_coefficient;
 
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;

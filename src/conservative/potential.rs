@@ -20,7 +20,7 @@ use crate::symbol::Symbol;
 /// An antiderivative of a force in `coordinate`; `None` where a term has no closed form here.
 ///
 /// ```
-/// use lindstedt::{conservative::potential::potential, expr::Expr};
+/// use lindstedt::{conservative::potential, expr::Expr};
 /// let force: Expr = "sin(x) + eps*x^3".parse().unwrap();
 /// assert_eq!(potential(&force, "x".into()).unwrap().to_string(), "eps*x^4/4 - cos(x)");
 /// ```

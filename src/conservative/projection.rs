@@ -28,7 +28,7 @@ const HIGHEST_POWER: usize = 24;
 /// closed form here.
 ///
 /// ```
-/// use lindstedt::{conservative::projection::cosine_coefficient, expr::Expr};
+/// use lindstedt::{conservative::cosine_coefficient, expr::Expr};
 /// let force: Expr = "sin(x)".parse().unwrap();
 /// let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();
 /// assert_eq!(first.to_string(), "2*J1(A)");

@@ -120,7 +120,10 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
         let verdict = verification.verdict.name();
         let error = verification
             .relative_error
-            .map_or("none".to_owned(), |error| decimal(100.0 * error) + " %");
+            .map_or("none".to_owned(), |error| match error.abs() < 1e-9 {
+                true => super::text::percent(error),
+                false => decimal(100.0 * error) + " %",
+            });
         let truth = decimal(verification.true_frequency);
         let other = verification.error_of_omega.filter(|other| {
             verification

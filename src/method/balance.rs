@@ -11,8 +11,8 @@
 //!
 //! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish, or, for a force without
 //! linear part such as `x^3`, keep the values that belong to its lowest power. Where that branch turns back before it reaches
-//! the amplitude asked for, there may be motions about several wells: they are followed down from amplitudes so large that the
-//! highest power alone decides. Where there are none either, the balance is refused in words.
+//! the amplitude asked for, there may be others, about several wells or about this one: they are followed down from amplitudes so
+//! large that the highest power alone decides. Where there are none either, the balance is refused in words.
 //!
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
@@ -36,9 +36,10 @@ pub struct Balance {
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
     pub motion: FourierSeries<Doubles>,
-    /// Where the branch from rest ends before this amplitude: the motion is then one about several wells, followed down from
-    /// large amplitudes.
+    /// Where the branch from rest ends before this amplitude: the motion is then one followed down from large amplitudes.
     pub rest_ends_at: Option<f64>,
+    /// Whether it passes other equilibria on its way.
+    pub over_several_wells: bool,
 }
 
 /// Why a balance has no solution.
@@ -99,6 +100,7 @@ pub fn balance(force: &Force, degree: Option<u32>, harmonics: &[usize], amplitud
         frequency_squared: state.frequency_squared(),
         motion,
         rest_ends_at,
+        over_several_wells: !problem.is_pulled_back(low, high),
     })
 }
 
@@ -451,11 +453,22 @@ impl<'a> Problem<'a> {
         let Lost::Ends { amplitude } = lost else {
             return Err(lost);
         };
-        if !self.runs_over_several_wells() {
+        // A true motion that stays in one of several wells is none about all of them.
+        let reach = 1.5 * self.amplitude.abs();
+        if !(self.runs_over_several_wells() || self.is_pulled_back(-reach, reach)) {
             return Err(lost);
         }
         let outer = self.at_large().and_then(|large| self.followed_from(large, -1.0).ok());
         outer.map(|found| (found, Some(amplitude))).ok_or(lost)
+    }
+
+    /// Whether the force pulls back all the way between two distances on either side of the equilibrium: there is no other.
+    fn is_pulled_back(&self, low: f64, high: f64) -> bool {
+        const SAMPLES: i32 = 1000;
+        // Near the equilibrium and far from it alike.
+        let parts = (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
+        let mut places = parts.flat_map(|part| [part * low, part * high]).filter(|&x| x != 0.0);
+        places.all(|x| x * self.force.at(x) > 0.0)
     }
 
     /// Whether the true motion passes other equilibria on its way.

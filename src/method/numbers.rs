@@ -595,7 +595,12 @@ fn solve(
         let found = balance::balance(&force, degree, &harmonics, amplitude)?;
         let remark = found.rest_ends_at.map(|end| {
             let end = significant(end, 6);
-            format!("a balance about several wells: the one that continues from rest ends at A = {end}")
+            match found.over_several_wells {
+                true => format!("a balance about several wells: the one that continues from rest ends at A = {end}"),
+                false => format!(
+                    "a balance followed down from large amplitudes: the one that continues from rest ends at A = {end}"
+                ),
+            }
         });
         return Ok((found.frequency_squared, found.motion.sum(&shift), remark));
     }

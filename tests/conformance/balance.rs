@@ -147,6 +147,30 @@ fn balances_about_several_wells_come_from_large_amplitudes() {
     }
 }
 
+/// A single well whose force softens before it stiffens: the branch of a few harmonics from rest turns back, the one from large
+/// amplitudes is that of the power x^5, for whose motions one harmonic is known.
+#[test]
+fn a_single_well_is_balanced_from_large_amplitudes_too() {
+    let equation = "x'' + x + 1.34*x^2 - 0.00509*x^3 + 0.441*x^5 = 0";
+    let oscillator = Oscillator::parse(equation).unwrap();
+    let options = Options {
+        method: Some(Method::HarmonicBalance),
+        order: Some(1),
+        ..Options::default()
+    };
+    let solution = by_options(equation, options).unwrap();
+    let values = numbers(&[("A", 464.0)]);
+    let found = evaluate(&oscillator, &solution, &values).unwrap();
+    // omega^2 = 5/8 c A^4, beside which the other terms are of the order of 1/A^2.
+    let power = 0.625 * 0.441 * 464.0_f64.powi(4);
+    assert!((found.frequency_squared / power - 1.0).abs() < 1e-5, "{found:?}");
+    assert!(
+        found
+            .remark
+            .is_some_and(|remark| remark.contains("from large amplitudes"))
+    );
+}
+
 /// Close to the edge of its well a motion may have no balance, and those about several wells are none of it.
 #[test]
 fn balances_of_other_motions_are_not_taken() {

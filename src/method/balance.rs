@@ -454,12 +454,12 @@ impl<'a> Problem<'a> {
             return Err(lost);
         };
         // A true motion that stays in one of several wells is none about all of them.
-        let reach = 1.5 * self.amplitude.abs();
-        if !(self.runs_over_several_wells() || self.is_pulled_back(-reach, reach)) {
-            return Err(lost);
-        }
+        let fits = |found: &State| {
+            let (low, high) = self.range(found);
+            self.is_pulled_back(low, high) || self.runs_over_several_wells()
+        };
         let outer = self.at_large().and_then(|large| self.followed_from(large, -1.0).ok());
-        outer.map(|found| (found, Some(amplitude))).ok_or(lost)
+        outer.filter(fits).map(|found| (found, Some(amplitude))).ok_or(lost)
     }
 
     /// Whether the force pulls back all the way between two distances on either side of the equilibrium: there is no other.

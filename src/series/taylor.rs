@@ -59,7 +59,7 @@ pub enum TaylorError {
 /// A term that is not analytic at the point, a degree above the limit, or a coefficient that does not exist.
 ///
 /// ```
-/// use lindstedt::{expr::parse_expression, series::taylor::taylor};
+/// use lindstedt::{expr::parse_expression, series::taylor};
 /// let force = parse_expression("sin(x)").unwrap();
 /// let parts = taylor(&force, &[("x".into(), num_traits::Zero::zero())], 5).unwrap();
 /// assert_eq!(parts[3].to_string(), "-x^3/6");

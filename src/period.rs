@@ -78,6 +78,9 @@ pub enum PeriodError {
         /// What is beyond, in words.
         term: String,
     },
+    /// The force changes so often along the motion that its period would take too long.
+    #[error("the force changes too often along this motion for its period to be computed")]
+    Waves,
     /// The motion did not come back within the time allowed.
     #[error("no return to a turning point within t = {0}")]
     NoReturn(f64),
@@ -114,7 +117,7 @@ impl PeriodError {
                 place: place + origin,
                 term,
             },
-            Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => self,
+            Self::Waves | Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => self,
         }
     }
 }
@@ -227,13 +230,8 @@ struct Rates<'a> {
 }
 
 impl<'a> Rates<'a> {
-    fn new(
-        force: &'a Force<'a>,
-        weight: &'a dyn Fn(f64) -> f64,
-        start: f64,
-        end: f64,
-    ) -> Result<Self, QuadratureError> {
-        let knots = resolved(force, force.knots(end, start));
+    fn new(force: &'a Force<'a>, weight: &'a dyn Fn(f64) -> f64, start: f64, end: f64) -> Result<Self, PeriodError> {
+        let knots = resolved(force, force.knots(end, start))?;
         // A single piece needs no sums.
         let pieces = knots.windows(2).filter(|_| knots.len() > 2);
         let pieces = pieces.map(|pair| integral(force.value, pair[0], pair[1], 0.0));
@@ -463,9 +461,12 @@ fn running_integral(nodes: &[(f64, f64)], values: &[f64], from: f64, to: f64) ->
 
 /// Knots so close that the force between two of them is integrated by a few panels, where between these ones it waves too
 /// often for many: an integral of its own for every instant would then cost as much as the square of the waves.
-fn resolved(force: &Force, knots: Vec<f64>) -> Vec<f64> {
+///
+/// # Errors
+/// More knots than can be waited for.
+fn resolved(force: &Force, knots: Vec<f64>) -> Result<Vec<f64>, PeriodError> {
     const FEW_PANELS: i32 = 4;
-    const MOST_KNOTS: usize = 1 << 15;
+    const MOST_KNOTS: usize = 1 << 14;
     const HALVINGS: u32 = 15;
     let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
     for pair in knots.windows(2) {
@@ -475,8 +476,10 @@ fn resolved(force: &Force, knots: Vec<f64>) -> Vec<f64> {
         }
         let mut open = vec![(pair[0], pair[1], 0)];
         while let Some((from, to, halvings)) = open.pop() {
-            let fine = halvings == HALVINGS || found.len() + open.len() > MOST_KNOTS;
-            if fine || settled(force.value, from, to, 0.0, FEW_PANELS).is_some() {
+            if found.len() + open.len() > MOST_KNOTS {
+                return Err(PeriodError::Waves);
+            }
+            if halvings == HALVINGS || settled(force.value, from, to, 0.0, FEW_PANELS).is_some() {
                 found.push(to);
                 continue;
             }
@@ -484,7 +487,7 @@ fn resolved(force: &Force, knots: Vec<f64>) -> Vec<f64> {
             open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
         }
     }
-    found
+    Ok(found)
 }
 
 /// Panels after which an integral is left to adaptive quadrature.

@@ -360,3 +360,18 @@ fn a_pole_that_rounding_hides_ends_the_motion() {
         );
     }
 }
+
+/// Thousands of waves along a motion are looked at no farther than a second's work allows; hundreds of thousands are refused.
+#[test]
+fn forces_that_wave_all_the_way_are_looked_at_less_far() {
+    let equation = "x'' + x - 0.178*cos(x) = 0";
+    let found = judged(equation, Method::Exact, None, "25600");
+    // A small wave on a linear force moves its frequency by far less than the ratio of the two.
+    assert!((found.true_frequency - 1.0).abs() < 1e-8, "{found:?}");
+    let looked = number_behind(&found, "at every amplitude looked at, up to A = ");
+    assert!((25_600.0..100.0 * 25_600.0).contains(&looked), "{looked}");
+    let oscillator = Oscillator::parse(equation).unwrap();
+    let solution = solve(&oscillator, &Options::default()).unwrap();
+    let error = judge(&oscillator, &solution, &"A = 1e6".parse().unwrap(), 0.01).unwrap_err();
+    assert!(error.to_string().contains("changes too often"), "{error}");
+}

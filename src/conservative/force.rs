@@ -7,7 +7,7 @@
 //! f(x_e + y) = f'(x_e) y + f''(x_e) y^2/2 + ...,   |y| <= r,   r so small that the last terms kept are below rounding
 //! ```
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::BTreeMap;
 
 use num_traits::Zero;
@@ -35,6 +35,7 @@ pub struct Force {
     features: OnceCell<Features>,
     /// Whether places of features are poles, each decided once.
     poles: RefCell<BTreeMap<u64, bool>>,
+    evaluations: Cell<u64>,
 }
 
 /// The Taylor polynomial and the distance up to which it is as good as the force.
@@ -67,6 +68,7 @@ impl Force {
             numbers: numbers.clone(),
             features: OnceCell::new(),
             poles: RefCell::default(),
+            evaluations: Cell::new(0),
         };
         found.near = found.near_rest(equilibrium, amplitude);
         Some(found)
@@ -116,7 +118,13 @@ impl Force {
         Some(if from <= to { sum } else { -sum })
     }
 
+    /// How often the force or its slope was evaluated so far: a measure of work that is the same on every machine.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.get()
+    }
+
     fn call(&self, function: &CompiledFunction, y: f64) -> f64 {
+        self.evaluations.set(self.evaluations.get() + 1);
         let mut arguments = self.arguments.borrow_mut();
         arguments[0] = self.equilibrium + y;
         function.call(&arguments)

@@ -28,10 +28,17 @@ pub(super) struct Truth<'a> {
     well: Option<Well>,
     /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
     places: Vec<f64>,
+    /// How many times the amplitude asked for a motion without escape is looked at.
+    times: f64,
 }
 
 /// How far beyond the amplitude asked for a motion without escape is looked at.
 const FARTHEST: f64 = 100.0;
+
+/// Evaluations of the force that one true frequency may take, and all of them together: some seconds of work. A force that
+/// waves thousands of times along a motion is looked at less far.
+const MOST_FOR_ONE: f64 = 3e7;
+const MOST: u64 = 100_000_000;
 
 impl<'a> Truth<'a> {
     pub(super) fn new(oscillator: &'a Oscillator, solution: &'a Solution, numbers: &'a BTreeMap<Symbol, f64>) -> Self {
@@ -42,7 +49,12 @@ impl<'a> Truth<'a> {
             known: RefCell::default(),
             well: well_of(oscillator, solution, numbers),
             places: vec![],
+            times: FARTHEST,
         };
+        let asked = truth.asked().abs();
+        let _ = truth.frequency(asked);
+        let work = truth.physics.as_ref().map_or(0, |physics| physics.rest.evaluations());
+        truth.times = (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST);
         let at_origin = solution.equilibrium.is_zero();
         let symmetric = at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
         truth.places = truth.reached_places(symmetric).unwrap_or_default();
@@ -70,7 +82,7 @@ impl<'a> Truth<'a> {
 
     /// The end of what is looked at.
     fn farthest(&self) -> f64 {
-        f64::min(0.999 * self.largest_amplitude(), FARTHEST * self.asked().abs())
+        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
             .max(self.asked().abs().min(self.largest_amplitude()))
     }
 
@@ -79,7 +91,8 @@ impl<'a> Truth<'a> {
         if let Some(known) = self.known.borrow().get(&size.to_bits()) {
             return *known;
         }
-        let found = self.physics.as_ref().and_then(|physics| {
+        let affordable = |physics: &&Physics| physics.rest.evaluations() < MOST;
+        let found = self.physics.as_ref().filter(affordable).and_then(|physics| {
             let start = physics.start(self.solution, &self.numbers_at(size)).ok()?;
             physics
                 .rest
@@ -298,6 +311,10 @@ impl Follow<'_> {
                 continue;
             }
             let Some(value) = (self.error)(middle) else {
+                // Where nothing is known in between the range ends with what is.
+                if high.1.abs() > self.tolerance {
+                    return Some(low.0);
+                }
                 continue;
             };
             self.evaluations.set(self.evaluations.get() + 1);

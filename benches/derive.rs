@@ -3,8 +3,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;
 use lindstedt::Values;
-use lindstedt::contact::Rule;
-use lindstedt::contact::hertz::Design;
+use lindstedt::impact::Rule;
+use lindstedt::impact::hertz::Design;
 use lindstedt::impact::{self, Setup};
 use lindstedt::method::{Options, numbers, solve};
 use lindstedt::solution::Method;

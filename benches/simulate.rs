@@ -4,7 +4,7 @@
 //! judge for comparison.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use lindstedt::damper::{Integrator, Model, Options, Start, simulate, simulate_many};
+use lindstedt::impact::{Integrator, Model, Options, Start, simulate, simulate_many};
 
 const REST: Start = Start { x: -1.5, velocity: 0.0 };
 

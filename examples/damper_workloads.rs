@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use lindstedt::damper::{Integrator, Model, Options, Simulation, Start, simulate, simulate_many};
+use lindstedt::impact::{Integrator, Model, Options, Simulation, Start, simulate, simulate_many};
 
 fn main() {
     let w5: Vec<(Model, Start)> = (0..1000)

@@ -38,8 +38,7 @@
 //! | [`equilibrium`] | where the motion swings about |
 //! | [`method`] | one file each, one row in the table |
 //! | [`verify`] | the true motion and the verdict |
-//! | [`contact`] | Hertz, the fitted line, the three phases of a pendulum that hits an elastic barrier |
-//! | [`damper`], [`impact`] | the same pendulum with all forces, event by event; derived law, phases and judge together |
+//! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
 //! | [`problem`] | problem files |
 //! | [`catalog`] | classical oscillators |
 //! | [`export`] | text, LaTeX, JSON, pictures |
@@ -90,9 +89,6 @@ pub mod method;
 
 pub mod verify;
 
-pub mod contact;
-
-pub mod damper;
 pub mod impact;
 
 #[cfg(feature = "toml")]

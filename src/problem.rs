@@ -11,9 +11,9 @@ use std::str::FromStr;
 
 use serde::Deserialize;
 
-use crate::contact::hertz::{Design, NotPositive};
-use crate::contact::linearisation::{Rule, UnknownRule};
 use crate::expr::{ParseError, parse_expression};
+use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::{Rule, UnknownRule};
 use crate::symbol::Symbol;
 use crate::values::{ValueError, Values};
 

@@ -3,11 +3,11 @@
 
 use std::f64::consts::PI;
 
-use lindstedt::contact::Rule;
-use lindstedt::contact::hertz::{self, Design, elastic_force};
-use lindstedt::contact::{Column, Form, Swing, ThreePhases, three_phases};
-use lindstedt::contact::{TrueMotion, deviation, true_motion};
+use lindstedt::impact::Rule;
+use lindstedt::impact::hertz::{self, Design, elastic_force};
 use lindstedt::impact::{self, Setup};
+use lindstedt::impact::{Column, Form, Swing, ThreePhases, three_phases};
+use lindstedt::impact::{TrueMotion, deviation, true_motion};
 use lindstedt::ode::Options;
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Starts on a barrier, inside one, held by friction there: against an integrator of this file's own, fourth-order
 //! Runge-Kutta in small equal steps with every event by bisection, which shares nothing with the library.
 
-use lindstedt::damper::{Friction, Integrator, Model, Options, Side, Simulation, Start, Stop, simulate};
+use lindstedt::impact::{Friction, Integrator, Model, Options, Side, Simulation, Start, Stop, simulate};
 
 /// A contact: from when to when.
 type Span = (f64, Option<f64>);

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lindstedt::contact::Column;
 use lindstedt::export::{json, latex, text};
-use lindstedt::impact::{Impact, Setup, solve};
+use lindstedt::impact::{Column, Impact, Setup, solve};
 use lindstedt::problem::{Barrier, Order, Problem, Reader};
 
 use super::problem::from_file;
@@ -126,7 +125,7 @@ fn picture(_: &Impact) -> Result<String, Failure> {
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::decimal::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
-    use lindstedt::impact::Path;
+    use lindstedt::impact::SampledMotion;
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);
@@ -136,7 +135,7 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         ("closed form, energy", CurveStyle::SECOND_FORMULA),
     ];
     let motion = |(path, (label, style))| {
-        let Path { samples, contact }: &Path = path;
+        let SampledMotion { samples, contact }: &SampledMotion = path;
         ImpactMotion {
             label,
             style,

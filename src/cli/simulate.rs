@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::damper::sweep::{Axis, MOST_MOTIONS, Summary, sweep, sweep_on};
-use lindstedt::damper::{Integrator, Simulation, simulate};
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
+use lindstedt::impact::sweep::{Axis, MOST_MOTIONS, Summary, sweep, sweep_on};
+use lindstedt::impact::{Integrator, Simulation, simulate};
 use lindstedt::interrupt::Interrupt;
 use lindstedt::problem::{DamperError, Problem};
 use lindstedt::verify::Verdict;
@@ -55,7 +55,7 @@ fn time(text: &str) -> Result<f64, String> {
 
 fn axis(text: &str) -> Result<Axis, String> {
     text.parse()
-        .map_err(|error: lindstedt::damper::sweep::AxisError| error.to_string())
+        .map_err(|error: lindstedt::impact::sweep::AxisError| error.to_string())
 }
 
 /// Without `--tolerance`: the energy that may go astray, relative to the largest.

@@ -12,12 +12,11 @@ use num_traits::One;
 pub use expression::{expression, symbol};
 
 pub use super::steps::latex as steps;
-use crate::contact::phases::{Column, Form, Phase};
 use crate::decimal::{decimal, significant, significant_fraction};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, parse_expression};
-use crate::impact::Impact;
+use crate::impact::{Column, Form, Impact, Phase};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{LimitCycle, Solution};

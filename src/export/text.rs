@@ -9,12 +9,11 @@ use num_traits::One;
 pub use comparison::comparison;
 
 pub use super::steps::text as steps;
-use crate::contact::phases::Column;
 use crate::decimal::{decimal, significant, significant_fraction};
 use crate::derivation::NOTATION;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
-use crate::impact::Impact;
+use crate::impact::{Column, Impact};
 use crate::method::homotopy_analysis::HBAR;
 use crate::series::FourierSeries;
 use crate::series::terms;

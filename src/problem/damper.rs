@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::keys::key_of;
 use super::{Barrier, Problem, ProblemError, Reader, UnreadKey};
-use crate::damper::{Friction, Model, ModelError, Options, Side, Start};
+use crate::impact::{Friction, Model, ModelError, Options, Side, Start};
 use crate::spelling::nearest;
 
 /// What a problem file says about the damper.

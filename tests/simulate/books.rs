@@ -1,6 +1,6 @@
 //! Whatever the parameters: energy, impacts and pieces add up.
 
-use lindstedt::damper::{Friction, Model, Start, Stop};
+use lindstedt::impact::{Friction, Model, Start, Stop};
 use proptest::prelude::*;
 
 use super::taylor;
@@ -41,7 +41,7 @@ proptest! {
             prop_assert!(pair[0].entry_time <= exit && exit <= pair[1].entry_time);
         }
         for (t, x, _) in motion.path.points(4) {
-            let free = motion.path.state_at(t) == Some(lindstedt::damper::State::Free);
+            let free = motion.path.state_at(t) == Some(lindstedt::impact::State::Free);
             prop_assert!(!free || x <= right + 1e-12, "t = {}, x = {}", t, x);
         }
         let pieces = motion.path.pieces();

@@ -1,6 +1,6 @@
 //! The contact: restitution, no pull, and motions that lean on a barrier.
 
-use lindstedt::damper::{Integrator, Model, Start, Stop};
+use lindstedt::impact::{Integrator, Model, Start, Stop};
 use lindstedt::ode::root::find_root;
 
 use super::{REST, run, taylor};
@@ -51,7 +51,7 @@ fn the_contact_never_pulls() {
             .path
             .pieces()
             .iter()
-            .any(|piece| matches!(piece.state, lindstedt::damper::State::Detached(_)))
+            .any(|piece| matches!(piece.state, lindstedt::impact::State::Detached(_)))
     );
     assert!(motion.difference(&judge, 2001).displacement < 1e-8);
     assert!(motion.energy().residual < 1e-9, "{:?}", motion.energy());

@@ -1,8 +1,8 @@
 //! Equation (7) as anybody would write it down, followed by the integrator of any first-order equations: flight in time, contact
 //! in w with x = x_c + w^2 and dt = w ds, each from its event to the next.
 
-use lindstedt::damper::{Friction, Model, Side, Start, State};
 use lindstedt::expr::parse_expression;
+use lindstedt::impact::{Friction, Model, Side, Start, State};
 use lindstedt::system::{End, Event, Options, Path, System};
 
 use super::taylor;

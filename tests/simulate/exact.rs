@@ -1,6 +1,6 @@
 //! Conservative motions against elliptic functions and quadrature, down to grazing contacts.
 
-use lindstedt::damper::{Model, Start, Stop};
+use lindstedt::impact::{Model, Start, Stop};
 use lindstedt::ode::quadrature::integrate_smooth;
 use lindstedt::ode::root::find_root;
 

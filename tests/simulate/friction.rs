@@ -1,6 +1,6 @@
 //! Dry friction: what it takes, and when it holds and lets go.
 
-use lindstedt::damper::{Integrator, Model, Simulation, Start, Stop};
+use lindstedt::impact::{Integrator, Model, Simulation, Start, Stop};
 
 use super::{REST, run, taylor};
 
@@ -53,7 +53,7 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
             .path
             .pieces()
             .iter()
-            .find(|piece| piece.state != lindstedt::damper::State::Stuck);
+            .find(|piece| piece.state != lindstedt::impact::State::Stuck);
         assert!((first.expect("it slips").start - release).abs() < 1e-10);
     }
     let (fast, judge) = (
@@ -64,7 +64,7 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
     let stuck = |motion: &Simulation| {
         let pieces = motion.path.pieces().iter();
         pieces
-            .filter(|piece| piece.state == lindstedt::damper::State::Stuck)
+            .filter(|piece| piece.state == lindstedt::impact::State::Stuck)
             .map(|piece| piece.end - piece.start)
             .sum::<f64>()
     };

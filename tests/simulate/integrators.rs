@@ -1,6 +1,6 @@
 //! One integrator against the other, and against itself a hundred times tighter.
 
-use lindstedt::damper::{Friction, Integrator, Model, Start, Stop};
+use lindstedt::impact::{Friction, Integrator, Model, Start, Stop};
 
 use super::{REST, run, taylor};
 

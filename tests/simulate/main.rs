@@ -11,7 +11,7 @@ mod many;
 mod refusals;
 mod rest;
 
-use lindstedt::damper::{Integrator, Model, Options, Simulation, Start, simulate};
+use lindstedt::impact::{Integrator, Model, Options, Simulation, Start, simulate};
 
 const REST: Start = Start { x: -1.5, velocity: 0.0 };
 

@@ -1,7 +1,7 @@
 //! Several motions at a time, and on several threads, are each what they are alone.
 
-use lindstedt::damper::sweep::sweep_on;
-use lindstedt::damper::{Friction, Integrator, Model, Options, Start, simulate, simulate_many};
+use lindstedt::impact::sweep::sweep_on;
+use lindstedt::impact::{Friction, Integrator, Model, Options, Start, simulate, simulate_many};
 
 /// Motions with every term on, different in every parameter.
 fn crowd(count: usize) -> Vec<(Model, Start)> {

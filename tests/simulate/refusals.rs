@@ -1,6 +1,6 @@
 //! What is no motion is refused, and a run that breaks off keeps what it has.
 
-use lindstedt::damper::{Integrator, Model, Options, Start, Stop, simulate, simulate_many};
+use lindstedt::impact::{Integrator, Model, Options, Start, Stop, simulate, simulate_many};
 
 use super::REST;
 

@@ -1,6 +1,6 @@
 //! Rest times by their definition, from samples of the motion and from the action.
 
-use lindstedt::damper::{Integrator, Model, NoRest, Options, Start, Stop, simulate};
+use lindstedt::impact::{Integrator, Model, NoRest, Options, Start, Stop, simulate};
 use lindstedt::ode::root::find_root;
 
 use super::{REST, run, taylor};

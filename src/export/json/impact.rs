@@ -6,10 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
-use crate::contact::linearisation::Rule;
-use crate::contact::phases::{self, Form, ThreePhases};
-use crate::contact::true_motion::Deviation;
-use crate::impact::{self, Impact};
+use crate::impact::{self, Deviation, Form, Impact, Rule, ThreePhases};
 use crate::verify::Verdict;
 
 /// A pendulum released from rest at x = -amplitude that hits an elastic barrier: approach, contact and return in closed form, beside
@@ -263,7 +260,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             energy_drift: impact.truth.energy_drift,
             paper: column(&impact.paper, &impact.paper_deviation),
             energy: column(&impact.energy, &impact.energy_deviation),
-            verdict: impact.verdict(phases::Column::Paper, tolerance).name().to_owned(),
+            verdict: impact.verdict(impact::Column::Paper, tolerance).name().to_owned(),
         },
     }
 }
@@ -290,7 +287,7 @@ impl PhaseName {
 }
 
 impl Phase {
-    fn of(phase: &phases::Phase) -> Self {
+    fn of(phase: &impact::Phase) -> Self {
         let state = |elapsed: f64| {
             let (x, velocity) = phase.form.at(elapsed);
             State { x, velocity }
@@ -330,8 +327,8 @@ impl Phase {
     }
 
     /// The phase that the document describes.
-    pub fn read(&self) -> phases::Phase {
-        phases::Phase {
+    pub fn read(&self) -> impact::Phase {
+        impact::Phase {
             name: self.name.name(),
             start: self.start,
             end: self.end,
@@ -356,7 +353,7 @@ impl ImpactDocument {
     ///
     /// # Errors
     /// A document of another kind.
-    pub fn read_phases(&self) -> Result<Vec<phases::Phase>, JsonError> {
+    pub fn read_phases(&self) -> Result<Vec<impact::Phase>, JsonError> {
         check_kind(&self.schema, Kind::Impact)?;
         Ok(self.phases.iter().map(Phase::read).collect())
     }

@@ -31,7 +31,7 @@ pub use simulation::{SimulationDocument, simulation};
 pub use solution::{SolutionDocument, solution};
 pub use sweep::{SweepDocument, sweep};
 
-use crate::contact::phases::Phase;
+use crate::impact::Phase;
 use crate::solution::Solution;
 use schema::{check_kind, methods};
 

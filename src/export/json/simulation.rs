@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use crate::damper::{self, Friction, Integrator, Side};
 use crate::export::simulation::{COMPARED, Report, friction, notes};
+use crate::impact::{self, Friction, Integrator, Side};
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of 1/omega of small swings,
 /// sqrt(L/g), energies in units of m g L.
@@ -250,7 +250,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
     }
 }
 
-fn impact(impact: &damper::Impact) -> Impact {
+fn impact(impact: &impact::Contact) -> Impact {
     Impact {
         entry_time: impact.entry_time,
         exit_time: impact.exit_time,
@@ -263,7 +263,7 @@ fn impact(impact: &damper::Impact) -> Impact {
     }
 }
 
-fn judge(motion: &damper::Simulation, judge: &damper::Simulation) -> Judge {
+fn judge(motion: &impact::Simulation, judge: &impact::Simulation) -> Judge {
     let difference = motion.difference(judge, COMPARED);
     Judge {
         integrator: integrator(judge.integrator).to_owned(),
@@ -286,7 +286,7 @@ fn integrator(integrator: Integrator) -> &'static str {
     }
 }
 
-fn final_state(motion: &damper::Simulation) -> State {
+fn final_state(motion: &impact::Simulation) -> State {
     State {
         t: motion.end_time,
         x: motion.end_x,

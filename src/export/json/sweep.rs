@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::Kind;
 use super::simulation::State;
-use crate::damper::sweep::Summary;
 use crate::export::simulation::SweepReport;
+use crate::impact::sweep::Summary;
 
 /// Many runs of the paper's equation (7) over one or two parameters, units as in a document of kind `simulation`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,9 +7,9 @@ use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 
 use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure, written};
 use super::{Report, SweepReport};
-use crate::damper::Simulation;
-use crate::damper::sweep::{Axis, Summary};
 use crate::decimal::decimal;
+use crate::impact::Simulation;
+use crate::impact::sweep::{Axis, Summary};
 
 /// Points of a curve, equally spaced in time; the turning points come on top.
 const POINTS: usize = 1600;

@@ -9,9 +9,9 @@ mod text;
 pub use csv::{simulation as csv, sweep as sweep_csv};
 pub use text::{simulation as text, sweep as sweep_text};
 
-use crate::damper::sweep::{Axis, Summary};
-use crate::damper::{Friction, Simulation};
 use crate::decimal::decimal;
+use crate::impact::sweep::{Axis, Summary};
+use crate::impact::{Friction, Simulation};
 
 /// What is handed on of one run.
 #[derive(Debug, Clone, Copy)]

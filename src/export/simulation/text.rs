@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io;
 
 use super::{COMPARED, Report, SweepReport, friction, notes};
-use crate::damper::{Integrator, Model, Simulation};
 use crate::decimal::{decimal, significant};
+use crate::impact::{Integrator, Model, Simulation};
 
 /// Impacts that are listed; a long run has thousands.
 const LISTED: usize = 24;
@@ -100,8 +100,8 @@ fn header(report: &Report) -> String {
     } = motion.model;
     let dry = match law {
         _ if alpha == 0.0 => "",
-        crate::damper::Friction::Exact => " + alpha*sgn(x')",
-        crate::damper::Friction::Arctangent => " + (2/pi)*alpha*atan(100*x')",
+        crate::impact::Friction::Exact => " + alpha*sgn(x')",
+        crate::impact::Friction::Arctangent => " + (2/pi)*alpha*atan(100*x')",
     };
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let drive = if beta == 0.0 { "" } else { " - beta*sin(eta*t)*cos(x)" };

@@ -8,12 +8,12 @@
 //! ```
 //!
 //! The law comes from [`method::solve`] on `x'' + sin x = 0`, the phases from
-//! [`contact::three_phases`](crate::contact::three_phases), the judgement from Runge-Kutta on equation (9) as it stands.
+//! [`three_phases`], the judgement from Runge-Kutta on equation (9) as it stands.
 
-use crate::contact::hertz::Design;
-use crate::contact::linearisation::Rule;
-use crate::contact::phases::{Column, Form, PhasesError, Swing, ThreePhases, three_phases};
-use crate::contact::true_motion::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation};
+use super::hertz::Design;
+use super::judge::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation};
+use super::linearisation::Rule;
+use super::phases::{Column, Form, PhasesError, Swing, ThreePhases, three_phases};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::{self, Refusal};
 use crate::ode::Options;
@@ -225,7 +225,7 @@ impl Quantity {
 
 /// A motion over one period, for drawing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Path {
+pub struct SampledMotion {
     /// Time, displacement, velocity; the contact, short as it is, has as many points as either flight.
     pub samples: Vec<(f64, f64, f64)>,
     /// Time since touch and depth.
@@ -234,13 +234,13 @@ pub struct Path {
 
 impl Impact {
     /// Runge-Kutta, the paper's column and the energy column, with so many points a phase.
-    pub fn paths(&self, points: usize) -> [Path; 3] {
+    pub fn paths(&self, points: usize) -> [SampledMotion; 3] {
         let path = |[touch, exit, end]: [f64; 3], at: &dyn Fn(f64) -> (f64, f64)| {
             let between = |from: f64, to: f64| (0..=points).map(move |k| from + (to - from) * k as f64 / points as f64);
             let times = between(0.0, touch)
                 .chain(between(touch, exit))
                 .chain(between(exit, end));
-            Path {
+            SampledMotion {
                 samples: times.map(|t| (t, at(t).0, at(t).1)).collect(),
                 contact: between(touch, exit)
                     .map(|t| (t - touch, at(t).0 - self.setup.barrier))

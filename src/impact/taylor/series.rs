@@ -17,7 +17,7 @@
 //! Times are counted in a unit of choice, so that no coefficient over- or underflows. `L` motions go through the same
 //! operations side by side; each gets bit for bit what it would get alone.
 
-use super::model::STEEPNESS;
+use crate::impact::model::STEEPNESS;
 
 /// Highest order of a series.
 pub(super) const HIGHEST_ORDER: usize = 30;

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! (H. Hertz, *J. reine angew. Math.* 92 (1881) 156; W. Goldsmith, *Impact*, 1960, section 4.2.) Gravity is left out
-//! during the contact: [`true_motion`](super::true_motion) has it.
+//! during the contact: [`true_motion`](super::true_motion()) has it.
 
 use thiserror::Error;
 

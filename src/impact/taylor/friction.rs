@@ -1,8 +1,8 @@
 //! Coulomb friction at a turning point: it lets the motion go on, or holds it until the excitation tears it loose.
 
 use super::Runner;
-use crate::damper::path::State;
-use crate::damper::{Stop, Turn};
+use crate::impact::simulation::State;
+use crate::impact::simulation::{Stop, Turn};
 
 impl Runner {
     /// The acceleration by all but friction at rest, now.

@@ -4,7 +4,7 @@
 //! same operations wherever it runs, so the result does not depend on the number of threads.
 //!
 //! ```
-//! use lindstedt::damper::{Model, Options, Start, sweep::{Axis, sweep}};
+//! use lindstedt::impact::{Model, Options, Start, sweep::{Axis, sweep}};
 //!
 //! let axis: Axis = "gamma=1e4:1e6:3".parse()?;
 //! assert_eq!(axis.values(), [1e4, 505_000.0, 1e6]);
@@ -21,7 +21,9 @@ use std::str::FromStr;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::{Model, NoRest, Options, Simulation, SimulationError, Start, Stop, simulate_many};
+use super::model::{Model, Start};
+use super::simulate::{SimulationError, simulate_many};
+use super::simulation::{Contact, NoRest, Options, Simulation, Stop};
 
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
@@ -128,7 +130,7 @@ pub struct Summary {
 
 impl Summary {
     fn of(motion: &Simulation) -> Self {
-        let largest = |value: fn(&super::Impact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
+        let largest = |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
         Self {
             impacts: motion.impacts.len(),
             rest_time: motion.rest().time,
@@ -154,7 +156,7 @@ impl Summary {
 /// [`SimulationError`] and the number of the first motion that cannot begin.
 ///
 /// ```
-/// use lindstedt::damper::{Model, Options, Start, sweep::{Axis, sweep}};
+/// use lindstedt::impact::{Model, Options, Start, sweep::{Axis, sweep}};
 ///
 /// let axis: Axis = "zeta=0.01:0.1:4".parse()?;
 /// let start = Start { x: -1.5, velocity: 0.0 };

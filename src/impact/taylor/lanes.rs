@@ -6,8 +6,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::run::{Equation, Runner};
-use super::taylor::{Coefficients, Ends, HIGHEST_ORDER, Moment, Terms, contact, flight};
+use super::series::{Coefficients, Ends, HIGHEST_ORDER, Moment, Terms, contact, flight};
+use super::{Equation, Runner};
 
 /// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
 const LANES: usize = 8;
@@ -53,7 +53,7 @@ impl WithSimd for Evaluation<'_> {
 }
 
 /// Follows every run to its end, and hands each over as it ends, with its number. All have the same tolerance.
-pub(super) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(usize, Runner)) {
+pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(usize, Runner)) {
     let arch = Arch::new();
     let mut waiting = runs.enumerate();
     let mut pool: Vec<(usize, Runner)> = Vec::with_capacity(POOL);

@@ -11,10 +11,9 @@
 //! polynomials of its own, but the phases and located events of [`integrate_phases`]. In contact it counts from the
 //! barrier, so that a shallow depth keeps its digits.
 
-use super::model::{Model, Side, Start};
-use super::path::{Path, State};
-use super::{Impact, Integrator, Options, Simulation, SimulationError, Stop, Turn, enter, scaled};
-use crate::ode::{self, Event, Occurrence, Phase, StopReason, Trajectory, integrate_phases};
+use crate::impact::model::{Model, Side, Start};
+use crate::impact::simulation::{Contact, Integrator, Options, Path, Simulation, State, Stop, Turn, enter, scaled};
+use crate::ode::{self, Event, IntegrationError, Occurrence, Phase, StopReason, Trajectory, integrate_phases};
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -258,7 +257,11 @@ fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, 
 }
 
 /// The motion by Runge-Kutta.
-pub(super) fn follow(model: &Model, start: Start, options: &Options) -> Result<Simulation, SimulationError> {
+pub(in crate::impact) fn follow(
+    model: &Model,
+    start: Start,
+    options: &Options,
+) -> Result<Simulation, IntegrationError> {
     let options = &scaled(options, model, start);
     let (phases, meanings): (Vec<_>, Vec<_>) = (0..REGIONS.len() * MOTIONS)
         .map(|number| phase(model, options, number))
@@ -317,7 +320,7 @@ fn told(
     trajectory: Trajectory,
     (first, meanings): (State, &[Vec<Meaning>]),
 ) -> Simulation {
-    let mut impacts: Vec<Impact> = Vec::new();
+    let mut impacts: Vec<Contact> = Vec::new();
     if let State::Contact(side) | State::Detached(side) = first {
         let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
         enter(

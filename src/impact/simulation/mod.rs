@@ -1,58 +1,25 @@
-//! The damper in full: the paper's equation (7) with every term on, followed event by event.
+//! A motion that was followed: what is kept of it, and what can be asked of it.
 //!
-//! ```text
-//! x'' + 2 zeta x' + alpha sgn(x') - beta sin(Omega t/omega) cos x + sin x + F(x - x_c, x') = 0    equation (7)
-//! F(d, d') = max(0, gamma + mu d') d^(3/2) H(d)
-//! E(t) - E(0) = W_viscous + W_friction + W_contact + W_excitation
-//! ```
+//! In: from either integrator the path, the contacts, the turning points and why the run ended. Out: a [`Simulation`]:
+//! the motion as a function of time, where its energy went, when it came to rest, how far it is from another.
 //!
-//! In: a [`Model`], a [`Start`], [`Options`]. Out: a [`Simulation`]: the motion as a function of time, every impact,
-//! every turning point, where the energy went, when it came to rest.
-//!
-//! - `model`: the forces and what the parameters may be.
-//! - `taylor`, `run`, `polynomial`: the fast integrator, [`Integrator::Taylor`]: power series, in contact those of the
-//!   regularised equation, and the events as roots of polynomials.
-//! - `judge`: the same motion by the library's Runge-Kutta, [`Integrator::RungeKutta`], which shares nothing with it.
-//! - `path`: the motion as a function; `energy`: the work of each force; `rest`: the envelope and its 10 %.
-//! - [`sweep`]: many runs at once, the same to the last bit for any number of threads.
-//!
-//! ```
-//! use lindstedt::damper::{Integrator, Model, Options, Start, simulate};
-//!
-//! let model = Model { zeta: 0.01, mu: 1e4, ..Model::default() };
-//! let start = Start { x: -1.5, velocity: 0.0 };
-//! let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
-//!
-//! let first = &motion.impacts[0];
-//! // Without damping the pendulum needs 2.0644 to the barrier; with it a little longer.
-//! assert!(first.entry_time > 2.0644 && first.entry_time < 2.1 && first.restitution.is_some_and(|e| e < 1.0));
-//! assert!(motion.energy().residual.abs() < 1e-9);
-//! # Ok::<(), lindstedt::damper::SimulationError>(())
-//! ```
+//! - `path`: the motion as a function of time, piece by piece.
+//! - `energy`: the work of each force, and what is left over.
+//! - `rest`: the envelope and its 10 %.
 
-mod energy;
-mod judge;
-mod lanes;
-mod model;
-mod path;
-mod polynomial;
-mod rest;
-mod run;
-pub mod sweep;
-mod taylor;
+pub(super) mod energy;
+pub(super) mod path;
+pub(super) mod rest;
 
 use std::fmt;
 
-use thiserror::Error;
-
 pub use energy::{EnergyBook, EnergyPoint};
-pub use model::{Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use path::{Path, Piece, State};
 pub use rest::{NoRest, REST_FRACTION, Rest};
 
+use super::model::{Model, Side, Start};
 use crate::decimal::significant;
 use crate::interrupt::Interrupt;
-use crate::ode::IntegrationError;
 
 /// By which method a motion is followed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -95,30 +62,6 @@ impl Default for Options {
             keep_path: true,
         }
     }
-}
-
-/// Why a simulation cannot begin.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SimulationError {
-    /// The model or the start.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// A duration that is no positive number.
-    #[error("the duration must be a positive number, not {0}")]
-    Duration(f64),
-    /// A motion so small that the force of a barrier cannot be told from zero.
-    #[error(
-        "the motion is of size {0:e}, at which the force of a barrier, d^(3/2), underflows: scale it up, below 1e-8 or so \
-         the swing is linear"
-    )]
-    TooSmall(f64),
-    /// A tolerance no double-precision run can keep.
-    #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
-    Tolerance(f64),
-    /// Runge-Kutta cannot begin.
-    #[error("Runge-Kutta: {0}")]
-    RungeKutta(#[from] IntegrationError),
 }
 
 /// Why a run ended. Everything before is kept.
@@ -213,7 +156,7 @@ impl fmt::Display for Stop {
 /// One contact with a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Impact {
+pub struct Contact {
     /// Which barrier.
     pub side: Side,
     /// When it is touched.
@@ -234,9 +177,9 @@ pub struct Impact {
     pub energy_lost: Option<f64>,
 }
 
-impl Impact {
+impl Contact {
     /// The contact ends, at this time and with this speed.
-    fn released(&mut self, model: &Model, t: f64, speed: f64) {
+    pub(super) fn released(&mut self, model: &Model, t: f64, speed: f64) {
         self.exit_time = Some(t);
         self.speed_out = Some(speed);
         let touched = self.start_depth == 0.0;
@@ -254,7 +197,7 @@ impl Impact {
 }
 
 /// How far or how fast a motion goes, about; zero for one that hangs at rest.
-fn size(model: &Model, start: Start) -> f64 {
+pub(super) fn size(model: &Model, start: Start) -> f64 {
     let stored = model
         .depth(start.x)
         .map_or(0.0, |(_, depth)| model.elastic_energy(depth));
@@ -267,12 +210,9 @@ fn size(model: &Model, start: Start) -> f64 {
         .max(model.beta.abs())
 }
 
-/// The smallest motion that can be followed: its depths to the power 5/2 are numbers still.
-const SMALLEST: f64 = 1e-100;
-
 /// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size 1, and a tiny one would
 /// be lost in it.
-fn scaled(options: &Options, model: &Model, start: Start) -> Options {
+pub(super) fn scaled(options: &Options, model: &Model, start: Start) -> Options {
     let size = size(model, start);
     let scale = if size > 0.0 { size.min(1.0) } else { 1.0 };
     Options {
@@ -285,8 +225,8 @@ fn scaled(options: &Options, model: &Model, start: Start) -> Options {
 ///
 /// A contact left and entered again before x has changed by more than a step may err goes on: the pendulum is pressed
 /// against the barrier and rests there.
-fn enter(
-    impacts: &mut Vec<Impact>,
+pub(super) fn enter(
+    impacts: &mut Vec<Contact>,
     (model, options): (&Model, &Options),
     side: Side,
     t: f64,
@@ -299,7 +239,7 @@ fn enter(
         && let (Some(exit), Some(left)) = (last.exit_time, last.speed_out)
         && left.max(speed) * (t - exit) <= visible
     {
-        *last = Impact {
+        *last = Contact {
             exit_time: None,
             speed_out: None,
             restitution: None,
@@ -308,7 +248,7 @@ fn enter(
         };
         return;
     }
-    impacts.push(Impact {
+    impacts.push(Contact {
         side,
         entry_time: t,
         exit_time: None,
@@ -345,7 +285,7 @@ pub struct Simulation {
     /// The motion as a function of time; empty without [`Options::keep_path`].
     pub path: Path,
     /// Every contact, in order.
-    pub impacts: Vec<Impact>,
+    pub impacts: Vec<Contact>,
     /// Every turning point, in order; the start where it is one.
     pub turns: Vec<Turn>,
     /// Time at the end.
@@ -358,34 +298,6 @@ pub struct Simulation {
     pub stop: Stop,
     /// Steps taken.
     pub steps: usize,
-}
-
-/// The motion from this start.
-///
-/// # Errors
-/// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
-///
-/// ```
-/// use lindstedt::damper::{Integrator, Model, Options, Start, simulate};
-///
-/// let model = Model { zeta: 0.02, mu: 1e5, ..Model::default() };
-/// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
-/// assert!(motion.impacts[0].restitution.is_some_and(|e| e < 1.0));
-/// assert!(motion.energy().residual.abs() < 1e-9);
-/// # Ok::<(), lindstedt::damper::SimulationError>(())
-/// ```
-pub fn simulate(
-    model: &Model,
-    start: Start,
-    integrator: Integrator,
-    options: &Options,
-) -> Result<Simulation, SimulationError> {
-    check(model, start, options)?;
-    match integrator {
-        Integrator::Taylor => Ok(run::alone(*model, start, *options)),
-        Integrator::RungeKutta => judge::follow(model, start, options),
-    }
 }
 
 /// How two motions differ.
@@ -441,55 +353,4 @@ impl Simulation {
                 .into_iter()
                 .all(|barrier| out_of_reach(barrier) || upright(barrier))
     }
-}
-
-/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.
-///
-/// # Errors
-/// As [`simulate`], for the first that cannot begin, with its number.
-///
-/// ```
-/// use lindstedt::damper::{Model, Options, Start, simulate_many};
-///
-/// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motions = [0.0, 0.1].map(|zeta| (Model { zeta, ..Model::default() }, start));
-/// let found = simulate_many(&motions, &Options::default()).map_err(|(_, error)| error)?;
-/// assert!(found[1].impacts[0].speed_in < found[0].impacts[0].speed_in);
-/// # Ok::<(), lindstedt::damper::SimulationError>(())
-/// ```
-pub fn simulate_many(
-    motions: &[(Model, Start)],
-    options: &Options,
-) -> Result<Vec<Simulation>, (usize, SimulationError)> {
-    for (number, (model, start)) in motions.iter().enumerate() {
-        check(model, *start, options).map_err(|error| (number, error))?;
-    }
-    let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
-    let runs = motions
-        .iter()
-        .map(|(model, start)| run::Runner::new(*model, *start, *options));
-    lanes::follow(runs, |number, runner| {
-        if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
-            *place = Some(runner.finish(*start));
-        }
-    });
-    Ok(results.into_iter().flatten().collect())
-}
-
-fn check(model: &Model, start: Start, options: &Options) -> Result<(), SimulationError> {
-    model.check(start)?;
-    let size = size(model, start);
-    if size > 0.0 && size < SMALLEST {
-        return Err(SimulationError::TooSmall(size));
-    }
-    if !(options.duration.is_finite() && options.duration > 0.0) {
-        return Err(SimulationError::Duration(options.duration));
-    }
-    if !(1e-15..=0.01).contains(&options.relative_tolerance) {
-        return Err(SimulationError::Tolerance(options.relative_tolerance));
-    }
-    if !(f64::MIN_POSITIVE..=0.01).contains(&options.absolute_tolerance) {
-        return Err(SimulationError::Tolerance(options.absolute_tolerance));
-    }
-    Ok(())
 }

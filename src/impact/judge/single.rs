@@ -13,8 +13,8 @@
 
 use thiserror::Error;
 
-use super::linearisation::{greatest_depth, work};
-use super::phases::ThreePhases;
+use crate::impact::linearisation::{greatest_depth, work};
+use crate::impact::phases::ThreePhases;
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory, integrate};
 
@@ -355,9 +355,9 @@ fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::hertz::{Design, elastic_force};
-    use crate::contact::linearisation::Rule;
-    use crate::contact::phases::{Column, Swing, contact_speed, three_phases};
+    use crate::impact::hertz::{Design, elastic_force};
+    use crate::impact::linearisation::Rule;
+    use crate::impact::phases::{Column, Swing, contact_speed, three_phases};
     use crate::ode::root::find_root;
 
     const FORCE: fn(f64) -> f64 = f64::sin;

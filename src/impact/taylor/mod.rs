@@ -18,15 +18,17 @@
 mod contact;
 mod flight;
 mod friction;
+mod lanes;
+mod series;
 mod step;
 
 use std::f64::consts::FRAC_2_PI;
 
 use super::model::{Friction, Model, Side, Start};
-use super::path::{Path, State};
 use super::polynomial::{Roots, near_sign_changes};
-use super::taylor::{self, Coefficients, End, HIGHEST_ORDER, LAST, Moment, Terms};
-use super::{Impact, Integrator, Options, Simulation, Stop, Turn, enter, scaled};
+use super::simulation::{Contact, Integrator, Options, Path, Simulation, State, Stop, Turn, enter, scaled};
+pub(super) use lanes::follow;
+use series::{Coefficients, End, HIGHEST_ORDER, LAST, Moment, Terms};
 use step::step_length;
 
 /// The longest step in time, for a motion at rest has no scale of its own.
@@ -53,7 +55,7 @@ const MOST_IDLE: usize = 100;
 
 /// Which series is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Equation {
+enum Equation {
     Flight,
     Contact,
 }
@@ -81,10 +83,10 @@ pub(super) struct Runner {
     last: bool,
     steps: usize,
     idle: usize,
-    pub(super) stop: Option<Stop>,
-    pub(super) impacts: Vec<Impact>,
-    pub(super) turns: Vec<Turn>,
-    pub(super) path: Path,
+    stop: Option<Stop>,
+    impacts: Vec<Contact>,
+    turns: Vec<Turn>,
+    path: Path,
 }
 
 /// What ends a step before its time.
@@ -113,8 +115,8 @@ pub(super) fn alone(model: Model, start: Start, options: Options) -> Simulation 
     while let Some(equation) = runner.wants() {
         runner.moment(0, &mut moment);
         match equation {
-            Equation::Flight => taylor::flight(&moment, order, terms, &mut series),
-            Equation::Contact => taylor::contact(&moment, order, terms, &mut series),
+            Equation::Flight => series::flight(&moment, order, terms, &mut series),
+            Equation::Contact => series::contact(&moment, order, terms, &mut series),
         }
         let length = runner.reach(series.last(order, 0));
         let ends = series.ends(&[length], order);
@@ -124,7 +126,7 @@ pub(super) fn alone(model: Model, start: Start, options: Options) -> Simulation 
 }
 
 /// The order of the series that suits a tolerance: each order gains about a third of a digit per step.
-pub(super) fn order_for(tolerance: f64) -> usize {
+fn order_for(tolerance: f64) -> usize {
     let digits = -tolerance.max(1e-18).log10();
     ((6.5 + 1.6 * digits) as usize).clamp(8, HIGHEST_ORDER)
 }
@@ -208,7 +210,7 @@ impl Runner {
     }
 
     /// Time, displacement and velocity now.
-    pub(super) fn now(&self) -> (f64, f64, f64) {
+    fn now(&self) -> (f64, f64, f64) {
         match self.side() {
             Some((side, barrier)) if matches!(self.state, State::Contact(_)) => (
                 self.t,
@@ -220,12 +222,12 @@ impl Runner {
     }
 
     /// The order of the series it wants.
-    pub(super) fn order(&self) -> usize {
+    fn order(&self) -> usize {
         self.order
     }
 
     /// The terms of the equation that are on.
-    pub(super) fn terms(&self) -> Terms {
+    fn terms(&self) -> Terms {
         Terms {
             arctangent: self.model.friction == Friction::Arctangent && self.model.alpha > 0.0,
             excited: self.model.beta != 0.0,
@@ -234,7 +236,7 @@ impl Runner {
     }
 
     /// The series wanted next; nothing once the run has ended.
-    pub(super) fn wants(&mut self) -> Option<Equation> {
+    fn wants(&mut self) -> Option<Equation> {
         if self.stop.is_some() {
             return None;
         }
@@ -258,7 +260,7 @@ impl Runner {
     }
 
     /// Writes the present moment into one lane.
-    pub(super) fn moment<const L: usize>(&self, lane: usize, moment: &mut Moment<L>) {
+    fn moment<const L: usize>(&self, lane: usize, moment: &mut Moment<L>) {
         let model = &self.model;
         let mirror = match self.state {
             State::Contact(side) => side.sign(),
@@ -290,7 +292,7 @@ impl Runner {
 
     /// How far the series reaches, in its unit: from the last coefficients of the velocity. The step ends there if
     /// nothing happens before.
-    pub(super) fn reach(&mut self, last: [f64; LAST]) -> f64 {
+    fn reach(&mut self, last: [f64; LAST]) -> f64 {
         let tolerance = &self.options;
         if matches!(self.state, State::Contact(_)) {
             let entry = self.impacts.last().map_or(0.0, |impact| impact.speed_in);
@@ -317,7 +319,7 @@ impl Runner {
 
     /// Goes on with the series at the present moment: its values at the end of the step, and where they do not say
     /// enough, its coefficients: x and v, or w, v and t.
-    pub(super) fn advance(&mut self, end: End, load: impl FnOnce() -> [[f64; HIGHEST_ORDER + 1]; 3]) {
+    fn advance(&mut self, end: End, load: impl FnOnce() -> [[f64; HIGHEST_ORDER + 1]; 3]) {
         let before = self.t;
         if !(end.place.is_finite() && end.variation.is_finite()) {
             self.stop = Some(Stop::NotFinite { t: self.t });

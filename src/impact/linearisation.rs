@@ -258,7 +258,7 @@ fn spring_free_duration(elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::hertz;
+    use crate::impact::hertz;
     use proptest::prelude::*;
 
     /// Slope and constant in units of sqrt(D) and D^(3/2), for F = d^(3/2).

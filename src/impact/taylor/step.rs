@@ -1,6 +1,6 @@
 //! How long a step may be, from the last coefficients of a series.
 
-use crate::damper::taylor::{INVERSE, LAST};
+use crate::impact::taylor::series::{INVERSE, LAST};
 
 /// The longest step at which the first term left out stays within what is allowed, by the radius of convergence that
 /// the last coefficients tell: |v_n| ~ size / radius^n.

@@ -11,8 +11,8 @@
 //! energy still in it is lost to its damping.
 
 use super::Simulation;
-use super::model::{Friction, Side};
 use super::path::{Node, State};
+use crate::impact::model::{Friction, Side};
 
 /// The most points inside one step.
 const MOST_PARTS: f64 = 1e4;

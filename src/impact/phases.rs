@@ -527,7 +527,7 @@ fn significant(value: f64, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::hertz::{Design, elastic_force};
+    use crate::impact::hertz::{Design, elastic_force};
     use crate::ode::{Event, Options, State, integrate};
     use proptest::prelude::*;
 
@@ -657,10 +657,10 @@ mod tests {
             (Rule::EqualDuration, 0.0, -6.3),
         ];
         for (rule, duration_error, depth_error) in table {
-            let depth = crate::contact::hertz::penetration(1e6, speed).unwrap();
+            let depth = crate::impact::hertz::penetration(1e6, speed).unwrap();
             let line = linearisation::fit(rule, elastic_force, depth).unwrap();
             let contact = LinearContact::new(line, 1e6, 0.3, speed, 0.0).unwrap();
-            let duration = crate::contact::hertz::duration(1e6, speed).unwrap();
+            let duration = crate::impact::hertz::duration(1e6, speed).unwrap();
             near(100.0 * (contact.duration / duration - 1.0), duration_error, 0.06);
             near(100.0 * (contact.penetration / depth - 1.0), depth_error, 0.06);
         }

@@ -3,8 +3,8 @@
 //! In contact a piece is a polynomial in s with dt = w ds, x = x_r + w^2: to ask for a time is to solve t(s) = t first,
 //! which has one solution because t rises with s.
 
-use super::model::Side;
-use super::polynomial::{crossing_of, value};
+use crate::impact::model::Side;
+use crate::impact::polynomial::{crossing_of, value};
 use crate::ode::Trajectory;
 use crate::ode::quadrature::nodes_and_weights;
 
@@ -75,18 +75,18 @@ pub struct Path {
 
 /// A point of the motion inside a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Node {
-    pub(super) t: f64,
-    pub(super) x: f64,
-    pub(super) velocity: f64,
+pub(in crate::impact) struct Node {
+    pub(in crate::impact) t: f64,
+    pub(in crate::impact) x: f64,
+    pub(in crate::impact) velocity: f64,
     /// How far inside the barrier, more exactly than x tells.
-    pub(super) depth: f64,
+    pub(in crate::impact) depth: f64,
     /// dt at this point, for an integral over time.
-    pub(super) weight: f64,
+    pub(in crate::impact) weight: f64,
 }
 
 impl Path {
-    pub(super) fn new() -> Self {
+    pub(in crate::impact) fn new() -> Self {
         Self {
             pieces: Vec::new(),
             pool: Vec::new(),
@@ -94,7 +94,7 @@ impl Path {
         }
     }
 
-    pub(super) fn judged(judge: Trajectory) -> Self {
+    pub(in crate::impact) fn judged(judge: Trajectory) -> Self {
         Self {
             judge: Some(judge),
             ..Self::new()
@@ -145,7 +145,14 @@ impl Path {
         self.pieces.iter().flat_map(inside).chain(last)
     }
 
-    pub(super) fn push_flight(&mut self, span: [f64; 2], state: State, unit: f64, x: &[f64], velocity: &[f64]) {
+    pub(in crate::impact) fn push_flight(
+        &mut self,
+        span: [f64; 2],
+        state: State,
+        unit: f64,
+        x: &[f64],
+        velocity: &[f64],
+    ) {
         let offset = self.pool.len();
         self.pool.extend_from_slice(x);
         self.pool.extend_from_slice(velocity);
@@ -153,7 +160,7 @@ impl Path {
         self.push(span, state, Form::Time { offset, terms, unit });
     }
 
-    pub(super) fn push_contact(
+    pub(in crate::impact) fn push_contact(
         &mut self,
         span: [f64; 2],
         (side, barrier): (Side, f64),
@@ -176,16 +183,16 @@ impl Path {
         self.push(span, State::Contact(side), form);
     }
 
-    pub(super) fn push_rest(&mut self, span: [f64; 2], x: f64) {
+    pub(in crate::impact) fn push_rest(&mut self, span: [f64; 2], x: f64) {
         self.push(span, State::Stuck, Form::Constant { x });
     }
 
-    pub(super) fn judged_phase(&self, t: f64) -> Option<usize> {
+    pub(in crate::impact) fn judged_phase(&self, t: f64) -> Option<usize> {
         self.judge.as_ref()?.phase_at(t)
     }
 
     /// A step of the judge, whose coordinate is counted from `origin` in the direction of `sign`.
-    pub(super) fn push_judged(&mut self, span: [f64; 2], state: State, [origin, sign]: [f64; 2]) {
+    pub(in crate::impact) fn push_judged(&mut self, span: [f64; 2], state: State, [origin, sign]: [f64; 2]) {
         self.push(span, state, Form::Judged { origin, sign });
     }
 
@@ -200,7 +207,7 @@ impl Path {
 
     /// Points and weights of a quadrature over a part of a piece, from one fraction of it to another: exact to rounding where
     /// the motion is a power series that converges over it.
-    pub(super) fn quadrature(&self, piece: &Piece, [from, to]: [f64; 2]) -> impl Iterator<Item = Node> + '_ {
+    pub(in crate::impact) fn quadrature(&self, piece: &Piece, [from, to]: [f64; 2]) -> impl Iterator<Item = Node> + '_ {
         let piece = *piece;
         nodes_and_weights(from, to).map(move |(fraction, weight)| {
             let node = self.node(&piece, fraction);
@@ -216,7 +223,7 @@ impl Path {
     }
 
     /// The point at a fraction of the piece, counted in the variable of the piece.
-    pub(super) fn node(&self, piece: &Piece, fraction: f64) -> Node {
+    pub(in crate::impact) fn node(&self, piece: &Piece, fraction: f64) -> Node {
         let length = piece.end - piece.start;
         match piece.form {
             Form::Regularised {

@@ -1,11 +1,11 @@
 //! Contact: its begin and its end, and what happens in a step of the regularised equation.
 
 use super::{Event, Runner, turning_points};
-use crate::damper::model::Side;
-use crate::damper::path::State;
-use crate::damper::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
-use crate::damper::taylor::{End, HIGHEST_ORDER};
-use crate::damper::{Turn, enter};
+use crate::impact::model::Side;
+use crate::impact::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
+use crate::impact::simulation::State;
+use crate::impact::simulation::{Turn, enter};
+use crate::impact::taylor::series::{End, HIGHEST_ORDER};
 
 impl Runner {
     /// Takes a whole step in contact if its ends show that nothing happens in it and nobody wants to see it.

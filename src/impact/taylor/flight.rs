@@ -1,11 +1,11 @@
 //! Free flight: what ends a step of it, a touch at the barrier, a lean from rest into it, a turning point.
 
 use super::{Event, LIGHT, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
-use crate::damper::model::Side;
-use crate::damper::path::State;
-use crate::damper::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
-use crate::damper::taylor::{End, HIGHEST_ORDER};
-use crate::damper::{Turn, enter};
+use crate::impact::model::Side;
+use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
+use crate::impact::simulation::State;
+use crate::impact::simulation::{Turn, enter};
+use crate::impact::taylor::series::{End, HIGHEST_ORDER};
 
 impl Runner {
     /// Takes a whole step of free flight if its ends show that nothing happens in it and nobody wants to see it.

@@ -18,9 +18,9 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
-use super::model::{Side, Start};
-use super::polynomial::crossing_of;
 use super::{Simulation, Stop, Turn};
+use crate::impact::model::{Side, Start};
+use crate::impact::polynomial::crossing_of;
 
 /// The part of the first amplitude that counts as rest.
 pub const REST_FRACTION: f64 = 0.1;

@@ -1,0 +1,64 @@
+//! The impact wing: a pendulum that meets an elastic barrier, in closed form and in full.
+//!
+//! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0, released at rest from x = -A towards the barrier at x_c: with
+//! f = sin x and F = depth^(3/2) the paper's equation (9); with damping, friction and a moving pivot its equation (7).
+//! In: amplitude, barrier, stiffness, and what damps and drives. Out: one impact in three closed forms beside the true
+//! motion, or a whole motion, event by event, and many of them at once.
+//!
+//! Each file uses only those above it:
+//!
+//! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and modulus, equation (8).
+//! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
+//! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
+//! - `model`: the forces of equation (7) and what its parameters may be.
+//! - `polynomial`: polynomials on an interval, and where their sign changes.
+//! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
+//! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
+//! - `judge`: Runge-Kutta on the equations as they stand, for one impact and for a whole motion.
+//! - `closed_form`: [`solve`], the derived law, the phases and the judge together.
+//! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
+//! - [`sweep`]: parameters over a range, on all cores.
+//!
+//! ```
+//! use lindstedt::impact::hertz::{Design, elastic_force};
+//! use lindstedt::impact::Rule;
+//! use lindstedt::impact::{Column, Swing, three_phases};
+//!
+//! let swing = Swing {
+//!     amplitude: 1.5,
+//!     barrier: 0.323,
+//!     stiffness: Design::default().stiffness()?,
+//!     frequency_squared: 1.0 - 1.5 * 1.5 / 8.0,
+//!     linear_stiffness: 1.0,
+//!     restoring_force: &|x| x.sin(),
+//!     elastic_force: &elastic_force,
+//!     rule: Rule::LeastSquares,
+//! };
+//! let motion = three_phases(&swing, Column::Paper)?;
+//! assert_eq!(motion.phases[0].closed_form(), "x(t) = -1.5 cos(0.847791 t)");
+//! assert!((motion.speed - 1.24185).abs() < 1e-5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod closed_form;
+pub mod hertz;
+mod judge;
+mod linearisation;
+mod model;
+mod phases;
+mod polynomial;
+mod simulate;
+mod simulation;
+pub mod sweep;
+mod taylor;
+
+pub use closed_form::{Impact, ImpactError, Quantity, SampledMotion, Setup, solve};
+pub use judge::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation, true_motion};
+pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
+pub use model::{Friction, Model, ModelError, STEEPNESS, Side, Start};
+pub use phases::{Column, Form, Phase, PhasesError, Swing, ThreePhases, three_phases};
+pub use simulate::{SimulationError, simulate, simulate_many};
+pub use simulation::{
+    Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Options, Path, Piece, REST_FRACTION, Rest,
+    Simulation, State, Stop, Turn,
+};

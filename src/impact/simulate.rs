@@ -1,0 +1,127 @@
+//! The pendulum in full: the paper's equation (7) with every term on, followed event by event.
+//!
+//! ```text
+//! x'' + 2 zeta x' + alpha sgn(x') - beta sin(Omega t/omega) cos x + sin x + F(x - x_c, x') = 0    equation (7)
+//! F(d, d') = max(0, gamma + mu d') d^(3/2) H(d)
+//! E(t) - E(0) = W_viscous + W_friction + W_contact + W_excitation
+//! ```
+//!
+//! In: a [`Model`], a [`Start`], [`Options`]. Out: a [`Simulation`], by one of two integrators that share the forces of
+//! the model and nothing else:
+//!
+//! - [`Integrator::Taylor`], the fast one: power series, in contact those of the regularised equation, and the events as
+//!   roots of polynomials.
+//! - [`Integrator::RungeKutta`], the judge: the library's Runge-Kutta in phases.
+
+use thiserror::Error;
+
+use super::model::{Model, ModelError, Start};
+use super::simulation::{Integrator, Options, Simulation, size};
+use super::{judge, taylor};
+use crate::ode::IntegrationError;
+
+/// Why a simulation cannot begin.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The model or the start.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A duration that is no positive number.
+    #[error("the duration must be a positive number, not {0}")]
+    Duration(f64),
+    /// A motion so small that the force of a barrier cannot be told from zero.
+    #[error(
+        "the motion is of size {0:e}, at which the force of a barrier, d^(3/2), underflows: scale it up, below 1e-8 or so \
+         the swing is linear"
+    )]
+    TooSmall(f64),
+    /// A tolerance no double-precision run can keep.
+    #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
+    Tolerance(f64),
+    /// Runge-Kutta cannot begin.
+    #[error("Runge-Kutta: {0}")]
+    RungeKutta(#[from] IntegrationError),
+}
+
+/// The smallest motion that can be followed: its depths to the power 5/2 are numbers still.
+const SMALLEST: f64 = 1e-100;
+
+/// The motion from this start.
+///
+/// # Errors
+/// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
+///
+/// ```
+/// use lindstedt::impact::{Integrator, Model, Options, Start, simulate};
+///
+/// let model = Model { zeta: 0.02, mu: 1e5, ..Model::default() };
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
+/// assert!(motion.impacts[0].restitution.is_some_and(|e| e < 1.0));
+/// assert!(motion.energy().residual.abs() < 1e-9);
+/// # Ok::<(), lindstedt::impact::SimulationError>(())
+/// ```
+pub fn simulate(
+    model: &Model,
+    start: Start,
+    integrator: Integrator,
+    options: &Options,
+) -> Result<Simulation, SimulationError> {
+    check(model, start, options)?;
+    match integrator {
+        Integrator::Taylor => Ok(taylor::alone(*model, start, *options)),
+        Integrator::RungeKutta => Ok(judge::follow(model, start, options)?),
+    }
+}
+
+/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.
+///
+/// # Errors
+/// As [`simulate`], for the first that cannot begin, with its number.
+///
+/// ```
+/// use lindstedt::impact::{Model, Options, Start, simulate_many};
+///
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions = [0.0, 0.1].map(|zeta| (Model { zeta, ..Model::default() }, start));
+/// let found = simulate_many(&motions, &Options::default()).map_err(|(_, error)| error)?;
+/// assert!(found[1].impacts[0].speed_in < found[0].impacts[0].speed_in);
+/// # Ok::<(), lindstedt::impact::SimulationError>(())
+/// ```
+pub fn simulate_many(
+    motions: &[(Model, Start)],
+    options: &Options,
+) -> Result<Vec<Simulation>, (usize, SimulationError)> {
+    for (number, (model, start)) in motions.iter().enumerate() {
+        check(model, *start, options).map_err(|error| (number, error))?;
+    }
+    let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
+    let runs = motions
+        .iter()
+        .map(|(model, start)| taylor::Runner::new(*model, *start, *options));
+    taylor::follow(runs, |number, runner| {
+        if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
+            *place = Some(runner.finish(*start));
+        }
+    });
+    Ok(results.into_iter().flatten().collect())
+}
+
+fn check(model: &Model, start: Start, options: &Options) -> Result<(), SimulationError> {
+    model.check(start)?;
+    let size = size(model, start);
+    if size > 0.0 && size < SMALLEST {
+        return Err(SimulationError::TooSmall(size));
+    }
+    if !(options.duration.is_finite() && options.duration > 0.0) {
+        return Err(SimulationError::Duration(options.duration));
+    }
+    if !(1e-15..=0.01).contains(&options.relative_tolerance) {
+        return Err(SimulationError::Tolerance(options.relative_tolerance));
+    }
+    if !(f64::MIN_POSITIVE..=0.01).contains(&options.absolute_tolerance) {
+        return Err(SimulationError::Tolerance(options.absolute_tolerance));
+    }
+    Ok(())
+}

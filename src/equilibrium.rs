@@ -39,8 +39,8 @@ pub struct Centred {
     pub definition: Option<Definition>,
     /// Whether the coefficients of the force are rounded.
     pub numerical: bool,
-    /// What was assumed of parameters: `xc > 0` where a barrier `H(x - xc)` must not act at rest.
-    pub assumption: Option<String>,
+    /// What is taken to be positive: `xc` where a barrier `H(x - xc)` must not act at rest.
+    pub barriers_apart: Vec<Expr>,
 }
 
 impl Centred {
@@ -51,7 +51,7 @@ impl Centred {
             written: Expr::zero(),
             definition: None,
             numerical: false,
-            assumption: None,
+            barriers_apart: vec![],
         }
     }
 }
@@ -104,10 +104,10 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
         };
     }
     if let Ok(at_zero) = &at_zero
-        && let Some(assumption) = untouched(at_zero)?
+        && let Some(barriers_apart) = untouched(at_zero)?
     {
         return Ok(Centred {
-            assumption: Some(assumption),
+            barriers_apart,
             ..Centred::at_origin(oscillator)
         });
     }
@@ -432,27 +432,21 @@ fn is_nothing(coefficient: &Expr) -> bool {
     f64::abs(sum) <= 1e-14 * size
 }
 
-/// Whether a force at rest is that of barriers alone that do not act there: every `H(-xc)` is zero for `xc > 0`.
-fn untouched(at_zero: &Expr) -> Result<Option<String>, OscillatorError> {
-    let mut names = Vec::new();
+/// Where a force at rest is that of barriers alone that do not act there, what has to be positive for that: every `H(-xc)` is
+/// zero for `xc > 0`.
+fn untouched(at_zero: &Expr) -> Result<Option<Vec<Expr>>, OscillatorError> {
+    let mut edges = Vec::new();
     let without = at_zero.fold(|expr, children: &[Expr]| match (expr.node(), children) {
         (Node::Function(Function::Step, _), [edge]) if edge.terms().len() == 1 && edge.has_leading_minus() => {
-            let edge = (-edge).to_string();
-            if !names.contains(&edge) {
-                names.push(edge);
+            let edge = -edge;
+            if !edges.contains(&edge) {
+                edges.push(edge);
             }
             Ok(Expr::zero())
         }
         _ => expr.with_children(children),
     })?;
-    let assumption = || {
-        names
-            .iter()
-            .map(|name| format!("{name} > 0"))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    Ok((without.expand()?.is_zero() && !names.is_empty()).then(assumption))
+    Ok((without.expand()?.is_zero() && !edges.is_empty()).then_some(edges))
 }
 
 /// The equation in the deviation from a place.

@@ -5,6 +5,7 @@
 mod branch;
 mod law;
 mod method;
+pub mod note;
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -14,6 +15,7 @@ use num_traits::{One, Signed};
 pub use branch::Branch;
 pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};
+pub use note::Note;
 
 use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::derivation::{Line, Step};
@@ -170,7 +172,7 @@ pub struct Solution {
     /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
     pub numerical: bool,
     /// What is known of where the formula holds.
-    pub validity: Vec<String>,
+    pub validity: Vec<Note>,
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
     /// What precedes the orders, or the derivation of any other method, line by line.
@@ -311,8 +313,7 @@ impl Solution {
                 .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
         }
         self.numerical = true;
-        self.validity
-            .push("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction".to_owned());
+        self.validity.push(Note::RoundedCoefficients);
     }
 
     /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one order.

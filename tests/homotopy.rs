@@ -206,7 +206,7 @@ fn validity_says_what_is_open_and_where_it_was_cut() {
         };
         solve(&Oscillator::parse(equation).expect("an equation"), &options).expect("a solution")
     };
-    let says = |solution: &Solution, words: &str| solution.validity.iter().any(|line| line.contains(words));
+    let says = |solution: &Solution, words: &str| solution.validity.iter().any(|note| note.to_string().contains(words));
     // Where hbar is open it is said to be; the first order and a given one leave nothing open.
     for (order, hbar, open) in [
         (Some(2), None, true),

@@ -630,7 +630,7 @@ fn max_min_sees_narrow_dips() {
 /// With letters in several powers the condition is said, and for which signs it holds.
 #[test]
 fn max_min_says_on_what_its_bounds_depend() {
-    let bounds = |equation: &str| solution(equation, &by(Method::MaxMin, 1)).validity[0].clone();
+    let bounds = |equation: &str| solution(equation, &by(Method::MaxMin, 1)).validity[0].to_string();
     assert_eq!(
         bounds("x'' + x + eps*x^3 + k*x^5 = 0"),
         "omega^2 lies between 1 and 1 + eps*A^2 + k*A^4 while 2*eps*x + 4*k*x^3 keeps its sign for 0 < x < A, \

@@ -24,7 +24,7 @@ use crate::conservative::force::Force;
 use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Solution};
+use crate::solution::{Method, Note, Solution, note::Instant};
 use crate::symbol::fresh_stem;
 
 /// The frequency from the residuals of two trial motions.
@@ -61,9 +61,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equation(r2, second),
         Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),
     ];
-    solution
-        .validity
-        .push("one term, collocated at cos(theta)^2 = 3/4: the instant is a convention of the method".to_owned());
+    solution.validity.push(Note::Collocated(Instant::CosineSquared));
     Ok(solution)
 }
 

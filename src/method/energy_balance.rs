@@ -24,7 +24,7 @@ use crate::conservative::potential::potential;
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
-use crate::solution::{Law, Method, Solution};
+use crate::solution::{Law, Method, Note, Solution, note::Instant};
 use crate::symbol::fresh;
 
 const METHOD: Method = Method::EnergyBalance;
@@ -76,9 +76,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
-    solution
-        .validity
-        .push("one term, collocated at theta = pi/4: the instant is a convention of the method".to_owned());
+    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
     Ok(solution)
 }
 

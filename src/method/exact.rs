@@ -38,7 +38,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{ClosedForm, Law, Method, Solution};
+use crate::solution::{ClosedForm, Law, Method, Note, Solution, note::ExactBy};
 use crate::symbol::fresh;
 
 /// The exact law of a conservative oscillator; its motion is known by numbers.
@@ -60,13 +60,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         None => Law::Quadrature(period_by_energy(oscillator, &force)?),
     };
     solution.derivation = period_by_energy(oscillator, &force)?;
-    solution.validity.push(match solution.law.quadrature() {
-        None => "exact wherever the motion is periodic".to_owned(),
-        Some(_) => {
-            "exact wherever the motion is periodic, by quadrature: no elliptic or Gamma function is known to give it"
-                .to_owned()
-        }
-    });
+    solution.validity.push(Note::Exact(match solution.law.quadrature() {
+        None => ExactBy::ClosedForm,
+        Some(_) => ExactBy::Quadrature,
+    }));
     Ok(solution)
 }
 

@@ -27,7 +27,7 @@ use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, Parts, SmallParameter};
 use crate::series::taylor::taylor;
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
 /// What refusals call it.
@@ -68,12 +68,7 @@ pub(super) fn solve(
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;
     set_law(&mut solution, &law)?;
-    solution.validity = vec![
-        format!(
-            "truncated after {small}^1, the highest order for a force that is no polynomial; an expansion for small {small}"
-        ),
-        format!("the motion is A*cos(theta): its part of the size of {small}, drift and harmonics, is left out"),
-    ];
+    solution.validity = vec![Note::FirstOrderOnly { small }, Note::MotionAtLeadingOrder { small }];
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation =
         vec![Line::equation(oscillator.coordinate, solution.displacement.clone()).because(format!("at {small}^0"))];

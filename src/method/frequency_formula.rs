@@ -22,7 +22,7 @@ use crate::conservative::force::Force;
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Solution};
+use crate::solution::{Method, Note, Solution};
 use crate::symbol::fresh;
 
 /// The frequency from the slope of the force at half the amplitude.
@@ -55,9 +55,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equal([derivative, slope.into()]).because("slope of the force"),
         Line::equation(Expr::symbol("omega").integer_power(2)?, law).because("its value at half the amplitude"),
     ];
-    solution
-        .validity
-        .push("one line: exact for linear forces, and to first order for cubic ones alone".to_owned());
+    solution.validity.push(Note::SlopeAtHalf);
     Ok(solution)
 }
 

@@ -26,7 +26,7 @@ use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Solution};
+use crate::solution::{Method, Note, Solution, note::FirstStep};
 use crate::symbol::fresh;
 
 /// The frequency by the mean Hamiltonian.
@@ -82,9 +82,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
             .because("the mean Hamiltonian is stationary"),
     ];
-    solution
-        .validity
-        .push("one term: exact for a linear force, the first step beyond it otherwise".to_owned());
+    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)
 }

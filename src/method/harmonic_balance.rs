@@ -34,7 +34,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{Law, Method, Solution, System};
+use crate::solution::{Law, Method, Note, Solution, System, note::FirstStep};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
@@ -68,9 +68,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         solution.derivation = vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
         let law = integral_law(oscillator, &force, &solution)?;
         solution.derivation.extend(law);
-        solution
-            .validity
-            .push("one harmonic: exact for a linear force, the first step beyond it otherwise".to_owned());
+        solution.validity.push(Note::FirstStep(FirstStep::Harmonic));
         return Ok(solution);
     }
     let harmonics = harmonics(order, odd);
@@ -81,7 +79,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
     solution.derivation = projections(oscillator, &force, &harmonics, &names, &solution.displacement)?;
-    let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
         Some(equations) => {
             if equations
@@ -90,7 +87,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             {
                 let first = harmonics.iter().zip(&names).find(|(k, _)| **k == 1);
                 let first = first.map_or(Symbol::new("A"), |(_, name)| *name);
-                solution.validity.push(format!("the arcs are written for {first} > 0"));
+                solution.validity.push(Note::ArcsFor { positive: first });
             }
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
             solution.law = Law::System(System { unknowns, equations });
@@ -99,10 +96,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(format!(
-        "harmonics {} balanced, those above left out; solved by numbers at an amplitude",
-        kept.join(", ")
-    ));
+    solution.validity.push(Note::Balanced {
+        harmonics,
+        by_numbers: true,
+    });
     Ok(solution)
 }
 

@@ -35,7 +35,7 @@ use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::convolution::{self, Convolutions};
 use crate::series::fourier::{linear_combination, sum_of_products};
-use crate::solution::{Definition, Law, Method, Solution};
+use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HomotopyAnalysis;
@@ -95,31 +95,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
-    solution.validity.push(match order {
-        1 => format!("order 1: the first frequency alone, the terms without {embedding}"),
-        _ => format!(
-            "order {order}: the first frequency and {}, truncated after {embedding}^{}",
-            corrections(order - 1),
-            order - 1
-        ),
-    });
+    solution.validity.push(Note::Corrections { order, embedding });
     if polynomial.is_none() {
-        let line = format!("the force entered as its Taylor polynomial of degree {degree}");
-        solution.validity.push(line);
+        solution.validity.push(Note::TaylorPolynomial { degree });
     }
     if options.hbar.is_none() && order > 1 {
-        solution.validity.push(format!(
-            "{symbol} controls the convergence; numbers are given with the one of least squared residual"
-        ));
+        solution.validity.push(Note::ConvergenceControl(symbol));
     }
     Ok(solution)
-}
-
-fn corrections(count: u32) -> String {
-    match count {
-        1 => "one correction".to_owned(),
-        _ => format!("{count} corrections"),
-    }
 }
 
 struct Series {

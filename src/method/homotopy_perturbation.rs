@@ -35,7 +35,7 @@ use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter, Term};
-use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Root, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Root, Solution};
 use crate::symbol::{Symbol, fresh};
 
 /// Derives the relation between frequency and amplitude, and the motion, to an order in the bookkeeping parameter.
@@ -110,13 +110,13 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         Ok(SmallParameter::Parameter(name)) => name,
         _ => amplitude,
     };
-    let mut validity = vec![format!(
-        "truncated after {}^{order}; the frequency is the root that continues {}^2 from A = 0",
-        fresh("p", &oscillator.names()),
-        oscillator.linear_frequency_name(&force.linear)
-    )];
+    let mut validity = vec![Note::TruncatedRelation {
+        bookkeeping: fresh("p", &oscillator.names()),
+        order,
+        linear_frequency: oscillator.linear_frequency_name(&force.linear),
+    }];
     if oscillator.polynomial_degree()?.is_none() {
-        validity.push(format!("the force entered as its Taylor polynomial of degree {degree}"));
+        validity.push(Note::TaylorPolynomial { degree });
     }
     Ok(Solution {
         equation: oscillator.equation(),

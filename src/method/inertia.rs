@@ -41,7 +41,10 @@ use crate::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
 use crate::period;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Law, Method, Solution, System};
+use crate::solution::{
+    AmplitudeConvention, Law, Method, Note, Solution, System,
+    note::{ExactBy, FirstStep, Instant},
+};
 use crate::symbol::{Symbol, fresh};
 
 /// The two functions of `x'' + g x'^2 + h = 0`, and what the energy is made of.
@@ -270,9 +273,7 @@ fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> R
         .derivation
         .extend(lines.iter().skip(usize::from(moving.mass.is_none())).cloned());
     solution.law = Law::Quadrature(lines);
-    solution
-        .validity
-        .push("exact wherever the motion is periodic, by quadrature of the energy".to_owned());
+    solution.validity.push(Note::Exact(ExactBy::EnergyQuadrature));
     Ok(solution)
 }
 
@@ -336,9 +337,7 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution
-        .validity
-        .push("one term, collocated at theta = pi/4: the instant is a convention of the method".to_owned());
+    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
     Ok(solution)
 }
 
@@ -417,9 +416,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution
-        .validity
-        .push("one term: exact for a linear equation, the first step beyond it otherwise".to_owned());
+    solution.validity.push(Note::FirstStep(FirstStep::TermOfEquation));
     Ok(solution)
 }
 
@@ -545,10 +542,10 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
-    solution
-        .validity
-        .push(format!("harmonics {} balanced, those above left out", kept.join(", ")));
+    solution.validity.push(Note::Balanced {
+        harmonics,
+        by_numbers: false,
+    });
     Ok(solution)
 }
 

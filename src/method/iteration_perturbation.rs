@@ -22,7 +22,7 @@
 use num_traits::{One, Zero};
 
 use super::one_term::{
-    conservative_force, cosine, first_projection, law_of, note_even_part, solve_by_integral, unsolved,
+    conservative_force, cosine, first_projection, law_of, note_even_part_last, solve_by_integral, unsolved,
 };
 use super::{Options, Refusal};
 use crate::conservative::projection::cosine_coefficient;
@@ -33,7 +33,7 @@ use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
-use crate::solution::{Definition, Law, Method, Solution};
+use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::IterationPerturbation;
@@ -78,8 +78,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let squared = Expr::symbol("omega").integer_power(2)?;
         solution.derivation.push(Line::equation(squared, law));
     }
-    solution.validity.retain(|line| !line.starts_with("the even part"));
-    note_even_part(&mut solution, oscillator, &force)?;
+    note_even_part_last(&mut solution);
     Ok(solution)
 }
 
@@ -122,9 +121,7 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
         motion = motion.sum(&term.divided_by(divisor));
     }
     if degree.is_none() && motion != solution.displacement {
-        solution
-            .validity
-            .push(format!("the motion is cut after its harmonic {highest}"));
+        solution.validity.push(Note::MotionCutAfter { harmonic: highest });
     }
     solution.displacement = motion;
     Ok(())
@@ -166,10 +163,10 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     };
     solution.displacement = motion;
     solution.derivation = lines;
-    solution.validity.push(format!(
-        "after {passes} passes; the frequency is the root that continues {}^2 from A = 0",
-        solution.linear_frequency_name()
-    ));
+    solution.validity.push(Note::Passes {
+        passes,
+        linear_frequency: solution.linear_frequency_name(),
+    });
     Ok(solution)
 }
 

@@ -30,7 +30,7 @@ use crate::exact::{Polynomial, Polynomials, Rational, Rationals};
 use crate::expr::Expr;
 use crate::oscillator::PerturbedForce;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, LeadingCycle};
+use crate::solution::{AmplitudeConvention, Definition, LeadingCycle, Note};
 use crate::symbol::{Symbol, fresh};
 
 /// The equation `g(z) = 0` for the square of the amplitude.
@@ -57,7 +57,7 @@ pub(super) struct Cycle {
     /// `1/J`, where an expansion cannot find it by itself.
     pub inverse_slope: Option<Polynomial>,
     /// What has to be said of the amplitude.
-    pub remark: Option<String>,
+    pub remark: Option<Note>,
     relation: Option<Relation>,
 }
 
@@ -172,8 +172,11 @@ impl AmplitudeEquation {
         let remark = radical.is_none().then(|| {
             let term = |(k, c): (usize, &Rational)| Polynomial::term(Monomial::power_of(z, k as i32), c.clone());
             let terms = root.factor.iter().enumerate().map(term);
-            let factor = terms.fold(Polynomial::zero(), |sum, term| sum + term);
-            format!("{name}^2 is a root {z} of {factor} = 0; the value of {name} is rounded to 15 digits")
+            Note::RoundedAmplitude {
+                amplitude: name,
+                square: z,
+                polynomial: terms.fold(Polynomial::zero(), |sum, term| sum + term),
+            }
         });
         // a0^(2 degree) = -(lower powers), and 1/J = -1/(2 z^(lowest + 1) h'(z)) modulo the factor.
         let in_name = |list: &[Rational]| {

@@ -38,7 +38,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
-use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Solution};
+use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
 const TITLE: &str = "the method of Lindstedt and Poincare";
@@ -206,24 +206,17 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         cycles: cycles.iter().map(|cycle| cycle.to_leading(delta, small)).collect(),
         small_with: small_with.clone(),
     });
-    let mut validity = vec![match (&bookkeeping, small_with.as_slice()) {
-        (None, []) => format!("truncated after {small}^{order}; an expansion for small {small}"),
-        (None, others) => {
-            let names: Vec<&str> = others.iter().map(|name| name.name()).collect();
-            let names = format!("{small} and {}", names.join(" and "));
-            format!("truncated after order {order} in {names} together; an expansion for small {names}")
-        }
-        (Some(definition), _) => format!(
-            "truncated after {small}^{order}; {small} marks all terms but the linear one, which are taken to be small, and is {} in this equation",
-            definition.meaning
-        ),
+    let mut validity = vec![Note::Truncated {
+        small: std::iter::once(small).chain(small_with.iter().copied()).collect(),
+        order,
+        marks: bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
     }];
     if let (Some(cycle), Some(limit_cycle)) = (cycle, &limit_cycle) {
         let own = &limit_cycle.cycles[limit_cycle.number - 1];
-        validity.push(format!("the limit cycle {}", own.stability()));
+        validity.push(Note::Stability(own.clone()));
         validity.extend(cycle.remark.clone());
     }
-    validity.extend(next_terms(&positive));
+    validity.extend(positive.into_iter().map(Note::Positive));
     Ok(Solution {
         equation: oscillator.equation(),
         method: Method::LindstedtPoincare,
@@ -384,12 +377,6 @@ fn may_balance(force: &PerturbedForce) -> bool {
 
 fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
     AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency(&[]).0))
-}
-
-fn next_terms(definitions: &[Definition]) -> impl Iterator<Item = String> + '_ {
-    definitions
-        .iter()
-        .map(|definition| format!("{} = {} > 0", definition.symbol, definition.meaning_in_words()))
 }
 
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.

@@ -40,7 +40,7 @@ use crate::expr::{Expr, Function, Node};
 use crate::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
-use crate::solution::{Method, Solution};
+use crate::solution::{Method, Note, Solution, note::BoundsHold};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// The frequency between the bounds of `f(x)/x`.
@@ -74,7 +74,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     lines.extend(integral_law(oscillator, &force, &solution)?);
     let law = law_of(&solution);
     let between = |bounds: [&Expr; 2]| Line::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]));
-    let bounds = match turning_backs(oscillator, &quotient, &force) {
+    let range = match turning_backs(oscillator, &quotient, &force) {
         None => {
             lines.push(
                 between([&rest, &end]).because(format!("while {q} runs from one to the other without turning back")),
@@ -86,33 +86,24 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 lines.push(Line::equation(turn, value).because("the bound there"));
             }
             let slope = quotient.differentiate(coordinate)?.expand()?;
-            let condition = format!("while {slope} keeps its sign for 0 < {coordinate} < A");
-            match of_one_sign(&slope, coordinate) {
-                false => format!("omega^2 lies between {at_rest} and {at_turning} {condition}"),
-                true => {
-                    let mut letters = slope.symbols();
-                    letters.remove(&coordinate);
-                    let letters: Vec<&str> = letters.into_iter().map(Symbol::name).collect();
-                    format!(
-                        "omega^2 lies between {at_rest} and {at_turning} {condition}, as it does for positive {}",
-                        letters.join(", ")
-                    )
-                }
+            let mut letters = slope.symbols();
+            letters.remove(&coordinate);
+            BoundsHold::While {
+                positive: of_one_sign(&slope, coordinate).then(|| letters.into_iter().collect()),
+                slope,
+                coordinate,
             }
         }
         Some(places) if places.is_empty() => {
             lines.push(between([&rest, &end]).because(format!("{q} runs from one to the other without turning back")));
-            format!("omega^2 lies between {at_rest} and {at_turning}")
+            BoundsHold::Always
         }
         Some(places) => {
             let first = decimal(places[0].0);
             lines.push(between([&rest, &end]).because(format!("for A up to {first}")));
             lines.extend(pieces(&places, &at_rest, oscillator, [&end, &lo, &hi])?);
             lines.push(between([&lo, &hi]).because(format!("for A beyond {first}")));
-            format!(
-                "omega^2 lies between the least and the largest of f(x)/x: {at_rest} and {at_turning} up to A = {first}, \
-                 where f(x)/x turns back"
-            )
+            BoundsHold::UpTo(places[0].0)
         }
     };
     let turns = lines.iter().any(|line| line.equal.first() == Some(&lo.clone().into()));
@@ -126,6 +117,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         lines.push(Line::equation(share, Expr::divide(&(law - &lo), &(&hi - &lo))?));
     }
     solution.derivation = lines;
+    let bounds = Note::Bounds {
+        at_rest,
+        at_turning,
+        range,
+    };
     solution.validity.insert(0, bounds);
     Ok(solution)
 }

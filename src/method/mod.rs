@@ -37,14 +37,13 @@ use std::collections::BTreeMap;
 use num_traits::Zero;
 use table::{Choice, Entry, that_take};
 
-use crate::decimal::decimal;
 use crate::equilibrium::{Centred, centred};
 use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::{Expr, ExprError, parse_expression};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{AmplitudeConvention, Method, Note, Solution, note::Position};
 use crate::symbol::Symbol;
 
 /// The highest order any method accepts.
@@ -327,14 +326,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     // The first order of a force that is no polynomial projects the force as it is, corners and all.
     let projected = method == Method::LindstedtPoincare && solution.law.frequency().is_none();
     if entry.expands() && !projected && has_corners(&oscillator.force) {
-        solution
-            .validity
-            .push("the force has corners: the expansion holds for motions that stay before the nearest".to_owned());
+        solution.validity.push(Note::Corners);
     }
-    if let Some(assumption) = &centred.assumption {
-        solution
-            .validity
-            .push(format!("for {assumption}: no barrier acts at rest"));
+    if !centred.barriers_apart.is_empty() {
+        solution.validity.push(Note::BarriersApart {
+            positive: centred.barriers_apart.clone(),
+        });
     }
     if centred.position.is_zero() {
         // The question is the equation as it was typed, whatever a method made of its force.
@@ -342,9 +339,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Ok(solution);
     }
     if let (Some(degree), true) = (degree, centred.numerical && !polynomial && entry.takes(Choice::Taylor)) {
-        solution
-            .validity
-            .push(format!("the force entered as its Taylor polynomial of degree {degree}"));
+        solution.validity.push(Note::TaylorPolynomial { degree });
     }
     move_back(&mut solution, oscillator, &centred)?;
     Ok(solution)
@@ -400,13 +395,14 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     }
     let number = centred.position.evaluate(&BTreeMap::new()).ok();
     let position = match (&centred.definition, number) {
-        (None, _) if !centred.numerical => centred.position.to_string(),
-        (None | Some(_), Some(number)) => decimal(number),
-        (_, None) => format!("{}, where that is real and stable", centred.position),
+        (None, _) if !centred.numerical => Position::Exact(centred.position.clone()),
+        (None | Some(_), Some(number)) => Position::Number(number),
+        (_, None) => Position::WhereReal(centred.position.clone()),
     };
-    solution
-        .validity
-        .push(format!("swings about the equilibrium {x} = {position}"));
+    solution.validity.push(Note::Equilibrium {
+        coordinate: x,
+        position,
+    });
     if let Some(definition) = &centred.definition {
         solution.definitions.insert(0, definition.clone());
     }

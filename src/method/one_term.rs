@@ -25,7 +25,7 @@ use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep};
 use crate::symbol::Symbol;
 
 /// The force of an oscillator that is conservative: no damping, forcing or velocities.
@@ -161,9 +161,7 @@ pub(super) fn solve_by_integral(
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
-    solution
-        .validity
-        .push("one term: exact for a linear force, the first step beyond it otherwise".to_owned());
+    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation = vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
     let law = integral_law(oscillator, &force, &solution)?;
@@ -175,11 +173,17 @@ pub(super) fn solve_by_integral(
 pub(super) fn note_even_part(solution: &mut Solution, oscillator: &Oscillator, force: &Expr) -> Result<(), Refusal> {
     let even = even_part(oscillator, force)?;
     if !even.is_zero() {
-        solution.validity.push(format!(
-            "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
-        ));
+        solution.validity.push(Note::EvenPartLeftOut(even));
     }
     Ok(())
+}
+
+/// Puts what is said of the even part of the force behind what was said since.
+pub(super) fn note_even_part_last(solution: &mut Solution) {
+    // False sorts before true, and the others keep their order.
+    solution
+        .validity
+        .sort_by_key(|note| matches!(note, Note::EvenPartLeftOut(_)));
 }
 
 /// `(2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta`, written out.

@@ -25,7 +25,6 @@ use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
 use super::{Options, Refusal, lindstedt_poincare};
-use crate::decimal::decimal;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
@@ -33,7 +32,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::Poles};
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::Pade;
@@ -118,11 +117,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if !has_values(&value) {
         return refused("its coefficients are too long for a value in double precision");
     }
-    let variable = if step == 2 {
-        format!("{small}^2")
-    } else {
-        small.to_string()
-    };
     solution.method = METHOD;
     solution.order = order;
     solution.degrees = Some((numerator_degree, denominator_degree));
@@ -135,16 +129,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     used.extend(motion.flat_map(Polynomial::symbols));
     solution.definitions = solution.definitions_behind(used).into_iter().cloned().collect();
     solution.validity = vec![
-        format!(
-            "degree {numerator_degree} over degree {denominator_degree} in {variable}: agrees with the exact series through {}",
-            if step == 2 {
-                format!("{small}^{}", 2 * order)
-            } else {
-                format!("{small}^{order}")
-            }
-        ),
-        poles(&below),
-        "the motion is that of Lindstedt-Poincare to its first correction".to_owned(),
+        Note::AgreesThrough {
+            degrees: (numerator_degree, denominator_degree),
+            small,
+            step: step as u32,
+            order,
+        },
+        Note::Poles(poles(&below)),
+        Note::MotionOfSeries,
     ];
     let letters = ["p", "q"].map(|letter| fresh_stem(letter, &solution.names()));
     solution.derivation = linear_system(&coefficient, &law, (l, m), &values, &with_powers, &letters);
@@ -358,24 +350,14 @@ fn first_correction(motion: &FourierSeries<Polynomials>, small: Symbol, step: i3
 }
 
 /// The real zeros of the denominator, where it depends on one combination of symbols alone.
-fn poles(below: &Polynomial) -> String {
+fn poles(below: &Polynomial) -> Poles {
     let Some((unit, coefficients)) = in_one_variable(below) else {
-        return "where its denominator vanishes the quotient has a pole: none may lie between rest and the amplitude"
-            .to_owned();
+        return Poles::Unknown;
     };
-    let mut roots: Vec<f64> = real_roots(&coefficients);
-    roots.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let mut places: Vec<f64> = real_roots(&coefficients);
+    places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     let name = Expr::from(&Polynomial::term(unit, Rational::one()));
-    match roots.as_slice() {
-        [] => "its denominator has no real zero".to_owned(),
-        roots => {
-            let list: Vec<String> = roots.iter().map(|&root| decimal(root)).collect();
-            format!(
-                "poles at {name} = {}: none may lie between rest and the amplitude",
-                list.join(", ")
-            )
-        }
-    }
+    Poles::At { name, places }
 }
 
 /// A polynomial as one in a single product of symbols, lowest power first.
@@ -487,7 +469,7 @@ mod tests {
                 let unit = Monomial::power_of("k".into(), power).product(&Monomial::power_of("A".into(), 2 * power));
                 Polynomial::term(unit, Rational::from_float(value).unwrap())
             };
-            poles(&terms.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term))
+            poles(&terms.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term)).to_string()
         };
         // (1 - z/2)(1 + z^n): of the circle only -1 is real, and for even n none.
         let product = |n: i32| named(&[(0, 1.0), (1, -0.5), (n, 1.0), (n + 1, -0.5)]);

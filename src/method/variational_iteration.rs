@@ -20,7 +20,7 @@
 //! ```
 
 use super::iteration_perturbation::first_iterate;
-use super::one_term::{conservative_force, first_order_only, integral_law, note_even_part, solve_by_integral};
+use super::one_term::{conservative_force, first_order_only, integral_law, note_even_part_last, solve_by_integral};
 use super::{Options, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
@@ -57,7 +57,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equation(first - start, functional).because("correction functional"),
     ];
     solution.derivation.extend(integral_law(oscillator, &force, &solution)?);
-    solution.validity.retain(|line| !line.starts_with("the even part"));
-    note_even_part(&mut solution, oscillator, &force)?;
+    note_even_part_last(&mut solution);
     Ok(solution)
 }

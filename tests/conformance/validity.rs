@@ -104,6 +104,7 @@ fn limit_cycles_attract_or_repel_as_said() {
             let said = solution
                 .validity
                 .iter()
+                .map(ToString::to_string)
                 .find(|line| line.contains("limit cycle"))
                 .expect(equation);
             let attracts = said.contains(&format!(

@@ -9,7 +9,9 @@ use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, une
 use crate::derivation::Line;
 use crate::exact::{self, Doubles, POLYNOMIALS, Polynomials};
 use crate::series::FourierSeries;
-use crate::solution::{self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Root, Solution};
+use crate::solution::{
+    self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Note, Root, Solution,
+};
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify;
@@ -244,7 +246,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         modulation: (),
         response: (),
         numerical: solution.numerical,
-        validity: solution.validity.clone(),
+        validity: solution.validity.iter().map(ToString::to_string).collect(),
         verification: verification.map(self::verification),
     }
 }
@@ -369,7 +371,7 @@ impl SolutionDocument {
             displacement: self.displacement.read()?,
             limit_cycle: self.limit_cycle.as_ref().map(LimitCycle::read).transpose()?,
             numerical: self.numerical,
-            validity: self.validity.clone(),
+            validity: self.validity.iter().cloned().map(Note::Stated).collect(),
             steps: vec![],
             derivation: vec![],
         })

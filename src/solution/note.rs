@@ -1,0 +1,455 @@
+//! What an answer says of itself beside its formulas: how it was cut, what was left out, where it holds.
+
+use std::fmt;
+
+use super::{Definition, LeadingCycle};
+use crate::decimal::decimal;
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::symbol::Symbol;
+
+/// One statement about an answer; printed, it is a sentence.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// A motion of one term, or a balance of one harmonic: exact for what is linear.
+    FirstStep(FirstStep),
+    /// A one-term motion whose equation is met at one instant.
+    Collocated(Instant),
+    /// The slope of the force at half the amplitude.
+    SlopeAtHalf,
+    /// The part of the force that a motion of one term leaves out.
+    EvenPartLeftOut(Expr),
+    /// An expansion cut after an order.
+    Truncated {
+        /// What is small, together.
+        small: Vec<Symbol>,
+        /// The highest power kept.
+        order: u32,
+        /// The value of a small parameter that marks terms of an equation without one.
+        marks: Option<Expr>,
+    },
+    /// The first order of a force that is no polynomial.
+    FirstOrderOnly {
+        /// The small parameter.
+        small: Symbol,
+    },
+    /// The motion of that order is left at its leading term.
+    MotionAtLeadingOrder {
+        /// The small parameter.
+        small: Symbol,
+    },
+    /// A relation cut after a power of a bookkeeping parameter.
+    TruncatedRelation {
+        /// The bookkeeping parameter.
+        bookkeeping: Symbol,
+        /// The highest power kept.
+        order: u32,
+        /// The linear frequency, where the root starts.
+        linear_frequency: Symbol,
+    },
+    /// A relation after so many passes of an iteration.
+    Passes {
+        /// How many.
+        passes: u32,
+        /// The linear frequency, where the root starts.
+        linear_frequency: Symbol,
+    },
+    /// The first frequency and its corrections.
+    Corrections {
+        /// One more than the number of corrections.
+        order: u32,
+        /// The embedding parameter.
+        embedding: Symbol,
+    },
+    /// The parameter that controls the convergence is open.
+    ConvergenceControl(Symbol),
+    /// The force entered as a polynomial.
+    TaylorPolynomial {
+        /// Its degree.
+        degree: u32,
+    },
+    /// The motion has harmonics above the last that is written.
+    MotionCutAfter {
+        /// The last harmonic.
+        harmonic: usize,
+    },
+    /// The harmonics of a balance.
+    Balanced {
+        /// Those that are kept.
+        harmonics: Vec<usize>,
+        /// Whether numbers alone solve it.
+        by_numbers: bool,
+    },
+    /// The arcs in the equations of a balance.
+    ArcsFor {
+        /// The coefficient that is taken to be positive.
+        positive: Symbol,
+    },
+    /// The bounds between which omega^2 lies.
+    Bounds {
+        /// `f(x)/x` at rest.
+        at_rest: Expr,
+        /// `f(x)/x` at the turning point.
+        at_turning: Expr,
+        /// For which amplitudes.
+        range: BoundsHold,
+    },
+    /// How far a quotient agrees with the series that it comes from.
+    AgreesThrough {
+        /// The degrees of numerator and denominator.
+        degrees: (u32, u32),
+        /// The symbol of the series.
+        small: Symbol,
+        /// The power of the symbol that one degree counts: 1 or 2.
+        step: u32,
+        /// The degree through which they agree.
+        order: u32,
+    },
+    /// The real zeros of the denominator of a quotient.
+    Poles(Poles),
+    /// A quotient has the motion of the series to its first correction.
+    MotionOfSeries,
+    /// The law is that of the true motion.
+    Exact(ExactBy),
+    /// Whether the limit cycle attracts.
+    Stability(LeadingCycle),
+    /// The amplitude of a limit cycle has no closed form.
+    RoundedAmplitude {
+        /// The amplitude.
+        amplitude: Symbol,
+        /// Its square.
+        square: Symbol,
+        /// The polynomial in the square that is zero.
+        polynomial: Polynomial,
+    },
+    /// A meaning that is taken to be positive.
+    Positive(Definition),
+    /// An expansion of a force with corners.
+    Corners,
+    /// Barriers that do not act at rest.
+    BarriersApart {
+        /// What is taken to be positive.
+        positive: Vec<Expr>,
+    },
+    /// The equilibrium about which the motion swings.
+    Equilibrium {
+        /// The coordinate.
+        coordinate: Symbol,
+        /// Its value there.
+        position: Position,
+    },
+    /// The coefficients are rounded to fifteen digits.
+    RoundedCoefficients,
+    /// As a document states it.
+    Stated(String),
+}
+
+/// What a first step is exact for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstStep {
+    /// One term in a force.
+    TermOfForce,
+    /// One term in an equation whose inertia depends on the position.
+    TermOfEquation,
+    /// One harmonic in a force.
+    Harmonic,
+}
+
+/// Where a motion of one term meets its equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instant {
+    /// At an eighth of the period.
+    EighthOfPeriod,
+    /// Where the square of the cosine is three quarters.
+    CosineSquared,
+}
+
+/// For which amplitudes omega^2 lies between the values of `f(x)/x` at rest and at the turning point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BoundsHold {
+    /// For all.
+    Always,
+    /// As long as the slope of `f(x)/x` keeps its sign.
+    While {
+        /// The slope.
+        slope: Expr,
+        /// The coordinate.
+        coordinate: Symbol,
+        /// Parameters that need only be positive for that.
+        positive: Option<Vec<Symbol>>,
+    },
+    /// Up to the place where `f(x)/x` turns back.
+    UpTo(f64),
+}
+
+/// The real zeros of a denominator.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Poles {
+    /// It depends on several symbols.
+    Unknown,
+    /// These values of one product of symbols; none where there are none.
+    At {
+        /// The product.
+        name: Expr,
+        /// The zeros, those of least size first.
+        places: Vec<f64>,
+    },
+}
+
+/// How an exact law is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExactBy {
+    /// In closed form.
+    ClosedForm,
+    /// By quadrature of the energy, where the inertia depends on the position.
+    EnergyQuadrature,
+    /// By quadrature, because nothing else is known.
+    Quadrature,
+}
+
+/// An equilibrium as people read it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Position {
+    /// In closed form.
+    Exact(Expr),
+    /// By its number.
+    Number(f64),
+    /// In closed form, where its value depends on parameters.
+    WhereReal(Expr),
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FirstStep(step) => {
+                let (terms, linear) = match step {
+                    FirstStep::TermOfForce => ("one term", "force"),
+                    FirstStep::TermOfEquation => ("one term", "equation"),
+                    FirstStep::Harmonic => ("one harmonic", "force"),
+                };
+                write!(
+                    formatter,
+                    "{terms}: exact for a linear {linear}, the first step beyond it otherwise"
+                )
+            }
+            Self::Collocated(instant) => {
+                let at = match instant {
+                    Instant::EighthOfPeriod => "theta = pi/4",
+                    Instant::CosineSquared => "cos(theta)^2 = 3/4",
+                };
+                write!(
+                    formatter,
+                    "one term, collocated at {at}: the instant is a convention of the method"
+                )
+            }
+            Self::SlopeAtHalf => {
+                formatter.write_str("one line: exact for linear forces, and to first order for cubic ones alone")
+            }
+            Self::EvenPartLeftOut(even) => write!(
+                formatter,
+                "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
+            ),
+            Self::Truncated { small, order, marks } => truncated(formatter, small, *order, marks.as_ref()),
+            Self::FirstOrderOnly { small } => write!(
+                formatter,
+                "truncated after {small}^1, the highest order for a force that is no polynomial; an expansion for small {small}"
+            ),
+            Self::MotionAtLeadingOrder { small } => write!(
+                formatter,
+                "the motion is A*cos(theta): its part of the size of {small}, drift and harmonics, is left out"
+            ),
+            Self::TruncatedRelation {
+                bookkeeping,
+                order,
+                linear_frequency,
+            } => {
+                write!(formatter, "truncated after {bookkeeping}^{order}; ")?;
+                root(formatter, *linear_frequency)
+            }
+            Self::Passes {
+                passes,
+                linear_frequency,
+            } => {
+                write!(formatter, "after {passes} passes; ")?;
+                root(formatter, *linear_frequency)
+            }
+            Self::Corrections { order: 1, embedding } => write!(
+                formatter,
+                "order 1: the first frequency alone, the terms without {embedding}"
+            ),
+            Self::Corrections { order, embedding } => {
+                let highest = order - 1;
+                let corrections = match highest {
+                    1 => "one correction".to_owned(),
+                    count => format!("{count} corrections"),
+                };
+                write!(
+                    formatter,
+                    "order {order}: the first frequency and {corrections}, truncated after {embedding}^{highest}"
+                )
+            }
+            Self::ConvergenceControl(hbar) => write!(
+                formatter,
+                "{hbar} controls the convergence; numbers are given with the one of least squared residual"
+            ),
+            Self::TaylorPolynomial { degree } => {
+                write!(formatter, "the force entered as its Taylor polynomial of degree {degree}")
+            }
+            Self::MotionCutAfter { harmonic } => write!(formatter, "the motion is cut after its harmonic {harmonic}"),
+            Self::Balanced { harmonics, by_numbers } => {
+                let how = if *by_numbers { "; solved by numbers at an amplitude" } else { "" };
+                write!(
+                    formatter,
+                    "harmonics {} balanced, those above left out{how}",
+                    listed(harmonics)
+                )
+            }
+            Self::ArcsFor { positive } => write!(formatter, "the arcs are written for {positive} > 0"),
+            Self::Bounds {
+                at_rest,
+                at_turning,
+                range,
+            } => bounds(formatter, at_rest, at_turning, range),
+            Self::AgreesThrough {
+                degrees: (above, below),
+                small,
+                step,
+                order,
+            } => {
+                let variable = match step {
+                    1 => small.to_string(),
+                    _ => format!("{small}^{step}"),
+                };
+                write!(
+                    formatter,
+                    "degree {above} over degree {below} in {variable}: agrees with the exact series through {small}^{}",
+                    step * order
+                )
+            }
+            Self::Poles(poles) => poles.fmt(formatter),
+            Self::MotionOfSeries => {
+                formatter.write_str("the motion is that of Lindstedt-Poincare to its first correction")
+            }
+            Self::Exact(by) => formatter.write_str(match by {
+                ExactBy::ClosedForm => "exact wherever the motion is periodic",
+                ExactBy::EnergyQuadrature => "exact wherever the motion is periodic, by quadrature of the energy",
+                ExactBy::Quadrature => {
+                    "exact wherever the motion is periodic, by quadrature: no elliptic or Gamma function is known to give it"
+                }
+            }),
+            Self::Stability(cycle) => write!(formatter, "the limit cycle {}", cycle.stability()),
+            Self::RoundedAmplitude {
+                amplitude,
+                square,
+                polynomial,
+            } => write!(
+                formatter,
+                "{amplitude}^2 is a root {square} of {polynomial} = 0; the value of {amplitude} is rounded to 15 digits"
+            ),
+            Self::Positive(definition) => write!(
+                formatter,
+                "{} = {} > 0",
+                definition.symbol,
+                definition.meaning_in_words()
+            ),
+            Self::Corners => formatter
+                .write_str("the force has corners: the expansion holds for motions that stay before the nearest"),
+            Self::BarriersApart { positive } => {
+                let conditions: Vec<String> = positive.iter().map(|edge| format!("{edge} > 0")).collect();
+                write!(formatter, "for {}: no barrier acts at rest", conditions.join(", "))
+            }
+            Self::Equilibrium { coordinate, position } => {
+                write!(formatter, "swings about the equilibrium {coordinate} = {position}")
+            }
+            Self::RoundedCoefficients => {
+                formatter.write_str("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction")
+            }
+            Self::Stated(words) => formatter.write_str(words),
+        }
+    }
+}
+
+fn truncated(formatter: &mut fmt::Formatter<'_>, small: &[Symbol], order: u32, marks: Option<&Expr>) -> fmt::Result {
+    let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
+    let names = names.join(" and ");
+    match (marks, small.len()) {
+        (Some(value), _) => write!(
+            formatter,
+            "truncated after {names}^{order}; {names} marks all terms but the linear one, which are taken to be small, and is {value} in this equation"
+        ),
+        (None, 1) => write!(
+            formatter,
+            "truncated after {names}^{order}; an expansion for small {names}"
+        ),
+        (None, _) => write!(
+            formatter,
+            "truncated after order {order} in {names} together; an expansion for small {names}"
+        ),
+    }
+}
+
+fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Symbol) -> fmt::Result {
+    write!(
+        formatter,
+        "the frequency is the root that continues {linear_frequency}^2 from A = 0"
+    )
+}
+
+fn bounds(formatter: &mut fmt::Formatter<'_>, at_rest: &Expr, at_turning: &Expr, range: &BoundsHold) -> fmt::Result {
+    if let BoundsHold::UpTo(place) = range {
+        return write!(
+            formatter,
+            "omega^2 lies between the least and the largest of f(x)/x: {at_rest} and {at_turning} up to A = {}, \
+             where f(x)/x turns back",
+            decimal(*place)
+        );
+    }
+    write!(formatter, "omega^2 lies between {at_rest} and {at_turning}")?;
+    if let BoundsHold::While {
+        slope,
+        coordinate,
+        positive,
+    } = range
+    {
+        write!(formatter, " while {slope} keeps its sign for 0 < {coordinate} < A")?;
+        if let Some(letters) = positive {
+            write!(formatter, ", as it does for positive {}", listed(letters))?;
+        }
+    }
+    Ok(())
+}
+
+impl fmt::Display for Poles {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown => formatter.write_str(
+                "where its denominator vanishes the quotient has a pole: none may lie between rest and the amplitude",
+            ),
+            Self::At { places, .. } if places.is_empty() => formatter.write_str("its denominator has no real zero"),
+            Self::At { name, places } => {
+                let places: Vec<String> = places.iter().map(|&place| decimal(place)).collect();
+                write!(
+                    formatter,
+                    "poles at {name} = {}: none may lie between rest and the amplitude",
+                    places.join(", ")
+                )
+            }
+        }
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exact(position) => write!(formatter, "{position}"),
+            Self::Number(position) => formatter.write_str(&decimal(*position)),
+            Self::WhereReal(position) => write!(formatter, "{position}, where that is real and stable"),
+        }
+    }
+}
+
+fn listed(items: &[impl ToString]) -> String {
+    let items: Vec<String> = items.iter().map(ToString::to_string).collect();
+    items.join(", ")
+}

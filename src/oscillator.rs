@@ -319,10 +319,15 @@ impl Oscillator {
         }
     }
 
-    /// The equation in normal form, as text.
-    pub fn equation(&self) -> String {
+    /// The equation in normal form, `x'' + f = 0`.
+    pub fn equation(&self) -> Equation {
         let acceleration = Expr::from(self.velocity().derivative());
-        format!("{} = 0", &acceleration + &self.force)
+        Equation {
+            left: &acceleration + &self.force,
+            right: Expr::zero(),
+            coordinate: self.coordinate,
+            typed: self.typed.clone(),
+        }
     }
 
     /// The terms of the force sorted by kind. A term of several kinds, such as `x'*sin(t)`, counts as forcing.

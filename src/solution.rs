@@ -23,7 +23,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Rational;
 use crate::exact::scaled::Scaled;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
-use crate::expr::Expr;
+use crate::expr::{Equation, Expr};
 use crate::series::{FourierSeries, terms};
 use crate::symbol::{Symbol, fresh};
 
@@ -88,12 +88,18 @@ impl Definition {
 
 /// A constant; a fraction of many digits, which is a rounded number, as a decimal.
 pub fn constant_in_words(value: &Expr) -> String {
-    const MANY: usize = 16;
-    let text = value.to_string();
-    match value.as_number() {
-        Some(number) if !number.is_integer() && text.len() > MANY => significant_fraction(number, 15),
-        _ => text,
+    match long_fraction(value) {
+        Some(number) => significant_fraction(number, 15),
+        None => value.to_string(),
     }
+}
+
+/// The number that a constant is, where it is a fraction of so many digits that it must be a rounded number.
+pub fn long_fraction(value: &Expr) -> Option<&Rational> {
+    const MANY: usize = 16;
+    value
+        .as_number()
+        .filter(|number| !number.is_integer() && number.to_string().len() > MANY)
 }
 
 /// The limit cycle that a solution describes, among those of its equation.
@@ -146,7 +152,7 @@ impl LeadingCycle {
 #[non_exhaustive]
 pub struct Solution {
     /// The equation as it was understood, `x'' + f = 0`.
-    pub equation: String,
+    pub equation: Equation,
     /// Who derived it.
     pub method: Method,
     /// Highest power kept, inclusive, of the small parameter.
@@ -242,8 +248,8 @@ impl Solution {
     }
 
     /// The letter of the coordinate: what carries the primes in the equation.
-    pub fn coordinate(&self) -> &str {
-        self.equation.split('\'').next().unwrap_or("x")
+    pub fn coordinate(&self) -> Symbol {
+        self.equation.coordinate
     }
 
     /// The small parameter, and those that are small together with it.
@@ -266,7 +272,7 @@ impl Solution {
     /// The names that mean something in this answer already: parameters, coordinate, definitions, `t`. What a report introduces is
     /// named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
-        let own = ["t", self.coordinate()].map(Symbol::new);
+        let own = ["t".into(), self.coordinate()];
         let defined = self.definitions.iter().map(|definition| definition.symbol);
         self.parameters.iter().copied().chain(own).chain(defined).collect()
     }

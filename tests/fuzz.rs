@@ -103,7 +103,7 @@ fn compared(equation: &str, amplitude: &str) {
     }
     if let Ok(table) = compare(&oscillator, &values, None, 0.01) {
         assert!(!text::comparison(&table, 80).is_empty() && !latex::comparison(&table).is_empty());
-        assert_eq!(json::comparison(&table).equation, table.equation);
+        assert_eq!(json::comparison(&table).equation, table.equation.to_string());
     }
 }
 

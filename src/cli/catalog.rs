@@ -89,8 +89,8 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
 fn item(entry: &Entry) -> String {
     let law = entry.published.map(|law| {
         let law = law.to_string();
-        format!(", published $ {} $", latex::equation(law.trim_end_matches(" + ...")))
+        format!(", published $ {} $", latex::typed(law.trim_end_matches(" + ...")))
     });
-    let (equation, law) = (latex::equation(entry.equation), law.unwrap_or_default());
+    let (equation, law) = (latex::typed(entry.equation), law.unwrap_or_default());
     format!("\\item[{}] {}: $ {equation} ${law}", entry.name, entry.title)
 }

@@ -12,14 +12,14 @@ use num_traits::One;
 pub use expression::{expression, symbol};
 
 pub use super::steps::latex as steps;
-use crate::decimal::{decimal, significant, significant_fraction};
+use crate::decimal::{decimal, rounded_fraction, significant, significant_fraction};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
-use crate::expr::{Expr, parse_expression};
+use crate::expr::{Equation, Expr, parse_expression};
 use crate::impact::{Column, Form, Impact, Phase};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
-use crate::solution::{LimitCycle, Solution};
+use crate::solution::{LimitCycle, Solution, long_fraction};
 use crate::verify::Verification;
 use crate::verify::comparison::{Comparison, Row};
 
@@ -45,6 +45,14 @@ fn coefficient_term(monomial: &Monomial, coefficient: &Rational, numerical: bool
     }
 }
 
+/// A constant; what must be a rounded number with fifteen of its digits.
+fn constant(value: &Expr) -> String {
+    match long_fraction(value) {
+        Some(number) => expression(&Expr::number(rounded_fraction(number, 15))),
+        None => expression(value),
+    }
+}
+
 fn scientific(value: f64) -> String {
     scientific_text(&decimal(value))
 }
@@ -56,8 +64,13 @@ fn scientific_text(text: &str) -> String {
     }
 }
 
-/// An equation of motion, `left = right`, as it was typed or stands in a solution.
-pub fn equation(text: &str) -> String {
+/// An equation of motion or a definition, `left = right`.
+pub fn equation(equation: &Equation) -> String {
+    format!("{} = {}", expression(&equation.left), expression(&equation.right))
+}
+
+/// An equation, `left = right`, or an expression, as it was typed.
+pub fn typed(text: &str) -> String {
     let side = |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
     match text.split_once('=') {
         Some((left, right)) => format!("{} = {}", side(left), side(right)),
@@ -100,7 +113,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
         lines.push(format!(
             "{} &= {}",
             symbol(definition.symbol),
-            equation(&definition.meaning_in_words())
+            constant(&definition.meaning)
         ));
     }
     let mut text = String::new();
@@ -145,7 +158,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
 /// The story of an impact: equation, law, three phases by either column, and the numbers beside Runge-Kutta.
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     let setup = &impact.setup;
-    let mut lines = vec![equation(&impact.equation).replacen(" = ", " &= ", 1)];
+    let mut lines = vec![typed(&impact.equation).replacen(" = ", " &= ", 1)];
     if let Some(squared) = impact.free_swing.law.frequency_squared() {
         lines.push(format!("\\omega^{{2}} &= {}", law(squared, &impact.free_swing)));
     }
@@ -353,7 +366,7 @@ fn formula(solution: &Solution) -> String {
         format!(
             ", \\; {} = {}",
             symbol(definition.symbol),
-            equation(&definition.meaning_in_words())
+            constant(&definition.meaning)
         )
     });
     format!("${text}{}$", definitions.collect::<String>())

@@ -158,7 +158,7 @@ pub fn latex(solution: &Solution) -> String {
     }
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
-        let (name, unit) = (symbol(solution.coordinate().into()), symbol(unit(solution)));
+        let (name, unit) = (symbol(solution.coordinate()), symbol(unit(solution)));
         let [y, w] = letters(solution);
         let [p, omega0] = [fresh("p", &solution.names()), solution.linear_frequency_name()].map(symbol);
         let ([y0, y1, y2], [w1, w2]) = ([0, 1, 2].map(|n| indexed(&y, n)), [1, 2].map(|n| indexed(&w, n)));

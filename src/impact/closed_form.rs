@@ -187,7 +187,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
     )?;
     let (paper_deviation, energy_deviation) = (deviation(&paper, &truth), deviation(&energy, &truth));
     Ok(Impact {
-        equation: original.equation(),
+        equation: original.equation().to_string(),
         setup,
         free_swing,
         paper,

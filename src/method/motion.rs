@@ -110,7 +110,7 @@ impl Solution {
     /// # Errors
     /// [`NoMotion`].
     pub fn motion_at(&self, values: &Values) -> Result<Motion, NoMotion> {
-        let oscillator = Oscillator::parse(&self.equation)?;
+        let oscillator = Oscillator::from_equation(&self.equation)?;
         let mut needed = self.parameters.clone();
         needed.extend(self.limit_cycle.is_none().then(|| self.amplitude.symbol()));
         needed.retain(|&name| values.get(name).is_none());

@@ -269,7 +269,7 @@ fn frequency_squared(
         force.turning_point(amplitude_of(solution, numbers))?;
     }
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
-    let sized = by_size(solution) && (!is_exact(solution) || odd_equation(solution));
+    let sized = by_size(solution) && (!is_exact(solution) || odd_equation(oscillator));
     let value_of = |name| {
         let value = numbers.get(&name).copied()?;
         Some(if sized && name == symbol { value.abs() } else { value })
@@ -376,10 +376,8 @@ fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMa
 }
 
 /// Whether the equation changes its sign with the coordinate.
-fn odd_equation(solution: &Solution) -> bool {
-    Oscillator::parse(&solution.equation)
-        .ok()
-        .is_some_and(|oscillator| is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false))
+fn odd_equation(oscillator: &Oscillator) -> bool {
+    is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false)
 }
 
 /// The motion by the formula, in theta; implicit methods write it with `omega`.
@@ -409,7 +407,7 @@ fn formula_motion(
         return Some(motion);
     }
     let motion = motion.by_harmonic(half_a_period);
-    if odd_equation(solution) {
+    if odd_equation(oscillator) {
         return Some(motion);
     }
     // Every harmonic comes with a cos(theta) that lets the motion start at the amplitude; half a period later the even ones,

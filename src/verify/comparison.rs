@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::reach::{Truth, reach};
 use super::validity::{self, Reach};
 use super::{TrueMotion, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
+use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
@@ -60,7 +61,7 @@ pub struct Refused {
 #[non_exhaustive]
 pub struct Comparison {
     /// The equation as it was understood.
-    pub equation: String,
+    pub equation: Equation,
     /// The values at which the methods were judged.
     pub at: Values,
     /// omega of the true motion; `None` where it cannot be computed.

@@ -171,7 +171,7 @@ pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     let mut needed = solution.parameters.clone();
     // A law such as omega^2 = 1 for x'' + x + x^2 = 0 is free of A where the true motion is not.
     let linear = || {
-        let oscillator = Oscillator::parse(&solution.equation);
+        let oscillator = Oscillator::from_equation(&solution.equation);
         oscillator.is_ok_and(|oscillator| matches!(oscillator.polynomial_degree(), Ok(Some(0 | 1))))
     };
     if solution.limit_cycle.is_none() && (solution.depends_on_amplitude() || !linear()) {
@@ -482,7 +482,7 @@ impl TrueMotion {
     }
 
     /// Where a true limit cycle lies and what it does to its neighbours.
-    fn about_the_cycle(&self, coordinate: &str) -> Option<validity::Range> {
+    fn about_the_cycle(&self, coordinate: Symbol) -> Option<validity::Range> {
         let Some(Orbit::LimitCycle(cycle)) = &self.orbit else {
             return None;
         };

@@ -119,7 +119,7 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
     let applying = comparison.rows.iter().map(applying);
     ComparisonDocument {
         schema: Kind::Comparison.schema().to_owned(),
-        equation: comparison.equation.clone(),
+        equation: comparison.equation.to_string(),
         at: values(&comparison.at),
         true_frequency: finite(comparison.true_frequency),
         reason: comparison.reason.clone(),

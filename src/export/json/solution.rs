@@ -8,6 +8,7 @@ use super::number::{expression, finite};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, unexpected};
 use crate::derivation::Line;
 use crate::exact::{self, Doubles, POLYNOMIALS, Polynomials};
+use crate::expr::parse_equation;
 use crate::series::FourierSeries;
 use crate::solution::{
     self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Note, Root, Solution,
@@ -218,7 +219,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
     let definitions = solution.definitions.iter();
     SolutionDocument {
         schema: Kind::Solution.schema().to_owned(),
-        equation: solution.equation.clone(),
+        equation: solution.equation.to_string(),
         method: solution.method.name().to_owned(),
         order: solution.order,
         degrees: solution.degrees.map(<[u32; 2]>::from),
@@ -354,7 +355,7 @@ impl SolutionDocument {
             })
         };
         Ok(Solution {
-            equation: self.equation.clone(),
+            equation: parse_equation(&self.equation).or_else(|_| unexpected("equation", "an equation of motion"))?,
             method,
             order: self.order,
             degrees: self.degrees.map(<(u32, u32)>::from),

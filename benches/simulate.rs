@@ -4,40 +4,51 @@
 //! judge for comparison.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use lindstedt::impact::{Integrator, Model, Options, Start, simulate, simulate_many};
+use lindstedt::impact::{Integrator, Model, Settings, Start, simulate, simulate_many};
 
 const REST: Start = Start { x: -1.5, velocity: 0.0 };
 
-fn conservative() -> (Vec<(Model, Start)>, Options) {
+fn conservative() -> (Vec<(Model, Start)>, Settings) {
     let start = |index: u32| Start {
         x: -1.5 + 1e-2 * f64::from(index),
         velocity: 0.0,
     };
-    let motions = (0..10).map(|index| (Model::default(), start(index))).collect();
-    let options = Options {
+    let motions = (0..10)
+        .map(|index| {
+            (
+                Model {
+                    gamma: 1e6,
+                    ..Model::default()
+                },
+                start(index),
+            )
+        })
+        .collect();
+    let options = Settings {
         relative_tolerance: 1e-10,
         absolute_tolerance: 1e-12,
         keep_path: false,
-        ..Options::default()
+        ..Settings::default()
     };
     (motions, options)
 }
 
-fn damped() -> (Vec<(Model, Start)>, Options) {
+fn damped() -> (Vec<(Model, Start)>, Settings) {
     let model = |index: u32| Model {
+        gamma: 1e6,
         zeta: 0.01,
         mu: 1e4,
         right: Some(0.05 + 0.005 * f64::from(index)),
         ..Model::default()
     };
     let motions = (0..100).map(|index| (model(index), REST)).collect();
-    let options = Options {
+    let options = Settings {
         duration: 1e4,
         relative_tolerance: 1e-8,
         absolute_tolerance: 1e-10,
         rest_energy: Some(1e-3),
         keep_path: false,
-        ..Options::default()
+        ..Settings::default()
     };
     (motions, options)
 }

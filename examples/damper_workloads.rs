@@ -5,25 +5,32 @@
 
 use std::time::Instant;
 
-use lindstedt::impact::{Integrator, Model, Options, Simulation, Start, simulate, simulate_many};
+use lindstedt::impact::{Integrator, Model, Settings, Simulation, Start, simulate, simulate_many};
 
 fn main() {
     let w5: Vec<(Model, Start)> = (0..1000)
         .map(|i| {
             let x = -1.5 + 1e-4 * f64::from(i);
-            (Model::default(), Start { x, velocity: 0.0 })
+            (
+                Model {
+                    gamma: 1e6,
+                    ..Model::default()
+                },
+                Start { x, velocity: 0.0 },
+            )
         })
         .collect();
-    let options = Options {
+    let options = Settings {
         relative_tolerance: 1e-10,
         absolute_tolerance: 1e-12,
         keep_path: false,
-        ..Options::default()
+        ..Settings::default()
     };
     measure("W5", &w5, &options);
     let w6: Vec<(Model, Start)> = (0..10_000)
         .map(|i| {
             let model = Model {
+                gamma: 1e6,
                 zeta: 0.01,
                 mu: 1e4,
                 right: Some(0.05 + 0.5 * f64::from(i) / 10_000.0),
@@ -32,7 +39,7 @@ fn main() {
             (model, Start { x: -1.5, velocity: 0.0 })
         })
         .collect();
-    let options = Options {
+    let options = Settings {
         duration: 1e4,
         relative_tolerance: 1e-8,
         absolute_tolerance: 1e-10,
@@ -42,7 +49,7 @@ fn main() {
     measure("W6", &w6, &options);
 }
 
-fn measure(name: &str, motions: &[(Model, Start)], options: &Options) {
+fn measure(name: &str, motions: &[(Model, Start)], options: &Settings) {
     let begin = Instant::now();
     let single: Vec<Simulation> = motions
         .iter()

@@ -13,7 +13,7 @@ use serde::Deserialize;
 
 use crate::expr::{ParseError, parse_expression};
 use crate::impact::hertz::{Design, NotPositive};
-use crate::impact::{Rule, UnknownRule};
+use crate::impact::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Rule, UnknownRule};
 use crate::symbol::Symbol;
 use crate::values::{ValueError, Values};
 
@@ -159,8 +159,8 @@ pub struct Run {
 impl Default for Pendulum {
     fn default() -> Self {
         Self {
-            amplitude: 1.5,
-            barrier: Barrier::Right(0.323),
+            amplitude: DEFAULT_AMPLITUDE,
+            barrier: Barrier::Right(DEFAULT_BARRIER),
             start: None,
             speed: None,
         }

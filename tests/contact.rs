@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use lindstedt::impact::Rule;
 use lindstedt::impact::hertz::{self, Design, elastic_force};
 use lindstedt::impact::{self, Setup};
-use lindstedt::impact::{Column, Form, Swing, ThreePhases, three_phases};
-use lindstedt::impact::{TrueMotion, deviation, true_motion};
+use lindstedt::impact::{ContactSpeed, Form, Swing, ThreePhases, three_phases};
+use lindstedt::impact::{TrueImpact, deviation, true_impact};
 use lindstedt::ode::Options;
 use proptest::prelude::*;
 
@@ -26,12 +26,12 @@ fn swing(amplitude: f64, barrier: f64, stiffness: f64) -> Swing<'static> {
     }
 }
 
-fn paper(stiffness: f64, column: Column) -> ThreePhases {
+fn paper(stiffness: f64, column: ContactSpeed) -> ThreePhases {
     three_phases(&swing(1.5, 0.323, stiffness), column).unwrap()
 }
 
-fn truth(stiffness: f64) -> TrueMotion {
-    true_motion(
+fn truth(stiffness: f64) -> TrueImpact {
+    true_impact(
         1.5,
         0.323,
         stiffness,
@@ -47,8 +47,8 @@ fn table_5_leads_to_the_depth_and_duration_of_a_hertz_contact() {
     let stiffness = Design::default().stiffness().unwrap();
     assert!((stiffness / 3.0407e7 - 1.0).abs() < 2e-5);
     for (column, depth, duration) in [
-        (Column::Paper, 1.32079e-3, 3.13035e-3),
-        (Column::Energy, 1.39090e-3, 3.09013e-3),
+        (ContactSpeed::Paper, 1.32079e-3, 3.13035e-3),
+        (ContactSpeed::Energy, 1.39090e-3, 3.09013e-3),
     ] {
         let speed = paper(stiffness, column).speed;
         assert!(
@@ -83,7 +83,7 @@ fn contact_times_over_many_decades_of_stiffness() {
             "duration at gamma = {stiffness}"
         );
         // And the closed form with the energy's speed: 1.6 % long, the least-squares line's own error.
-        let closed = paper(stiffness, Column::Energy);
+        let closed = paper(stiffness, ContactSpeed::Energy);
         assert!(
             (closed.duration / duration - 1.016).abs() < 2.0 * gravity + 1e-3,
             "line at gamma = {stiffness}"
@@ -102,8 +102,8 @@ fn the_printed_contact_duration_needs_an_absurd_stiffness() {
     );
     assert!((hertz::duration(6.2e18, truth.touch.v).unwrap() / truth.duration - 1.0).abs() < 1e-6);
     // And the slope 0.034 of equation (15) to the depth 1.093e-3, gamma = 4.88e7.
-    let speed = paper(1e6, Column::Paper).speed;
-    let line = paper(4.88e7, Column::Paper).line;
+    let speed = paper(1e6, ContactSpeed::Paper).speed;
+    let line = paper(4.88e7, ContactSpeed::Paper).line;
     assert!((line.slope - 0.034).abs() < 2e-5, "slope {}", line.slope);
     assert!((hertz::penetration(4.88e7, speed).unwrap() - 1.093e-3).abs() < 1e-6);
 }
@@ -111,7 +111,7 @@ fn the_printed_contact_duration_needs_an_absurd_stiffness() {
 #[test]
 fn the_errors_of_the_paper_have_the_sizes_known() {
     let stiffness = Design::default().stiffness().unwrap();
-    let (closed, truth) = (paper(stiffness, Column::Paper), truth(stiffness));
+    let (closed, truth) = (paper(stiffness, ContactSpeed::Paper), truth(stiffness));
     let percent = |value: f64, reference: f64| 100.0 * (value / reference - 1.0);
     assert!((percent(closed.speed, truth.touch.v) + 6.26).abs() < 0.005);
     assert!((percent(closed.phases[0].end, truth.touch.t) - 2.15).abs() < 0.005);
@@ -127,8 +127,8 @@ fn an_exact_frequency_does_not_make_the_cosine_exact() {
         ..swing(1.5, 0.323, 1e6)
     };
     let truth = truth(1e6);
-    let found = deviation(&three_phases(&exact, Column::Energy).unwrap(), &truth);
-    let of_law = deviation(&paper(1e6, Column::Energy), &truth);
+    let found = deviation(&three_phases(&exact, ContactSpeed::Energy).unwrap(), &truth);
+    let of_law = deviation(&paper(1e6, ContactSpeed::Energy), &truth);
     assert!(
         found.total < 0.6 * of_law.total && found.total > 0.03,
         "{found:?} against {of_law:?}"
@@ -145,9 +145,9 @@ fn small_swings_are_described_well() {
             absolute_tolerance: 1e-13 * amplitude,
             ..Options::with_tolerance(1e-12)
         };
-        let truth = true_motion(amplitude, barrier, 1e10, f64::sin, elastic_force, &options).unwrap();
+        let truth = true_impact(amplitude, barrier, 1e10, f64::sin, elastic_force, &options).unwrap();
         deviation(
-            &three_phases(&swing(amplitude, barrier, 1e10), Column::Energy).unwrap(),
+            &three_phases(&swing(amplitude, barrier, 1e10), ContactSpeed::Energy).unwrap(),
             &truth,
         )
         .phases[0]
@@ -262,7 +262,7 @@ proptest! {
             case.amplitude = amplitude.abs() % 3.0;
             case.barrier = part * case.amplitude;
         }
-        for column in [Column::Paper, Column::Energy] {
+        for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             match three_phases(&case, column) {
                 Ok(motion) => {
                     let numbers = [motion.speed, motion.penetration, motion.duration, motion.period];
@@ -281,7 +281,7 @@ proptest! {
         amplitude in 0.2..2.7_f64, part in -0.95..0.95_f64, power in 2.0..12.0_f64, rule in 0..6_usize
     ) {
         let case = Swing { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
-        let motion = three_phases(&case, Column::Energy).unwrap();
+        let motion = three_phases(&case, ContactSpeed::Energy).unwrap();
         let contact = motion.phases[1];
         let (x, v) = contact.form.at(contact.end - contact.start);
         prop_assert!((x - case.barrier).abs() < 1e-9 * motion.penetration.max(1e-6));

@@ -1,7 +1,7 @@
 //! Starts on a barrier, inside one, held by friction there: against an integrator of this file's own, fourth-order
 //! Runge-Kutta in small equal steps with every event by bisection, which shares nothing with the library.
 
-use lindstedt::impact::{Friction, Integrator, Model, Options, Side, Simulation, Start, Stop, simulate};
+use lindstedt::impact::{Friction, Integrator, Model, Settings, Side, Simulation, Start, Stop, simulate};
 
 /// A contact: from when to when.
 type Span = (f64, Option<f64>);
@@ -125,9 +125,9 @@ fn truth(model: &Model, start: Start, duration: f64, h: f64) -> Truth {
 }
 
 fn followed(model: &Model, start: Start, duration: f64, integrator: Integrator) -> Simulation {
-    let options = Options {
+    let options = Settings {
         duration,
-        ..Options::default()
+        ..Settings::default()
     };
     simulate(model, start, integrator, &options).expect("a motion")
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lindstedt::export::{json, latex, text};
-use lindstedt::impact::{Column, Impact, Setup, solve};
+use lindstedt::impact::{ContactSpeed, Impact, Setup, solve};
 use lindstedt::problem::{Barrier, Order, Problem, Reader};
 
 use super::problem::from_file;
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         result: whole(text),
         picture,
         note: None,
-        verdict: Some(impact.verdict(Column::Paper, tolerance)),
+        verdict: Some(impact.verdict(ContactSpeed::Paper, tolerance)),
         partial: false,
     })
 }

@@ -16,7 +16,7 @@ use crate::decimal::{decimal, rounded_fraction, significant, significant_fractio
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
 use crate::expr::{Equation, Expr, parse_expression};
-use crate::impact::{Column, Form, Impact, Phase};
+use crate::impact::{ContactSpeed, Form, Impact, Phase};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{LimitCycle, Solution, long_fraction};
@@ -198,8 +198,8 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
     let _ = writeln!(
         text,
         "% verdict: paper {}, energy {}",
-        name(Column::Paper),
-        name(Column::Energy)
+        name(ContactSpeed::Paper),
+        name(ContactSpeed::Energy)
     );
     text
 }

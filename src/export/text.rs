@@ -13,7 +13,7 @@ use crate::decimal::{decimal, significant, significant_fraction};
 use crate::derivation::NOTATION;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
-use crate::impact::{Column, Impact};
+use crate::impact::{ContactSpeed, Impact};
 use crate::method::homotopy_analysis::HBAR;
 use crate::series::FourierSeries;
 use crate::series::terms;
@@ -364,10 +364,10 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
         text,
         "  verdict (every number within {} %): paper {}, energy {}",
         significant(100.0 * tolerance, 3),
-        impact.verdict(Column::Paper, tolerance).name(),
-        impact.verdict(Column::Energy, tolerance).name()
+        impact.verdict(ContactSpeed::Paper, tolerance).name(),
+        impact.verdict(ContactSpeed::Energy, tolerance).name()
     );
-    for (column, title) in [(Column::Paper, "paper"), (Column::Energy, "energy")] {
+    for (column, title) in [(ContactSpeed::Paper, "paper"), (ContactSpeed::Energy, "energy")] {
         for (errors, cause) in impact.shortcomings(column, tolerance) {
             let errors: Vec<String> = errors
                 .iter()

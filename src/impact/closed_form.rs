@@ -10,10 +10,11 @@
 //! The law comes from [`method::solve`] on `x'' + sin x = 0`, the phases from
 //! [`three_phases`], the judgement from Runge-Kutta on equation (9) as it stands.
 
-use super::hertz::Design;
-use super::judge::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation};
+use super::hertz::DEFAULT_STIFFNESS;
+use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
 use super::linearisation::Rule;
-use super::phases::{Column, Form, PhasesError, Swing, ThreePhases, three_phases};
+use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
+use super::phases::{ContactSpeed, Form, PhasesError, Swing, ThreePhases, three_phases};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::{self, Refusal};
 use crate::ode::Options;
@@ -53,10 +54,9 @@ pub struct Setup {
 impl Default for Setup {
     fn default() -> Self {
         Self {
-            amplitude: 1.5,
-            barrier: 0.323,
-            // A design of positive sizes has a stiffness.
-            stiffness: Design::default().stiffness().unwrap_or(f64::NAN),
+            amplitude: DEFAULT_AMPLITUDE,
+            barrier: DEFAULT_BARRIER,
+            stiffness: DEFAULT_STIFFNESS,
             stiffness_source: "equation (8)".to_owned(),
             order: 2,
             rule: Rule::default(),
@@ -81,7 +81,7 @@ pub struct Impact {
     /// Contact speed from the energy.
     pub energy: ThreePhases,
     /// Runge-Kutta on the original equation.
-    pub truth: TrueMotion,
+    pub truth: TrueImpact,
     /// Largest deviation of the paper's column.
     pub paper_deviation: Deviation,
     /// Largest deviation of the energy column.
@@ -109,7 +109,7 @@ pub enum ImpactError {
     Phases(#[from] PhasesError),
     /// The true motion could not be followed.
     #[error(transparent)]
-    Truth(#[from] TrueMotionError),
+    Truth(#[from] TrueImpactError),
 }
 
 /// Derives the law, builds both columns and follows the true motion.
@@ -172,12 +172,12 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             column,
         )
     };
-    let (paper, energy) = (phases(Column::Paper)?, phases(Column::Energy)?);
+    let (paper, energy) = (phases(ContactSpeed::Paper)?, phases(ContactSpeed::Energy)?);
     let options = Options {
         maximum_steps: setup.step_limit as usize,
         ..Options::with_tolerance(setup.integrator_tolerance)
     };
-    let truth = assured_motion(
+    let truth = assured_impact(
         setup.amplitude,
         setup.barrier,
         setup.stiffness,
@@ -282,20 +282,20 @@ impl Impact {
     }
 
     /// The verdict on a column: every quantity within the tolerance.
-    pub fn verdict(&self, column: Column, tolerance: f64) -> Verdict {
+    pub fn verdict(&self, column: ContactSpeed, tolerance: f64) -> Verdict {
         Verdict::of(self.shortcomings(column, tolerance).is_empty())
     }
 
     /// What lies beyond the tolerance in a column: the quantities with their errors, and what of the closed form they come
     /// from.
-    pub fn shortcomings(&self, column: Column, tolerance: f64) -> Vec<(Vec<(&'static str, f64)>, String)> {
+    pub fn shortcomings(&self, column: ContactSpeed, tolerance: f64) -> Vec<(Vec<(&'static str, f64)>, String)> {
         let order = self.free_swing.order;
         let (speed, met) = match column {
-            Column::Paper => (
+            ContactSpeed::Paper => (
                 "the contact begins with the speed of that cosine",
                 ", met with that speed",
             ),
-            Column::Energy => ("the contact begins with the speed from the energy", ""),
+            ContactSpeed::Energy => ("the contact begins with the speed from the energy", ""),
         };
         let causes = [
             (
@@ -311,8 +311,8 @@ impl Impact {
         let beyond = |name: &&str| {
             let quantity = self.quantities().into_iter().find(|quantity| quantity.name == *name)?;
             let error = match column {
-                Column::Paper => quantity.paper_error(),
-                Column::Energy => quantity.energy_error(),
+                ContactSpeed::Paper => quantity.paper_error(),
+                ContactSpeed::Energy => quantity.energy_error(),
             };
             // An error that is no number lies beyond every tolerance.
             let within = error.abs() <= tolerance;

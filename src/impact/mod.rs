@@ -22,7 +22,7 @@
 //! ```
 //! use lindstedt::impact::hertz::{Design, elastic_force};
 //! use lindstedt::impact::Rule;
-//! use lindstedt::impact::{Column, Swing, three_phases};
+//! use lindstedt::impact::{ContactSpeed, Swing, three_phases};
 //!
 //! let swing = Swing {
 //!     amplitude: 1.5,
@@ -34,7 +34,7 @@
 //!     elastic_force: &elastic_force,
 //!     rule: Rule::LeastSquares,
 //! };
-//! let motion = three_phases(&swing, Column::Paper)?;
+//! let motion = three_phases(&swing, ContactSpeed::Paper)?;
 //! assert_eq!(motion.phases[0].closed_form(), "x(t) = -1.5 cos(0.847791 t)");
 //! assert!((motion.speed - 1.24185).abs() < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -53,12 +53,12 @@ pub mod sweep;
 mod taylor;
 
 pub use closed_form::{Impact, ImpactError, Quantity, SampledMotion, Setup, solve};
-pub use judge::{Deviation, TrueMotion, TrueMotionError, assured_motion, deviation, true_motion};
+pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
-pub use model::{Friction, Model, ModelError, STEEPNESS, Side, Start};
-pub use phases::{Column, Form, Phase, PhasesError, Swing, ThreePhases, three_phases};
+pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
+pub use phases::{ContactSpeed, Form, Phase, PhasesError, Swing, ThreePhases, three_phases};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{
-    Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Options, Path, Piece, REST_FRACTION, Rest,
-    Simulation, State, Stop, Turn,
+    Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime, Rest,
+    Settings, Simulation, Stop, Turn,
 };

@@ -15,6 +15,8 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use thiserror::Error;
 
+use super::hertz;
+
 /// How dry friction depends on the velocity.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Friction {
@@ -79,7 +81,8 @@ pub struct Model {
 }
 
 impl Default for Model {
-    /// The paper's barrier at 0.323 with gamma = 1e6, and nothing that damps or drives.
+    /// The paper's barrier, [`DEFAULT_BARRIER`], with the stiffness of its design, [`hertz::DEFAULT_STIFFNESS`], and nothing
+    /// that damps or drives.
     fn default() -> Self {
         Self {
             zeta: 0.0,
@@ -87,13 +90,19 @@ impl Default for Model {
             friction: Friction::Exact,
             beta: 0.0,
             frequency_ratio: 0.0,
-            gamma: 1e6,
+            gamma: hertz::DEFAULT_STIFFNESS,
             mu: 0.0,
             left: None,
-            right: Some(0.323),
+            right: Some(DEFAULT_BARRIER),
         }
     }
 }
+
+/// The amplitude of the paper's swing, rad: it is released from rest at x = -1.5.
+pub const DEFAULT_AMPLITUDE: f64 = 1.5;
+
+/// Where the paper's barrier stands, rad.
+pub const DEFAULT_BARRIER: f64 = 0.323;
 
 /// Where and how fast a motion begins, at t = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +111,16 @@ pub struct Start {
     pub x: f64,
     /// Velocity x', in units of omega.
     pub velocity: f64,
+}
+
+impl Default for Start {
+    /// The paper's release, from rest at minus [`DEFAULT_AMPLITUDE`].
+    fn default() -> Self {
+        Self {
+            x: -DEFAULT_AMPLITUDE,
+            velocity: 0.0,
+        }
+    }
 }
 
 /// Why there is nothing to simulate.
@@ -210,10 +229,7 @@ impl Model {
 
     /// Force of a barrier entered to this depth and at this speed, per mass; away from the barrier it is zero.
     pub fn contact(&self, depth: f64, speed: f64) -> f64 {
-        if depth <= 0.0 {
-            return 0.0;
-        }
-        (self.gamma + self.mu * speed).max(0.0) * depth * depth.sqrt()
+        hertz::force((self.gamma + self.mu * speed).max(0.0), depth)
     }
 
     /// Whether a barrier left at this speed (negative: outwards) would have to pull: it comes back more slowly.
@@ -229,10 +245,7 @@ impl Model {
 
     /// Energy stored in a barrier entered to this depth.
     pub fn elastic_energy(&self, depth: f64) -> f64 {
-        if depth <= 0.0 {
-            return 0.0;
-        }
-        0.4 * self.gamma * depth * depth * depth.sqrt()
+        hertz::stored_energy(self.gamma, depth)
     }
 
     /// How deep this place lies inside a barrier, and which; nothing between the barriers.

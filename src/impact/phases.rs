@@ -14,7 +14,7 @@
 //! ```
 //!
 //! The line p x - q is fitted over the depth that an impact of speed v reaches by its energy
-//! ([`linearisation`]). Two readings of the speed of contact stand side by side, [`Column`]:
+//! ([`linearisation`]). Two readings of the speed of contact stand side by side, [`ContactSpeed`]:
 //!
 //! ```text
 //! paper    v = A omega sin(acos(x_c/A)): the cosine's own speed, so every join is exactly continuous
@@ -28,6 +28,7 @@ use num_complex::Complex64;
 use thiserror::Error;
 
 use super::linearisation::{self, Line, LinearisationError, Rule};
+use crate::decimal::significant;
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
 
 /// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the barrier.
@@ -54,14 +55,14 @@ pub struct Swing<'a> {
 
 /// Which speed of contact is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Column {
+pub enum ContactSpeed {
     /// That of the approximate cosine, as in the paper.
     Paper,
     /// That of the energy, exact for the original force.
     Energy,
 }
 
-impl fmt::Display for Column {
+impl fmt::Display for ContactSpeed {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::Paper => "paper",
@@ -74,7 +75,7 @@ impl fmt::Display for Column {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreePhases {
     /// Which speed of contact was used.
-    pub column: Column,
+    pub column: ContactSpeed,
     /// Approach, contact, return.
     pub phases: [Phase; 3],
     /// Speed v at first touch.
@@ -86,7 +87,7 @@ pub struct ThreePhases {
     /// Time from release to release.
     pub period: f64,
     /// Speed of contact minus the speed of the cosine at the barrier: the size of the jump of the velocity at the
-    /// start and at the end of the contact. Zero for [`Column::Paper`].
+    /// start and at the end of the contact. Zero for [`ContactSpeed::Paper`].
     pub velocity_jump: f64,
     /// The line that replaces the elastic force, per unit of gamma.
     pub line: Line,
@@ -215,7 +216,7 @@ pub enum PhasesError {
 /// # Errors
 /// [`PhasesError`], each with what to change: a barrier out of reach, no stiffness, an amplitude beyond the
 /// frequency law or outside the well.
-pub fn three_phases(swing: &Swing, column: Column) -> Result<ThreePhases, PhasesError> {
+pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, PhasesError> {
     let &Swing {
         amplitude,
         barrier,
@@ -229,8 +230,8 @@ pub fn three_phases(swing: &Swing, column: Column) -> Result<ThreePhases, Phases
     let swing_speed = frequency * (amplitude - barrier).sqrt() * (amplitude + barrier).sqrt();
     let energy_speed = contact_speed(amplitude, barrier, swing.restoring_force)?;
     let speed = match column {
-        Column::Paper => swing_speed,
-        Column::Energy => energy_speed,
+        ContactSpeed::Paper => swing_speed,
+        ContactSpeed::Energy => energy_speed,
     };
     let fitted_depth = linearisation::greatest_depth(swing.elastic_force, 0.5 * speed * speed / stiffness)?;
     let line = linearisation::fit(swing.rule, swing.elastic_force, fitted_depth)?;
@@ -505,25 +506,6 @@ fn signed_term(value: f64, digits: usize) -> String {
     format!(" {sign} {}", significant(value.abs(), digits))
 }
 
-/// A number to so many significant digits, trailing zeros dropped; with an exponent where it is below 1e-4.
-fn significant(value: f64, digits: usize) -> String {
-    let scientific = format!("{value:.*e}", digits - 1);
-    let trim = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
-    };
-    let Some((mantissa, exponent)) = scientific.split_once('e') else {
-        return scientific;
-    };
-    match exponent.parse::<i32>() {
-        Ok(power) if (-4..16).contains(&power) => {
-            let decimals = usize::try_from(digits as i32 - 1 - power).unwrap_or(0);
-            trim(&format!("{value:.decimals$}"))
-        }
-        _ => format!("{}e{exponent}", trim(mantissa)),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -553,7 +535,7 @@ mod tests {
 
     #[test]
     fn the_swing_of_the_paper() {
-        let motion = three_phases(&paper(Design::default().stiffness().unwrap()), Column::Paper).unwrap();
+        let motion = three_phases(&paper(Design::default().stiffness().unwrap()), ContactSpeed::Paper).unwrap();
         let Form::Cosine { frequency, phase, .. } = motion.phases[2].form else {
             panic!("return is a cosine")
         };
@@ -568,7 +550,7 @@ mod tests {
 
     #[test]
     fn the_energy_column_has_the_exact_speed_and_prints_the_jump() {
-        let motion = three_phases(&paper(3.0407e7), Column::Energy).unwrap();
+        let motion = three_phases(&paper(3.0407e7), ContactSpeed::Energy).unwrap();
         near(motion.speed, (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt(), 1e-14);
         near(motion.speed, 1.324_802_058_11, 5e-12);
         near(motion.velocity_jump, 1.324_802_058_11 - 1.241_853_869, 1e-9);
@@ -589,7 +571,7 @@ mod tests {
                     barrier,
                     ..paper(stiffness)
                 },
-                Column::Paper,
+                ContactSpeed::Paper,
             )
             .unwrap();
             let [approach, contact, back] = motion.phases;
@@ -619,7 +601,7 @@ mod tests {
                 rule,
                 ..paper(stiffness)
             };
-            let motion = three_phases(&swing, Column::Energy).unwrap();
+            let motion = three_phases(&swing, ContactSpeed::Energy).unwrap();
             let (p, q) = (motion.line.slope, motion.line.q(barrier));
             let contact = motion.phases[1];
             let options = Options::with_tolerance(1e-13);
@@ -668,7 +650,7 @@ mod tests {
 
     #[test]
     fn the_formulas_as_people_write_them() {
-        let motion = three_phases(&paper(3.0407e7), Column::Paper).unwrap();
+        let motion = three_phases(&paper(3.0407e7), ContactSpeed::Paper).unwrap();
         assert_eq!(motion.phases[0].closed_form(), "x(t) = -1.5 cos(0.847791 t)");
         assert_eq!(
             motion.phases[2].closed_form(),
@@ -676,21 +658,11 @@ mod tests {
         );
         let contact = motion.phases[1].closed_form();
         assert!(contact.starts_with("x(t) = 0.323") && contact.contains(" sin(") && contact.contains("(t - t1)"));
-        for (value, text) in [
-            (0.0, "0"),
-            (-1.5, "-1.5"),
-            (1_066.234_5, "1066.23"),
-            (1e-7, "1e-7"),
-            (2e20, "2e20"),
-            (999_999.7, "1000000"),
-        ] {
-            assert_eq!(significant(value, 6), text);
-        }
     }
 
     #[test]
     fn the_formula_text_carries_the_motion() {
-        let motion = three_phases(&paper(3.0407e7), Column::Energy).unwrap();
+        let motion = three_phases(&paper(3.0407e7), ContactSpeed::Energy).unwrap();
         let contact = motion.phases[1];
         // centre + c cos + s sin read back from the text.
         let numbers: Vec<f64> = contact
@@ -708,7 +680,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused_with_a_way_on() {
-        let refuse = |swing: Swing| three_phases(&swing, Column::Energy).unwrap_err();
+        let refuse = |swing: Swing| three_phases(&swing, ContactSpeed::Energy).unwrap_err();
         let usual = paper(1e6);
         for barrier in [1.5, 2.0] {
             let refused = refuse(Swing { barrier, ..usual });
@@ -765,7 +737,7 @@ mod tests {
     #[test]
     fn a_vanishing_stiffness_leads_to_the_linear_free_swing() {
         // x'' + x = 0 from x_c with speed v: back after 2 atan2(v, x_c).
-        let motion = three_phases(&paper(1e-9), Column::Paper).unwrap();
+        let motion = three_phases(&paper(1e-9), ContactSpeed::Paper).unwrap();
         near(motion.duration, 2.0 * motion.speed.atan2(0.323), 1e-3);
     }
 
@@ -780,7 +752,7 @@ mod tests {
                 frequency_squared: 1.0 - amplitude * amplitude / 8.0,
                 ..paper(10.0_f64.powf(gamma_power))
             };
-            let motion = three_phases(&swing, Column::Paper).unwrap();
+            let motion = three_phases(&swing, ContactSpeed::Paper).unwrap();
             prop_assert!(motion.penetration > 0.0 && motion.duration > 0.0);
             for phase in motion.phases {
                 let elapsed = time * (phase.end - phase.start);

@@ -6,7 +6,7 @@
 //! E(t) - E(0) = W_viscous + W_friction + W_contact + W_excitation
 //! ```
 //!
-//! In: a [`Model`], a [`Start`], [`Options`]. Out: a [`Simulation`], by one of two integrators that share the forces of
+//! In: a [`Model`], a [`Start`], [`Settings`]. Out: a [`Simulation`], by one of two integrators that share the forces of
 //! the model and nothing else:
 //!
 //! - [`Integrator::Taylor`], the fast one: power series, in contact those of the regularised equation, and the events as
@@ -16,7 +16,7 @@
 use thiserror::Error;
 
 use super::model::{Model, ModelError, Start};
-use super::simulation::{Integrator, Options, Simulation, size};
+use super::simulation::{Integrator, Settings, Simulation, size};
 use super::{judge, taylor};
 use crate::ode::IntegrationError;
 
@@ -53,11 +53,11 @@ const SMALLEST: f64 = 1e-100;
 /// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
 ///
 /// ```
-/// use lindstedt::impact::{Integrator, Model, Options, Start, simulate};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, simulate};
 ///
-/// let model = Model { zeta: 0.02, mu: 1e5, ..Model::default() };
+/// let model = Model { gamma: 1e6, zeta: 0.02, mu: 1e5, ..Model::default() };
 /// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motion = simulate(&model, start, Integrator::Taylor, &Options::default())?;
+/// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
 /// assert!(motion.impacts[0].restitution.is_some_and(|e| e < 1.0));
 /// assert!(motion.energy().residual.abs() < 1e-9);
 /// # Ok::<(), lindstedt::impact::SimulationError>(())
@@ -66,12 +66,12 @@ pub fn simulate(
     model: &Model,
     start: Start,
     integrator: Integrator,
-    options: &Options,
+    settings: &Settings,
 ) -> Result<Simulation, SimulationError> {
-    check(model, start, options)?;
+    check(model, start, settings)?;
     match integrator {
-        Integrator::Taylor => Ok(taylor::alone(*model, start, *options)),
-        Integrator::RungeKutta => Ok(judge::follow(model, start, options)?),
+        Integrator::Taylor => Ok(taylor::alone(*model, start, *settings)),
+        Integrator::RungeKutta => Ok(judge::follow(model, start, settings)?),
     }
 }
 
@@ -81,25 +81,25 @@ pub fn simulate(
 /// As [`simulate`], for the first that cannot begin, with its number.
 ///
 /// ```
-/// use lindstedt::impact::{Model, Options, Start, simulate_many};
+/// use lindstedt::impact::{Model, Settings, Start, simulate_many};
 ///
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions = [0.0, 0.1].map(|zeta| (Model { zeta, ..Model::default() }, start));
-/// let found = simulate_many(&motions, &Options::default()).map_err(|(_, error)| error)?;
+/// let found = simulate_many(&motions, &Settings::default()).map_err(|(_, error)| error)?;
 /// assert!(found[1].impacts[0].speed_in < found[0].impacts[0].speed_in);
 /// # Ok::<(), lindstedt::impact::SimulationError>(())
 /// ```
 pub fn simulate_many(
     motions: &[(Model, Start)],
-    options: &Options,
+    settings: &Settings,
 ) -> Result<Vec<Simulation>, (usize, SimulationError)> {
     for (number, (model, start)) in motions.iter().enumerate() {
-        check(model, *start, options).map_err(|error| (number, error))?;
+        check(model, *start, settings).map_err(|error| (number, error))?;
     }
     let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
     let runs = motions
         .iter()
-        .map(|(model, start)| taylor::Runner::new(*model, *start, *options));
+        .map(|(model, start)| taylor::Runner::new(*model, *start, *settings));
     taylor::follow(runs, |number, runner| {
         if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
             *place = Some(runner.finish(*start));
@@ -108,20 +108,20 @@ pub fn simulate_many(
     Ok(results.into_iter().flatten().collect())
 }
 
-fn check(model: &Model, start: Start, options: &Options) -> Result<(), SimulationError> {
+fn check(model: &Model, start: Start, settings: &Settings) -> Result<(), SimulationError> {
     model.check(start)?;
     let size = size(model, start);
     if size > 0.0 && size < SMALLEST {
         return Err(SimulationError::TooSmall(size));
     }
-    if !(options.duration.is_finite() && options.duration > 0.0) {
-        return Err(SimulationError::Duration(options.duration));
+    if !(settings.duration.is_finite() && settings.duration > 0.0) {
+        return Err(SimulationError::Duration(settings.duration));
     }
-    if !(1e-15..=0.01).contains(&options.relative_tolerance) {
-        return Err(SimulationError::Tolerance(options.relative_tolerance));
+    if !(1e-15..=0.01).contains(&settings.relative_tolerance) {
+        return Err(SimulationError::Tolerance(settings.relative_tolerance));
     }
-    if !(f64::MIN_POSITIVE..=0.01).contains(&options.absolute_tolerance) {
-        return Err(SimulationError::Tolerance(options.absolute_tolerance));
+    if !(f64::MIN_POSITIVE..=0.01).contains(&settings.absolute_tolerance) {
+        return Err(SimulationError::Tolerance(settings.absolute_tolerance));
     }
     Ok(())
 }

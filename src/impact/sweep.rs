@@ -4,13 +4,13 @@
 //! same operations wherever it runs, so the result does not depend on the number of threads.
 //!
 //! ```
-//! use lindstedt::impact::{Model, Options, Start, sweep::{Axis, sweep}};
+//! use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
 //!
 //! let axis: Axis = "gamma=1e4:1e6:3".parse()?;
 //! assert_eq!(axis.values(), [1e4, 505_000.0, 1e6]);
 //! let start = Start { x: -1.5, velocity: 0.0 };
 //! let motions: Vec<_> = axis.values().into_iter().map(|gamma| (Model { gamma, ..Model::default() }, start)).collect();
-//! let found = sweep(&motions, &Options::default(), |_| ()).map_err(|(_, error)| error)?;
+//! let found = sweep(&motions, &Settings::default(), |_| ()).map_err(|(_, error)| error)?;
 //! assert!(found[0].deepest > found[2].deepest);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -23,7 +23,7 @@ use thiserror::Error;
 
 use super::model::{Model, Start};
 use super::simulate::{SimulationError, simulate_many};
-use super::simulation::{Contact, NoRest, Options, Simulation, Stop};
+use super::simulation::{Contact, NoRest, Settings, Simulation, Stop};
 
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
@@ -156,26 +156,26 @@ impl Summary {
 /// [`SimulationError`] and the number of the first motion that cannot begin.
 ///
 /// ```
-/// use lindstedt::impact::{Model, Options, Start, sweep::{Axis, sweep}};
+/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
 ///
 /// let axis: Axis = "zeta=0.01:0.1:4".parse()?;
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions: Vec<_> = axis.values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
-/// let rows = sweep(&motions, &Options::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// assert!(rows[3].impacts < rows[0].impacts);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(
     motions: &[(Model, Start)],
-    options: &Options,
+    settings: &Settings,
     progress: impl Fn(usize) + Sync,
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
-    let options = Options {
+    let settings = Settings {
         keep_path: false,
-        ..*options
+        ..*settings
     };
     let run = |(chunk, motions): (usize, &[(Model, Start)])| {
-        let runs = simulate_many(motions, &options).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
+        let runs = simulate_many(motions, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
         progress(motions.len());
         Ok(runs.iter().map(Summary::of).collect::<Vec<Summary>>())
     };
@@ -199,13 +199,13 @@ pub fn sweep(
 pub fn sweep_on(
     threads: usize,
     motions: &[(Model, Start)],
-    options: &Options,
+    settings: &Settings,
     progress: impl Fn(usize) + Sync + Send,
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| sweep(motions, options, progress)),
+        Ok(pool) => pool.install(|| sweep(motions, settings, progress)),
         // Without threads of its own it runs on those there are.
-        Err(_) => sweep(motions, options, progress),
+        Err(_) => sweep(motions, settings, progress),
     }
 }
 

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::keys::key_of;
 use super::{Barrier, Problem, ProblemError, Reader, UnreadKey};
-use crate::impact::{Friction, Model, ModelError, Options, Side, Start};
+use crate::impact::{Friction, Model, ModelError, Settings, Side, Start};
 use crate::spelling::nearest;
 
 /// What a problem file says about the damper.
@@ -15,7 +15,7 @@ pub struct Damper {
     /// The start.
     pub start: Start,
     /// Duration and accuracy.
-    pub options: Options,
+    pub options: Settings,
     /// Where gamma comes from.
     pub gamma_source: &'static str,
     /// Where mu comes from.
@@ -231,13 +231,13 @@ impl Problem {
                 return Err(DamperError::Alone { key, other });
             }
         }
-        let options = Options {
+        let options = Settings {
             duration,
             // The errors of some hundred steps add up, and impacts multiply them.
             relative_tolerance: (1e-2 * tolerance).max(1e-15),
             absolute_tolerance: 1e-4 * tolerance,
             maximum_steps: self.run.step_limit as usize,
-            ..Options::default()
+            ..Settings::default()
         };
         Ok(Damper {
             model,

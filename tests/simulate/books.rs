@@ -41,7 +41,7 @@ proptest! {
             prop_assert!(pair[0].entry_time <= exit && exit <= pair[1].entry_time);
         }
         for (t, x, _) in motion.path.points(4) {
-            let free = motion.path.state_at(t) == Some(lindstedt::impact::State::Free);
+            let free = motion.path.regime_at(t) == Some(lindstedt::impact::Regime::Free);
             prop_assert!(!free || x <= right + 1e-12, "t = {}, x = {}", t, x);
         }
         let pieces = motion.path.pieces();

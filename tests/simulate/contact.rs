@@ -51,7 +51,7 @@ fn the_contact_never_pulls() {
             .path
             .pieces()
             .iter()
-            .any(|piece| matches!(piece.state, lindstedt::impact::State::Detached(_)))
+            .any(|piece| matches!(piece.regime, lindstedt::impact::Regime::Detached(_)))
     );
     assert!(motion.difference(&judge, 2001).displacement < 1e-8);
     assert!(motion.energy().residual < 1e-9, "{:?}", motion.energy());

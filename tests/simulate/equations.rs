@@ -2,7 +2,7 @@
 //! in w with x = x_c + w^2 and dt = w ds, each from its event to the next.
 
 use lindstedt::expr::parse_expression;
-use lindstedt::impact::{Friction, Model, Side, Start, State};
+use lindstedt::impact::{Friction, Model, Regime, Side, Start};
 use lindstedt::system::{End, Event, Options, Path, System};
 
 use super::taylor;
@@ -201,13 +201,15 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
         };
         let special = taylor(&model, start, 1e-13, duration);
         let apart = special.path.pieces().iter();
-        detached += apart.filter(|piece| matches!(piece.state, State::Detached(_))).count();
+        detached += apart
+            .filter(|piece| matches!(piece.regime, Regime::Detached(_)))
+            .count();
         let (pieces, contacts, sticks) = follow(&model, start, duration);
         let until = sticks.unwrap_or(duration);
         if let Some(time) = sticks {
             assert_eq!(
-                special.path.state_at(time + 1e-9),
-                Some(State::Stuck),
+                special.path.regime_at(time + 1e-9),
+                Some(Regime::Stuck),
                 "{model:?} at {time}"
             );
             stuck += 1;

@@ -53,7 +53,7 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
             .path
             .pieces()
             .iter()
-            .find(|piece| piece.state != lindstedt::impact::State::Stuck);
+            .find(|piece| piece.regime != lindstedt::impact::Regime::Stuck);
         assert!((first.expect("it slips").start - release).abs() < 1e-10);
     }
     let (fast, judge) = (
@@ -64,7 +64,7 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
     let stuck = |motion: &Simulation| {
         let pieces = motion.path.pieces().iter();
         pieces
-            .filter(|piece| piece.state == lindstedt::impact::State::Stuck)
+            .filter(|piece| piece.regime == lindstedt::impact::Regime::Stuck)
             .map(|piece| piece.end - piece.start)
             .sum::<f64>()
     };

@@ -72,6 +72,7 @@ fn the_judge_agrees() {
 #[test]
 fn two_barriers_are_mirror_images() {
     let model = Model {
+        gamma: 1e6,
         zeta: 0.01,
         alpha: 0.02,
         beta: 0.25,
@@ -121,6 +122,7 @@ fn two_barriers_are_mirror_images() {
 #[test]
 fn dissipative_and_forced_motions_agree_with_runs_a_hundred_times_tighter() {
     let base = Model {
+        gamma: 1e6,
         zeta: 0.015,
         mu: 5e4,
         ..Model::default()

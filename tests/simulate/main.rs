@@ -11,16 +11,16 @@ mod many;
 mod refusals;
 mod rest;
 
-use lindstedt::impact::{Integrator, Model, Options, Simulation, Start, simulate};
+use lindstedt::impact::{Integrator, Model, Settings, Simulation, Start, simulate};
 
 const REST: Start = Start { x: -1.5, velocity: 0.0 };
 
 fn run(model: &Model, start: Start, tolerance: f64, duration: f64, integrator: Integrator) -> Simulation {
-    let options = Options {
+    let options = Settings {
         duration,
         relative_tolerance: tolerance,
         absolute_tolerance: 1e-2 * tolerance,
-        ..Options::default()
+        ..Settings::default()
     };
     simulate(model, start, integrator, &options).expect("a motion")
 }

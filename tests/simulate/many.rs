@@ -1,7 +1,7 @@
 //! Several motions at a time, and on several threads, are each what they are alone.
 
 use lindstedt::impact::sweep::sweep_on;
-use lindstedt::impact::{Friction, Integrator, Model, Options, Start, simulate, simulate_many};
+use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate, simulate_many};
 
 /// Motions with every term on, different in every parameter.
 fn crowd(count: usize) -> Vec<(Model, Start)> {
@@ -30,16 +30,16 @@ fn crowd(count: usize) -> Vec<(Model, Start)> {
 
 #[test]
 fn several_at_a_time_are_bit_for_bit_what_each_is_alone() {
-    let options = Options {
+    let options = Settings {
         keep_path: false,
-        ..Options::default()
+        ..Settings::default()
     };
     let motions = crowd(150);
     let together = simulate_many(&motions, &options).expect("they begin");
     for ((model, start), together) in motions.iter().zip(&together) {
         for keep_path in [false, true] {
             let alone =
-                simulate(model, *start, Integrator::Taylor, &Options { keep_path, ..options }).expect("it begins");
+                simulate(model, *start, Integrator::Taylor, &Settings { keep_path, ..options }).expect("it begins");
             assert_eq!(alone.impacts, together.impacts, "{model:?}");
             assert_eq!(alone.turns, together.turns);
             assert_eq!(alone.end_x.to_bits(), together.end_x.to_bits());
@@ -51,7 +51,7 @@ fn several_at_a_time_are_bit_for_bit_what_each_is_alone() {
 #[test]
 fn a_sweep_is_the_same_on_any_number_of_threads() {
     let motions = crowd(400);
-    let options = Options::default();
+    let options = Settings::default();
     let one = sweep_on(1, &motions, &options, |_| ()).expect("they begin");
     let counted = std::sync::atomic::AtomicUsize::new(0);
     let count = |done: usize| {

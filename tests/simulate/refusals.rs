@@ -1,17 +1,17 @@
 //! What is no motion is refused, and a run that breaks off keeps what it has.
 
-use lindstedt::impact::{Integrator, Model, Options, Start, Stop, simulate, simulate_many};
+use lindstedt::impact::{Integrator, Model, Settings, Start, Stop, simulate, simulate_many};
 
 use super::REST;
 
 #[test]
 fn what_is_no_motion_is_refused() {
-    let refuse = |model: Model, start: Start, options: Options| {
+    let refuse = |model: Model, start: Start, options: Settings| {
         simulate(&model, start, Integrator::Taylor, &options)
             .expect_err("refused")
             .to_string()
     };
-    let (model, usual) = (Model::default(), Options::default());
+    let (model, usual) = (Model::default(), Settings::default());
     let bad = |model: Model| refuse(model, REST, usual);
     assert!(bad(Model { zeta: -0.1, ..model }).contains("zeta must not be negative"));
     assert!(bad(Model { gamma: 0.0, ..model }).contains("gamma must be a positive number"));
@@ -35,10 +35,10 @@ fn what_is_no_motion_is_refused() {
     };
     assert!(refuse(model, start, usual).contains("start must be a finite number"));
     for duration in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(refuse(model, REST, Options { duration, ..usual }).contains("duration"));
+        assert!(refuse(model, REST, Settings { duration, ..usual }).contains("duration"));
     }
     for relative_tolerance in [0.0, 1e-16, 0.1, f64::NAN] {
-        let options = Options {
+        let options = Settings {
             relative_tolerance,
             ..usual
         };
@@ -61,7 +61,7 @@ fn a_motion_below_all_numbers_is_refused() {
         },
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-            let refused = simulate(&Model::default(), start, integrator, &Options::default()).unwrap_err();
+            let refused = simulate(&Model::default(), start, integrator, &Settings::default()).unwrap_err();
             assert!(refused.to_string().contains("scale it up"), "{refused}");
         }
     }
@@ -69,9 +69,9 @@ fn a_motion_below_all_numbers_is_refused() {
 
 #[test]
 fn a_run_that_breaks_off_keeps_what_it_has() {
-    let options = Options {
+    let options = Settings {
         maximum_steps: 40,
-        ..Options::default()
+        ..Settings::default()
     };
     let motion = simulate(&Model::default(), REST, Integrator::Taylor, &options).expect("it begins");
     let Stop::Steps { t } = motion.stop else {

@@ -1,6 +1,6 @@
 //! Rest times by their definition, from samples of the motion and from the action.
 
-use lindstedt::impact::{Integrator, Model, NoRest, Options, Start, Stop, simulate};
+use lindstedt::impact::{Integrator, Model, NoRest, Settings, Start, Stop, simulate};
 use lindstedt::ode::root::find_root;
 
 use super::{REST, run, taylor};
@@ -67,6 +67,7 @@ fn a_barrier_near_plumb_does_not_invent_rest() {
     }
     for (right, mu) in [(0.1, 1e4), (0.02, 1e4), (0.146, 1e5)] {
         let model = Model {
+            gamma: 1e6,
             right: Some(right),
             mu,
             zeta: 0.01,
@@ -83,6 +84,7 @@ fn a_barrier_near_plumb_does_not_invent_rest() {
 fn the_rest_time_is_continuous_in_the_place_of_the_barrier() {
     let rest = |right: f64| {
         let model = Model {
+            gamma: 1e6,
             right: Some(right),
             mu: 1e5,
             zeta: 0.01,
@@ -101,6 +103,7 @@ fn the_rest_time_is_continuous_in_the_place_of_the_barrier() {
 #[test]
 fn the_rest_time_does_not_depend_on_where_in_the_first_swing_the_motion_is_taken_up() {
     let model = Model {
+        gamma: 1e6,
         mu: 1e5,
         right: Some(0.05),
         ..Model::default()
@@ -172,20 +175,20 @@ fn a_run_ends_where_its_energy_has_died_away() {
         ..Model::default()
     };
     for model in [plain, bouncing] {
-        let options = Options {
+        let options = Settings {
             duration: 200.0,
-            ..Options::default()
+            ..Settings::default()
         };
         let full = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
         let mut last = 0.0;
         for k in 1..14 {
             let calm = 0.9 * 0.6_f64.powi(k);
-            let options = Options {
+            let options = Settings {
                 rest_energy: Some(calm),
                 ..options
             };
             let motion = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
-            assert_eq!(motion.stop, Stop::Calm);
+            assert_eq!(motion.stop, Stop::RestEnergy);
             let energy = model.energy(motion.end_x, motion.end_velocity);
             assert!(
                 energy <= calm * (1.0 + 1e-9) && motion.end_time >= last,
@@ -197,7 +200,7 @@ fn a_run_ends_where_its_energy_has_died_away() {
             if model.right.is_none() {
                 assert!((energy / calm - 1.0).abs() < 1e-9, "{energy} {calm}");
                 let judge = simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
-                assert_eq!(judge.stop, Stop::Calm);
+                assert_eq!(judge.stop, Stop::RestEnergy);
                 assert!((judge.end_time - motion.end_time).abs() < 1e-5);
             }
         }

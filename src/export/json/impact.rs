@@ -260,7 +260,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             energy_drift: impact.truth.energy_drift,
             paper: column(&impact.paper, &impact.paper_deviation),
             energy: column(&impact.energy, &impact.energy_deviation),
-            verdict: impact.verdict(impact::Column::Paper, tolerance).name().to_owned(),
+            verdict: impact.verdict(impact::ContactSpeed::Paper, tolerance).name().to_owned(),
         },
     }
 }

@@ -11,14 +11,15 @@
 //! polynomials of its own, but the phases and located events of [`integrate_phases`]. In contact it counts from the
 //! barrier, so that a shallow depth keeps its digits.
 
+use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
-use crate::impact::simulation::{Contact, Integrator, Options, Path, Simulation, State, Stop, Turn, enter, scaled};
-use crate::ode::{self, Event, IntegrationError, Occurrence, Phase, StopReason, Trajectory, integrate_phases};
+use crate::impact::simulation::{Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled};
+use crate::ode::{self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases};
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
-    region: State,
+    region: Regime,
     /// 1 or -1 where Coulomb friction acts, in the direction of x; 0 at rest under it, and where there is none.
     direction: f64,
 }
@@ -32,15 +33,15 @@ enum Meaning {
     Detach,
     Reattach,
     LetGo,
-    Calm,
+    RestEnergy,
 }
 
-const REGIONS: [State; 5] = [
-    State::Free,
-    State::Contact(Side::Right),
-    State::Contact(Side::Left),
-    State::Detached(Side::Right),
-    State::Detached(Side::Left),
+const REGIONS: [Regime; 5] = [
+    Regime::Free,
+    Regime::Contact(Side::Right),
+    Regime::Contact(Side::Left),
+    Regime::Detached(Side::Right),
+    Regime::Detached(Side::Left),
 ];
 
 /// The speed at which friction lets go.
@@ -66,41 +67,31 @@ fn place(index: usize) -> (Place, bool) {
     (Place { region, direction }, index % MOTIONS == 3)
 }
 
-/// The coordinate of a region: x itself, or the depth in a barrier.
-#[derive(Debug, Clone, Copy)]
-struct Coordinate {
-    sign: f64,
-    origin: f64,
-}
-
 impl Coordinate {
-    fn of(model: &Model, region: State) -> Self {
+    /// x itself, or the depth in the barrier of a region.
+    fn of(model: &Model, region: Regime) -> Self {
         match region {
-            State::Contact(side) | State::Detached(side) => Self {
+            Regime::Contact(side) | Regime::Detached(side) => Self {
                 sign: side.sign(),
                 origin: model.barrier(side).unwrap_or_default(),
             },
-            State::Free | State::Stuck => Self { sign: 1.0, origin: 0.0 },
+            Regime::Free | Regime::Stuck => Self { sign: 1.0, origin: 0.0 },
         }
-    }
-
-    fn x(self, value: f64) -> f64 {
-        self.origin + self.sign * value
     }
 }
 
 /// All but friction, at rest, in the direction of x.
-fn force_at_rest(model: &Model, region: State, t: f64, value: f64) -> f64 {
+fn force_at_rest(model: &Model, region: Regime, t: f64, value: f64) -> f64 {
     let coordinate = Coordinate::of(model, region);
     let contact = match region {
-        State::Contact(_) => model.contact(value, 0.0),
+        Regime::Contact(_) => model.contact(value, 0.0),
         _ => 0.0,
     };
     model.field(t, coordinate.x(value)) - coordinate.sign * contact
 }
 
 /// The phase in which a pendulum at rest goes on.
-fn from_rest(model: &Model, region: State, t: f64, value: f64) -> usize {
+fn from_rest(model: &Model, region: Regime, t: f64, value: f64) -> usize {
     let force = force_at_rest(model, region, t, value);
     let direction = force.signum();
     let held = force.abs() <= model.alpha * (1.0 + 4.0 * f64::EPSILON);
@@ -112,17 +103,17 @@ fn from_rest(model: &Model, region: State, t: f64, value: f64) -> usize {
 }
 
 /// The contact that begins at rest on a barrier, where the motion sets off in this direction.
-fn pushed_into(model: &Model, region: State, x: f64, direction: f64) -> Option<State> {
-    let on = |side: &Side| region == State::Free && model.barrier(*side) == Some(x) && direction == side.sign();
-    [Side::Left, Side::Right].into_iter().find(on).map(State::Contact)
+fn pushed_into(model: &Model, region: Regime, x: f64, direction: f64) -> Option<Regime> {
+    let on = |side: &Side| region == Regime::Free && model.barrier(*side) == Some(x) && direction == side.sign();
+    [Side::Left, Side::Right].into_iter().find(on).map(Regime::Contact)
 }
 
 /// The region in which a motion begins, and how fast it moves there in the coordinate of that region.
-fn beginning(model: &Model, start: Start) -> State {
+fn beginning(model: &Model, start: Start) -> Regime {
     if let Some((side, _)) = model.depth(start.x) {
         return match model.would_pull(side.sign() * start.velocity) {
-            true => State::Detached(side),
-            false => State::Contact(side),
+            true => Regime::Detached(side),
+            false => Regime::Contact(side),
         };
     }
     // At rest the force decides, and where there is none yet, the one that comes.
@@ -135,136 +126,145 @@ fn beginning(model: &Model, start: Start) -> State {
     rates
         .into_iter()
         .find(|rate| *rate != 0.0 && !held)
-        .and_then(|rate| pushed_into(model, State::Free, start.x, rate.signum()))
-        .unwrap_or(State::Free)
+        .and_then(|rate| pushed_into(model, Regime::Free, start.x, rate.signum()))
+        .unwrap_or(Regime::Free)
 }
 
-fn phase<'a>(model: &'a Model, options: &Options, number: usize) -> (Phase<'a>, Vec<Meaning>) {
-    let (Place { region, direction }, stuck) = place(number);
-    let coordinate = Coordinate::of(model, region);
-    let Coordinate { sign, origin } = coordinate;
-    let mut events: Vec<(Event<'a>, Meaning)> = Vec::new();
-    let to = move |region: State| index(Place { region, direction }, false);
+/// An event, and what it means.
+type Watched<'a> = (Event<'a>, Meaning);
+
+/// A phase of the run, and what its events mean in turn.
+fn phase<'a>(model: &'a Model, settings: &Settings, number: usize) -> (ode::Phase<'a>, Vec<Meaning>) {
+    let (place, stuck) = place(number);
+    let Place { region, direction } = place;
     if stuck {
-        let excess = move |t: f64, value: f64, _: f64| force_at_rest(model, region, t, value).abs() - model.alpha;
-        let next = move |state: ode::State| {
-            let direction = force_at_rest(model, region, state.t, state.x).signum();
-            // The acceleration is still zero: without a sign of its own the velocity would be anybody's.
-            let v = NUDGE * direction * sign;
-            match pushed_into(model, region, state.x, direction) {
-                Some(contact) => (
-                    index(
-                        Place {
-                            region: contact,
-                            direction,
-                        },
-                        false,
-                    ),
-                    ode::State {
-                        x: 0.0,
-                        v: NUDGE,
-                        ..state
-                    },
-                ),
-                None => (index(Place { region, direction }, false), ode::State { v, ..state }),
-            }
+        let (event, meaning) = letting_go(model, place);
+        return (ode::Phase::new(|_, _, _| 0.0, vec![event]), vec![meaning]);
+    }
+    let mut watched = match region {
+        Regime::Free | Regime::Stuck => touches(model, direction),
+        Regime::Contact(side) | Regime::Detached(side) => ends_of_contact(model, place, side),
+    };
+    watched.push(turning(model, place));
+    watched.extend(settings.rest_energy.map(|energy| fall_to_rest(model, region, energy)));
+    let (events, meanings) = watched.into_iter().unzip();
+    let coordinate = Coordinate::of(model, region);
+    let swing = move |t: f64, x: f64, velocity: f64| model.field(t, x) + model.damping(velocity, direction);
+    let phase = match region {
+        Regime::Contact(_) => ode::Phase::new(
+            coordinate.contact(swing, |depth, speed| model.contact(depth, speed)),
+            events,
+        ),
+        _ => ode::Phase::new(coordinate.flight(swing), events),
+    };
+    (phase, meanings)
+}
+
+/// Held by friction, until all the other forces together exceed it.
+fn letting_go(model: &Model, Place { region, .. }: Place) -> Watched<'_> {
+    let sign = Coordinate::of(model, region).sign;
+    let excess = move |t: f64, value: f64, _: f64| force_at_rest(model, region, t, value).abs() - model.alpha;
+    let next = move |state: ode::State| {
+        let direction = force_at_rest(model, region, state.t, state.x).signum();
+        // The acceleration is still zero: without a sign of its own the velocity would be anybody's.
+        let v = NUDGE * direction * sign;
+        let (region, state) = match pushed_into(model, region, state.x, direction) {
+            Some(contact) => (
+                contact,
+                ode::State {
+                    x: 0.0,
+                    v: NUDGE,
+                    ..state
+                },
+            ),
+            None => (region, ode::State { v, ..state }),
         };
-        events.push((Event::switch(excess, next).rising(), Meaning::LetGo));
-        let (events, meanings) = events.into_iter().unzip();
-        return (Phase::new(|_, _, _| 0.0, events), meanings);
-    }
-    match region {
-        State::Free | State::Stuck => {
-            for side in [Side::Left, Side::Right] {
-                if let Some(barrier) = model.barrier(side) {
-                    let next = move |state: ode::State| {
-                        // It moves inwards, whatever rounding says of one that rests there.
-                        let speed = (side.sign() * state.v).max(0.0);
-                        (
-                            to(State::Contact(side)),
-                            ode::State {
-                                x: 0.0,
-                                v: speed,
-                                ..state
-                            },
-                        )
-                    };
-                    let depth = move |_: f64, x: f64, _: f64| side.sign() * (x - barrier);
-                    events.push((Event::switch(depth, next).rising(), Meaning::Touch(side)));
-                }
-            }
-        }
-        State::Contact(side) | State::Detached(side) => {
-            let next = move |state: ode::State| {
-                (
-                    to(State::Free),
-                    ode::State {
-                        x: origin,
-                        v: sign * state.v.min(0.0),
-                        ..state
-                    },
-                )
+        (index(Place { region, direction }, false), state)
+    };
+    (Event::switch(excess, next).rising(), Meaning::LetGo)
+}
+
+/// In free flight: the barriers.
+fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
+    let touch = |side: Side| {
+        let barrier = model.barrier(side)?;
+        let next = move |state: ode::State| {
+            let contact = Place {
+                region: Regime::Contact(side),
+                direction,
             };
-            events.push((Event::switch(|_, d, _| d, next).falling(), Meaning::Release));
-            if model.mu > 0.0 {
-                let push = move |_: f64, _: f64, speed: f64| model.gamma + model.mu * speed;
-                if matches!(region, State::Contact(_)) {
-                    let next = move |state: ode::State| (to(State::Detached(side)), state);
-                    events.push((Event::switch(push, next).falling(), Meaning::Detach));
-                } else {
-                    let next = move |state: ode::State| (to(State::Contact(side)), state);
-                    events.push((Event::switch(push, next).rising(), Meaning::Reattach));
-                }
+            // It moves inwards, whatever rounding says of one that rests there.
+            let v = (side.sign() * state.v).max(0.0);
+            (index(contact, false), ode::State { x: 0.0, v, ..state })
+        };
+        let depth = move |_: f64, x: f64, _: f64| side.sign() * (x - barrier);
+        Some((Event::switch(depth, next).rising(), Meaning::Touch(side)))
+    };
+    [Side::Left, Side::Right].into_iter().filter_map(touch).collect()
+}
+
+/// Inside a barrier: back in place, and where the contact is damped, faster or no longer faster than the barrier.
+fn ends_of_contact(model: &Model, Place { region, direction }: Place, side: Side) -> Vec<Watched<'_>> {
+    let Coordinate { sign, origin } = Coordinate::of(model, region);
+    let to = move |region: Regime| index(Place { region, direction }, false);
+    let release = move |state: ode::State| {
+        let v = sign * state.v.min(0.0);
+        (to(Regime::Free), ode::State { x: origin, v, ..state })
+    };
+    let mut watched = vec![(Event::switch(|_, depth, _| depth, release).falling(), Meaning::Release)];
+    if model.mu > 0.0 {
+        let push = move |_: f64, _: f64, speed: f64| model.gamma + model.mu * speed;
+        watched.push(match region {
+            Regime::Contact(_) => {
+                let next = move |state: ode::State| (to(Regime::Detached(side)), state);
+                (Event::switch(push, next).falling(), Meaning::Detach)
             }
-        }
+            _ => {
+                let next = move |state: ode::State| (to(Regime::Contact(side)), state);
+                (Event::switch(push, next).rising(), Meaning::Reattach)
+            }
+        });
     }
+    watched
+}
+
+/// The turning points: under Coulomb friction each decides how the motion goes on.
+fn turning(model: &Model, Place { region, direction }: Place) -> Watched<'_> {
     if direction == 0.0 {
-        events.push((Event::record(|_, _, v| v), Meaning::Turn));
-    } else {
-        let next = move |state: ode::State| {
-            let state = ode::State { v: 0.0, ..state };
-            (from_rest(model, region, state.t, state.x), state)
-        };
-        let turn = Event::switch(move |_, _, v| v, next);
-        let turn = if direction * sign > 0.0 {
-            turn.falling()
-        } else {
-            turn.rising()
-        };
-        events.push((turn, Meaning::Turn));
+        return (Event::record(|_, _, v| v), Meaning::Turn);
     }
-    if let Some(calm) = options.rest_energy {
-        let energy = move |_: f64, value: f64, v: f64| {
-            let stored = if matches!(region, State::Contact(_)) {
-                model.elastic_energy(value)
-            } else {
-                0.0
-            };
-            model.swing_energy(coordinate.x(value), v) + stored - calm
-        };
-        events.push((Event::stop(energy).falling(), Meaning::Calm));
-    }
-    let acceleration = move |t: f64, value: f64, v: f64| {
-        let free = model.field(t, coordinate.x(value)) + model.damping(sign * v, direction);
-        let contact = match region {
-            State::Contact(_) => model.contact(value, v),
+    let next = move |state: ode::State| {
+        let state = ode::State { v: 0.0, ..state };
+        (from_rest(model, region, state.t, state.x), state)
+    };
+    let turn = Event::switch(move |_, _, v| v, next);
+    let inwards = direction * Coordinate::of(model, region).sign > 0.0;
+    let turn = if inwards { turn.falling() } else { turn.rising() };
+    (turn, Meaning::Turn)
+}
+
+/// The energy falls to that of rest, and the run ends.
+fn fall_to_rest(model: &Model, region: Regime, rest_energy: f64) -> Watched<'_> {
+    let coordinate = Coordinate::of(model, region);
+    let energy = move |_: f64, value: f64, v: f64| {
+        let stored = match region {
+            Regime::Contact(_) => model.elastic_energy(value),
             _ => 0.0,
         };
-        sign * free - contact
+        model.swing_energy(coordinate.x(value), v) + stored - rest_energy
     };
-    let (events, meanings) = events.into_iter().unzip();
-    (Phase::new(acceleration, events), meanings)
+    (Event::stop(energy).falling(), Meaning::RestEnergy)
 }
 
 /// The motion by Runge-Kutta.
 pub(in crate::impact) fn follow(
     model: &Model,
     start: Start,
-    options: &Options,
+    settings: &Settings,
 ) -> Result<Simulation, IntegrationError> {
-    let options = &scaled(options, model, start);
+    let settings = &scaled(settings, model, start);
     let (phases, meanings): (Vec<_>, Vec<_>) = (0..REGIONS.len() * MOTIONS)
-        .map(|number| phase(model, options, number))
+        .map(|number| phase(model, settings, number))
         .unzip();
     let region = beginning(model, start);
     let Coordinate { sign, origin } = Coordinate::of(model, region);
@@ -283,18 +283,19 @@ pub(in crate::impact) fn follow(
     } else {
         f64::INFINITY
     };
-    let settings = ode::Options {
-        relative_tolerance: options.relative_tolerance,
-        absolute_tolerance: options.absolute_tolerance,
-        maximum_steps: options.maximum_steps,
+    let options = ode::Options {
+        relative_tolerance: settings.relative_tolerance,
+        absolute_tolerance: settings.absolute_tolerance,
+        maximum_steps: settings.maximum_steps,
         maximum_step,
         stiff: false,
-        interrupt: options.interrupt,
+        interrupt: settings.interrupt,
     };
+    let first_region = place(first).0.region;
     let begin = ode::State {
         t: 0.0,
-        x: match place(first).0.region {
-            State::Free => start.x,
+        x: match first_region {
+            Regime::Free => start.x,
             first => {
                 let Coordinate { sign, origin } = Coordinate::of(model, first);
                 sign * (start.x - origin)
@@ -302,34 +303,39 @@ pub(in crate::impact) fn follow(
         },
         v: sign * start.velocity,
     };
-    let trajectory = integrate_phases(&phases, first, begin, options.duration, &settings)?;
-    Ok(told(
-        model,
+    let trajectory = integrate_phases(&phases, first, begin, settings.duration, &options)?;
+    let (impacts, turns) = contacts_and_turns((model, settings), start, first_region, &trajectory, &meanings);
+    let end = trajectory.end();
+    let (end_x, end_velocity) = end_in_x(model, &trajectory);
+    Ok(Simulation {
+        model: *model,
         start,
-        options,
-        trajectory,
-        (place(first).0.region, &meanings),
-    ))
+        settings: *settings,
+        integrator: Integrator::RungeKutta,
+        impacts,
+        turns,
+        end_time: end.t,
+        end_x,
+        end_velocity,
+        stop: stop_of(trajectory.stop_reason()),
+        steps: trajectory.step_count(),
+        path: path_of(model, settings, trajectory),
+    })
 }
 
-/// The run in the words of a simulation.
-fn told(
-    model: &Model,
+/// What the events of the run say of contacts and turning points.
+fn contacts_and_turns(
+    (model, settings): (&Model, &Settings),
     start: Start,
-    options: &Options,
-    trajectory: Trajectory,
-    (first, meanings): (State, &[Vec<Meaning>]),
-) -> Simulation {
+    first: Regime,
+    trajectory: &Trajectory,
+    meanings: &[Vec<Meaning>],
+) -> (Vec<Contact>, Vec<Turn>) {
     let mut impacts: Vec<Contact> = Vec::new();
-    if let State::Contact(side) | State::Detached(side) = first {
+    if let Regime::Contact(side) | Regime::Detached(side) = first {
         let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
-        enter(
-            &mut impacts,
-            (model, options),
-            side,
-            0.0,
-            [depth, side.sign() * start.velocity],
-        );
+        let speed = side.sign() * start.velocity;
+        enter(&mut impacts, (model, settings), side, 0.0, [depth, speed]);
     }
     let mut turns = Vec::new();
     if start.velocity == 0.0 {
@@ -339,11 +345,11 @@ fn told(
         phase, event, state, ..
     } in trajectory.occurrences().iter().copied()
     {
-        let coordinate = Coordinate::of(model, place(phase).0.region);
+        let region = place(phase).0.region;
         match meanings.get(phase).and_then(|list| list.get(event)) {
             Some(&Meaning::Touch(side)) => {
                 let speed = (side.sign() * state.v).max(0.0);
-                enter(&mut impacts, (model, options), side, state.t, [0.0, speed]);
+                enter(&mut impacts, (model, settings), side, state.t, [0.0, speed]);
             }
             Some(Meaning::Release) => {
                 if let Some(impact) = impacts.last_mut() {
@@ -351,18 +357,17 @@ fn told(
                 }
             }
             Some(meaning @ (Meaning::Turn | Meaning::LetGo)) => {
-                let region = place(phase).0.region;
                 let direction = force_at_rest(model, region, state.t, state.x).signum();
                 if let Meaning::LetGo = meaning
-                    && let Some(State::Contact(side)) = pushed_into(model, region, state.x, direction)
+                    && let Some(Regime::Contact(side)) = pushed_into(model, region, state.x, direction)
                 {
-                    enter(&mut impacts, (model, options), side, state.t, [0.0, 0.0]);
+                    enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
                 turns.push(Turn {
                     t: state.t,
-                    x: coordinate.x(state.x),
+                    x: Coordinate::of(model, region).x(state.x),
                 });
-                if matches!(place(phase).0.region, State::Contact(_))
+                if matches!(region, Regime::Contact(_))
                     && let Some(impact) = impacts.last_mut()
                 {
                     impact.penetration = impact.penetration.max(state.x);
@@ -371,49 +376,49 @@ fn told(
             _ => {}
         }
     }
-    let stop = match trajectory.stop_reason() {
+    (impacts, turns)
+}
+
+/// Why the run ended.
+fn stop_of(reason: StopReason) -> Stop {
+    match reason {
         StopReason::EndReached => Stop::Duration,
-        StopReason::Event { .. } => Stop::Calm,
+        StopReason::Event { .. } => Stop::RestEnergy,
         StopReason::NonFinite { time } => Stop::NotFinite { t: time },
         StopReason::MaximumSteps { time } => Stop::Steps { t: time },
         StopReason::Interrupted { time } => Stop::Interrupted { t: time },
         StopReason::StepTooSmall { time } => Stop::StepTooSmall { t: time },
         StopReason::SwitchingStalled { time } => Stop::Stalled { t: time },
-    };
+    }
+}
+
+/// Displacement and velocity at the end, in the coordinate of the last phase that took time: an event that switches leaves
+/// the end in the coordinate it switched to only if a step followed.
+fn end_in_x(model: &Model, trajectory: &Trajectory) -> (f64, f64) {
     let knots: Vec<f64> = trajectory.knots().map(|knot| knot.t).collect();
     let last_phase = knots
         .windows(2)
         .rev()
         .find_map(|pair| trajectory.phase_at(0.5 * (pair[0] + pair[1])))
         .unwrap_or(0);
-    let end = trajectory.end();
     let coordinate = Coordinate::of(model, place(last_phase).0.region);
-    let steps = trajectory.step_count();
-    // An event that switches leaves the end in the coordinate it switched to only if a step followed.
-    let (end_x, end_velocity) = (coordinate.x(end.x), coordinate.sign * end.v);
+    let end = trajectory.end();
+    (coordinate.x(end.x), coordinate.sign * end.v)
+}
+
+/// The run as a function of time, a piece for each step.
+fn path_of(model: &Model, settings: &Settings, trajectory: Trajectory) -> Path {
+    let knots: Vec<f64> = trajectory.knots().map(|knot| knot.t).collect();
     let mut path = Path::judged(trajectory);
-    if options.keep_path {
+    if settings.keep_path {
         for pair in knots.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let phase = path.judged_phase(0.5 * (from + to)).unwrap_or(0);
             let (Place { region, .. }, stuck) = place(phase);
-            let origin = Coordinate::of(model, region);
-            let state = if stuck { State::Stuck } else { region };
-            path.push_judged([from, to], state, [origin.origin, origin.sign]);
+            let Coordinate { origin, sign } = Coordinate::of(model, region);
+            let regime = if stuck { Regime::Stuck } else { region };
+            path.push_judged([from, to], regime, [origin, sign]);
         }
     }
-    Simulation {
-        model: *model,
-        start,
-        options: *options,
-        integrator: Integrator::RungeKutta,
-        path,
-        impacts,
-        turns,
-        end_time: end.t,
-        end_x,
-        end_velocity,
-        stop,
-        steps,
-    }
+    path
 }

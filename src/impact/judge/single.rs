@@ -1,7 +1,7 @@
 //! The true motion of an impact, and how far the closed form is from it.
 //!
 //! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at rest from x = -A.
-//! Out: [`TrueMotion`]: speed, depth, duration and period measured on the Runge-Kutta path, the path, the drift of
+//! Out: [`TrueImpact`]: speed, depth, duration and period measured on the Runge-Kutta path, the path, the drift of
 //! its energy
 //!
 //! ```text
@@ -13,6 +13,7 @@
 
 use thiserror::Error;
 
+use super::Coordinate;
 use crate::impact::linearisation::{greatest_depth, work};
 use crate::impact::phases::ThreePhases;
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
@@ -20,7 +21,7 @@ use crate::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory
 
 /// One impact as it happens, from release to the next turning point.
 #[derive(Debug, Clone)]
-pub struct TrueMotion {
+pub struct TrueImpact {
     /// First touch: time, x_c, speed.
     pub touch: State,
     /// The deepest point.
@@ -56,7 +57,7 @@ pub struct Deviation {
 /// Why there is no true motion.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum TrueMotionError {
+pub enum TrueImpactError {
     /// It turns round before the barrier.
     #[error(
         "the pendulum never reaches the barrier: released at x = {release} it turns round at x = {turn}, and the \
@@ -82,7 +83,7 @@ pub enum TrueMotionError {
         barrier: f64,
     },
     /// The run gave up.
-    #[error("the true motion could not be followed to the end of the impact: {}", said(.0))]
+    #[error("the true motion could not be followed to the end of the impact: {}", way_forward(.0))]
     Stopped(StopReason),
     /// Closer steps give another motion, as close as doubles allow.
     #[error(
@@ -103,7 +104,7 @@ pub enum TrueMotionError {
 }
 
 /// Why the run gave up, and what to change in a problem.
-fn said(reason: &StopReason) -> String {
+fn way_forward(reason: &StopReason) -> String {
     match reason {
         StopReason::MaximumSteps { time } => {
             format!("the allowed number of steps was used up at t = {time}: raise step_limit in [run]")
@@ -122,67 +123,51 @@ fn said(reason: &StopReason) -> String {
 /// however large the absolute one is.
 ///
 /// # Errors
-/// [`TrueMotionError`]: the barrier is not reached, or the run ends early and says why.
-pub fn true_motion(
+/// [`TrueImpactError`]: the barrier is not reached, or the run ends early and says why.
+pub fn true_impact(
     amplitude: f64,
     barrier: f64,
     stiffness: f64,
     restoring_force: impl Fn(f64) -> f64,
     elastic_force: impl Fn(f64) -> f64,
     options: &Options,
-) -> Result<TrueMotion, TrueMotionError> {
+) -> Result<TrueImpact, TrueImpactError> {
     let release = -amplitude;
     if barrier <= release {
-        return Err(TrueMotionError::ReleasedBehindBarrier { release, barrier });
+        return Err(TrueImpactError::ReleasedBehindBarrier { release, barrier });
     }
-    // What may be neglected beside this size.
-    let at_scale = |size: f64| Options {
-        absolute_tolerance: options
-            .absolute_tolerance
-            .min(options.relative_tolerance * size)
-            .max(f64::MIN_POSITIVE),
-        ..*options
-    };
-    // Counted from the release: near the top of the swing every digit of the distance to it matters.
-    let way = barrier - release;
-    let start = State { t: 0.0, x: 0.0, v: 0.0 };
-    let events = [
-        Event::stop(|_: f64, gone: f64, _: f64| gone - way).rising(),
-        Event::stop(|_: f64, _: f64, v: f64| v).falling(),
-    ];
-    let flight = |_: f64, gone: f64, _: f64| -restoring_force(release + gone);
-    let approach = integrate(flight, start, LONGEST_TIME, &events, &at_scale(amplitude))?;
-    let touch = match approach.stop_reason() {
-        StopReason::Event { event: 0, .. } => State {
-            x: barrier,
-            ..approach.end()
-        },
-        StopReason::Event { .. } => {
-            return Err(TrueMotionError::NeverReaches {
-                release,
-                turn: release + approach.end().x,
-                barrier,
-            });
-        }
-        reason => return Err(TrueMotionError::Stopped(reason)),
+    let swing = |_: f64, x: f64, _: f64| -restoring_force(x);
+    let press = |depth: f64, _: f64| stiffness * elastic_force(depth.max(0.0));
+    let approach = approach(swing, [release, barrier], &at_scale(options, amplitude))?;
+    let touch = State {
+        x: barrier,
+        ..approach.end()
     };
     let energy = 0.5 * touch.v * touch.v;
     // A barrier that is soft for this swing lets it through to the other side.
     let size = greatest_depth(&elastic_force, energy / stiffness).map_or(amplitude, |depth| depth.min(amplitude));
-    let events = [
-        Event::stop(|_: f64, depth: f64, _: f64| depth).falling(),
-        Event::record(|_: f64, _: f64, v: f64| v).falling(),
-    ];
-    let press =
-        |_: f64, depth: f64, _: f64| -restoring_force(barrier + depth) - stiffness * elastic_force(depth.max(0.0));
     let touched = State {
         t: 0.0,
         x: 0.0,
         v: touch.v,
     };
-    let contact = integrate(press, touched, LONGEST_TIME, &events, &at_scale(size))?;
+    let inside = Coordinate {
+        sign: 1.0,
+        origin: barrier,
+    };
+    let events = [
+        Event::stop(|_: f64, depth: f64, _: f64| depth).falling(),
+        Event::record(|_: f64, _: f64, v: f64| v).falling(),
+    ];
+    let contact = integrate(
+        inside.contact(swing, press),
+        touched,
+        LONGEST_TIME,
+        &events,
+        &at_scale(options, size),
+    )?;
     let StopReason::Event { .. } = contact.stop_reason() else {
-        return Err(TrueMotionError::Stopped(contact.stop_reason()));
+        return Err(TrueImpactError::Stopped(contact.stop_reason()));
     };
     let turn = contact.occurrences().iter().find(|found| found.event == 1);
     // A graze too shallow for a turning point in doubles: touch, turn and exit are one.
@@ -190,22 +175,12 @@ pub fn true_motion(
     let exit = contact.end();
     let seen = |state: State| State {
         t: touch.t + state.t,
-        x: barrier + state.x,
+        x: inside.x(state.x),
         v: state.v,
     };
-    let potential =
-        |from: f64, to: f64| integrate_smooth(&restoring_force, from, to, 1e-13).map(|(integral, _)| integral);
-    // Counted from the barrier: the energy at release is the kinetic energy at touch.
-    let released = potential(barrier, release)?;
-    let mut drift = 0.0_f64;
-    for knot in approach.knots() {
-        drift = drift.max((0.5 * knot.v * knot.v + potential(barrier, release + knot.x)? - released).abs());
-    }
-    for knot in contact.knots() {
-        let stored = stiffness * work(&elastic_force, knot.x)?;
-        drift = drift.max((0.5 * knot.v * knot.v + potential(barrier, barrier + knot.x)? + stored - released).abs());
-    }
-    Ok(TrueMotion {
+    let stored = |depth: f64| Ok(stiffness * work(&elastic_force, depth)?);
+    let energy_drift = energy_drift([release, barrier], [&approach, &contact], &restoring_force, stored)?;
+    Ok(TrueImpact {
         touch,
         deepest: seen(deepest),
         exit: State {
@@ -217,8 +192,70 @@ pub fn true_motion(
         period: 2.0 * touch.t + exit.t,
         approach,
         contact,
-        energy_drift: drift / released.abs(),
+        energy_drift,
     })
+}
+
+/// The same, with what may be neglected beside this size.
+fn at_scale(options: &Options, size: f64) -> Options {
+    Options {
+        absolute_tolerance: options
+            .absolute_tolerance
+            .min(options.relative_tolerance * size)
+            .max(f64::MIN_POSITIVE),
+        ..*options
+    }
+}
+
+/// The flight from rest to the touch.
+fn approach(
+    swing: impl Fn(f64, f64, f64) -> f64,
+    [release, barrier]: [f64; 2],
+    options: &Options,
+) -> Result<Trajectory, TrueImpactError> {
+    // Counted from the release: near the top of the swing every digit of the distance to it matters.
+    let released = Coordinate {
+        sign: 1.0,
+        origin: release,
+    };
+    let way = barrier - release;
+    let start = State { t: 0.0, x: 0.0, v: 0.0 };
+    let events = [
+        Event::stop(|_: f64, gone: f64, _: f64| gone - way).rising(),
+        Event::stop(|_: f64, _: f64, v: f64| v).falling(),
+    ];
+    let approach = integrate(released.flight(swing), start, LONGEST_TIME, &events, options)?;
+    match approach.stop_reason() {
+        StopReason::Event { event: 0, .. } => Ok(approach),
+        StopReason::Event { .. } => Err(TrueImpactError::NeverReaches {
+            release,
+            turn: released.x(approach.end().x),
+            barrier,
+        }),
+        reason => Err(TrueImpactError::Stopped(reason)),
+    }
+}
+
+/// Largest change of the energy along approach and contact, as a part of the kinetic energy at touch; `stored` is what the
+/// barrier holds at a depth.
+fn energy_drift(
+    [release, barrier]: [f64; 2],
+    [approach, contact]: [&Trajectory; 2],
+    restoring_force: impl Fn(f64) -> f64,
+    stored: impl Fn(f64) -> Result<f64, QuadratureError>,
+) -> Result<f64, QuadratureError> {
+    let potential = |to: f64| integrate_smooth(&restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral);
+    // Counted from the barrier: the energy at release is the kinetic energy at touch.
+    let released = potential(release)?;
+    let mut drift = 0.0_f64;
+    for knot in approach.knots() {
+        drift = drift.max((0.5 * knot.v * knot.v + potential(release + knot.x)? - released).abs());
+    }
+    for knot in contact.knots() {
+        let stored = stored(knot.x)?;
+        drift = drift.max((0.5 * knot.v * knot.v + potential(barrier + knot.x)? + stored - released).abs());
+    }
+    Ok(drift / released.abs())
 }
 
 /// A time no impact of interest takes; the number of steps is the real limit.
@@ -235,22 +272,22 @@ const TIGHTEST: f64 = 1e-14;
 /// The first pair compared is that of `options` and a hundredth of it; where they differ the next one is closer.
 ///
 /// # Errors
-/// As [`true_motion`], and [`TrueMotionError::NotSettled`] where double precision does not know six digits.
-pub fn assured_motion(
+/// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six digits.
+pub fn assured_impact(
     amplitude: f64,
     barrier: f64,
     stiffness: f64,
     restoring_force: impl Fn(f64) -> f64,
     elastic_force: impl Fn(f64) -> f64,
     options: &Options,
-) -> Result<TrueMotion, TrueMotionError> {
+) -> Result<TrueImpact, TrueImpactError> {
     let with = |tolerance: f64| {
         let options = Options {
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
             ..*options
         };
-        true_motion(
+        true_impact(
             amplitude,
             barrier,
             stiffness,
@@ -265,7 +302,7 @@ pub fn assured_motion(
         let closer = 0.01 * tolerance;
         let is_last = closer < TIGHTEST;
         let other = with(if is_last { 100.0 * tolerance } else { closer })?;
-        let [mine, others] = [&motion, &other].map(TrueMotion::quantities);
+        let [mine, others] = [&motion, &other].map(TrueImpact::quantities);
         let change = mine
             .iter()
             .zip(&others)
@@ -275,13 +312,13 @@ pub fn assured_motion(
             return Ok(if is_last { motion } else { other });
         }
         if is_last {
-            return Err(TrueMotionError::NotSettled { change });
+            return Err(TrueImpactError::NotSettled { change });
         }
         (tolerance, motion) = (closer, other);
     }
 }
 
-impl TrueMotion {
+impl TrueImpact {
     /// Time to contact, speed, penetration, duration, period.
     fn quantities(&self) -> [f64; 5] {
         [self.touch.t, self.touch.v, self.penetration, self.duration, self.period]
@@ -313,7 +350,7 @@ impl TrueMotion {
 }
 
 /// The deviation of the closed form from the true motion.
-pub fn deviation(closed_form: &ThreePhases, truth: &TrueMotion) -> Deviation {
+pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
     let true_limits = [0.0, truth.touch.t, truth.exit.t, truth.period];
     let true_position = |t: f64| truth.at(t).0;
     let mut phases = [0.0; 3];
@@ -357,7 +394,7 @@ mod tests {
     use super::*;
     use crate::impact::hertz::{Design, elastic_force};
     use crate::impact::linearisation::Rule;
-    use crate::impact::phases::{Column, Swing, contact_speed, three_phases};
+    use crate::impact::phases::{ContactSpeed, Swing, contact_speed, three_phases};
     use crate::ode::root::find_root;
 
     const FORCE: fn(f64) -> f64 = f64::sin;
@@ -375,9 +412,9 @@ mod tests {
         }
     }
 
-    fn pendulum(barrier: f64, stiffness: f64) -> TrueMotion {
+    fn pendulum(barrier: f64, stiffness: f64) -> TrueImpact {
         let options = Options::with_tolerance(1e-13);
-        true_motion(1.5, barrier, stiffness, f64::sin, elastic_force, &options).unwrap()
+        true_impact(1.5, barrier, stiffness, f64::sin, elastic_force, &options).unwrap()
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
@@ -437,7 +474,7 @@ mod tests {
     fn the_drift_tells_a_loose_run_from_a_tight_one() {
         let run = |tolerance| {
             let options = Options::with_tolerance(tolerance);
-            true_motion(1.5, 0.323, 1e6, f64::sin, elastic_force, &options)
+            true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &options)
                 .unwrap()
                 .energy_drift
         };
@@ -448,7 +485,7 @@ mod tests {
     fn the_closed_form_beside_the_true_motion() {
         let stiffness = Design::default().stiffness().unwrap();
         let truth = pendulum(0.323, stiffness);
-        for column in [Column::Paper, Column::Energy] {
+        for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&swing(0.323, stiffness), column).unwrap();
             let found = deviation(&motion, &truth);
             // The touch comes 0.044 late, so after the true one the paths part at twice the speed times that delay.
@@ -464,10 +501,10 @@ mod tests {
         }
         let of = |column| deviation(&three_phases(&swing(0.323, stiffness), column).unwrap(), &truth).aligned[1];
         assert!(
-            of(Column::Energy) < 0.7 * of(Column::Paper),
+            of(ContactSpeed::Energy) < 0.7 * of(ContactSpeed::Paper),
             "the right speed brings the contact closer"
         );
-        let energy = three_phases(&swing(0.323, stiffness), Column::Energy).unwrap();
+        let energy = three_phases(&swing(0.323, stiffness), ContactSpeed::Energy).unwrap();
         near(energy.duration / truth.duration, 1.016, 2e-3);
         near(energy.penetration / truth.penetration, 1.0, 1e-3);
     }
@@ -484,8 +521,8 @@ mod tests {
             elastic_force: &spring,
             ..swing(0.4, 1e4)
         };
-        let truth = true_motion(1.5, 0.4, 1e4, linear, spring, &Options::with_tolerance(1e-13)).unwrap();
-        for column in [Column::Paper, Column::Energy] {
+        let truth = true_impact(1.5, 0.4, 1e4, linear, spring, &Options::with_tolerance(1e-13)).unwrap();
+        for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&exact, column).unwrap();
             let found = deviation(&motion, &truth);
             assert!(
@@ -499,28 +536,28 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_is_refused() {
         let run = |amplitude, barrier| {
-            true_motion(amplitude, barrier, 1e6, f64::sin, elastic_force, &Options::default()).unwrap_err()
+            true_impact(amplitude, barrier, 1e6, f64::sin, elastic_force, &Options::default()).unwrap_err()
         };
         let refused = run(0.3, 0.323);
         assert!(
-            matches!(refused, TrueMotionError::NeverReaches { turn, .. } if (turn - 0.3).abs() < 1e-8),
+            matches!(refused, TrueImpactError::NeverReaches { turn, .. } if (turn - 0.3).abs() < 1e-8),
             "{refused}"
         );
-        assert!(matches!(run(1.5, -1.5), TrueMotionError::ReleasedBehindBarrier { .. }));
-        assert!(matches!(run(f64::NAN, 0.3), TrueMotionError::Integration(_)));
+        assert!(matches!(run(1.5, -1.5), TrueImpactError::ReleasedBehindBarrier { .. }));
+        assert!(matches!(run(f64::NAN, 0.3), TrueImpactError::Integration(_)));
         let few = Options {
             maximum_steps: 5,
             ..Options::default()
         };
-        let refused = true_motion(1.5, 0.323, 1e6, f64::sin, elastic_force, &few).unwrap_err();
+        let refused = true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &few).unwrap_err();
         assert!(
-            matches!(refused, TrueMotionError::Stopped(StopReason::MaximumSteps { .. })),
+            matches!(refused, TrueImpactError::Stopped(StopReason::MaximumSteps { .. })),
             "{refused}"
         );
         // At rest on top: it never gets anywhere.
-        let refused = true_motion(1.0, 0.3, 1.0, |_| 0.0, elastic_force, &Options::default()).unwrap_err();
+        let refused = true_impact(1.0, 0.3, 1.0, |_| 0.0, elastic_force, &Options::default()).unwrap_err();
         assert!(
-            matches!(refused, TrueMotionError::Stopped(StopReason::EndReached)),
+            matches!(refused, TrueImpactError::Stopped(StopReason::EndReached)),
             "{refused}"
         );
     }

@@ -11,7 +11,8 @@
 //! energy still in it is lost to its damping.
 
 use super::Simulation;
-use super::path::{Node, State};
+use super::path::{Node, Regime};
+use crate::impact::hertz;
 use crate::impact::model::{Friction, Side};
 
 /// The most points inside one step.
@@ -87,27 +88,27 @@ impl Simulation {
             let parts = ((piece.end - piece.start) / longest).ceil().clamp(1.0, MOST_PARTS) as u32;
             let stored = |fraction: f64| {
                 let node = self.path.node(piece, fraction);
-                (model.elastic_energy(self.depth(piece.state, &node)), node)
+                (model.elastic_energy(self.depth(piece.regime, &node)), node)
             };
             for part in 0..parts {
                 let span = [part, part + 1].map(|end| f64::from(end) / f64::from(parts));
                 for node in self.path.quadrature(piece, span) {
                     let v = node.velocity;
                     book.viscous -= node.weight * 2.0 * model.zeta * v * v;
-                    let direction = if piece.state == State::Stuck { 0.0 } else { v.signum() };
+                    let direction = if piece.regime == Regime::Stuck { 0.0 } else { v.signum() };
                     let dry = match model.friction {
                         Friction::Exact => model.alpha * direction * v,
                         Friction::Arctangent => -(model.damping(v, 0.0) + 2.0 * model.zeta * v) * v,
                     };
                     book.friction -= node.weight * dry;
                     book.excitation += node.weight * (model.field(node.t, node.x) + node.x.sin()) * v;
-                    if let State::Contact(_) = piece.state {
-                        let depth = node.depth;
-                        book.contact -= node.weight * model.mu * v * v * depth * depth.sqrt();
+                    if let Regime::Contact(_) = piece.regime {
+                        // mu d' d^(3/2), times d' dt.
+                        book.contact -= hertz::force(node.weight * model.mu * v * v, node.depth);
                     }
                 }
                 let (last, end) = stored(span[1]);
-                if let State::Detached(_) = piece.state {
+                if let Regime::Detached(_) = piece.regime {
                     book.contact += last - stored(span[0]).0;
                 }
                 book.end = model.swing_energy(end.x, end.velocity) + last;
@@ -121,17 +122,17 @@ impl Simulation {
         }
     }
 
-    fn depth(&self, state: State, node: &Node) -> f64 {
+    fn depth(&self, regime: Regime, node: &Node) -> f64 {
         let inside = |side: Side| {
             let barrier = self.model.barrier(side).unwrap_or(node.x);
             (side.sign() * (node.x - barrier)).max(0.0)
         };
-        match state {
-            State::Contact(side) if node.depth == 0.0 => inside(side),
-            State::Contact(_) => node.depth,
-            State::Detached(side) => inside(side),
-            State::Stuck => self.model.depth(node.x).map_or(0.0, |(_, depth)| depth),
-            State::Free => 0.0,
+        match regime {
+            Regime::Contact(side) if node.depth == 0.0 => inside(side),
+            Regime::Contact(_) => node.depth,
+            Regime::Detached(side) => inside(side),
+            Regime::Stuck => self.model.depth(node.x).map_or(0.0, |(_, depth)| depth),
+            Regime::Free => 0.0,
         }
     }
 }

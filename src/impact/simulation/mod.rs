@@ -14,7 +14,7 @@ pub(super) mod rest;
 use std::fmt;
 
 pub use energy::{EnergyBook, EnergyPoint};
-pub use path::{Path, Piece, State};
+pub use path::{Path, Piece, Regime};
 pub use rest::{NoRest, REST_FRACTION, Rest};
 
 use super::model::{Model, Side, Start};
@@ -33,7 +33,7 @@ pub enum Integrator {
 
 /// How long and how closely to follow a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct Settings {
     /// Time to follow it for, in units of 1/omega.
     pub duration: f64,
     /// Error allowed in one step, relative to the size of x and x'.
@@ -50,7 +50,7 @@ pub struct Options {
     pub keep_path: bool,
 }
 
-impl Default for Options {
+impl Default for Settings {
     fn default() -> Self {
         Self {
             duration: 50.0,
@@ -69,8 +69,8 @@ impl Default for Options {
 pub enum Stop {
     /// At the end of the duration.
     Duration,
-    /// The energy fell to [`Options::rest_energy`].
-    Calm,
+    /// The energy fell to [`Settings::rest_energy`].
+    RestEnergy,
     /// The numbers grew beyond all bounds.
     NotFinite {
         /// The last time reached.
@@ -101,7 +101,7 @@ pub enum Stop {
 impl Stop {
     /// Whether the run got where it was to get.
     pub fn is_complete(self) -> bool {
-        matches!(self, Self::Duration | Self::Calm)
+        matches!(self, Self::Duration | Self::RestEnergy)
     }
 }
 
@@ -110,7 +110,7 @@ impl Stop {
     pub fn name(self) -> &'static str {
         match self {
             Self::Duration => "duration",
-            Self::Calm => "rest energy",
+            Self::RestEnergy => "rest energy",
             Self::NotFinite { .. } => "not finite",
             Self::Steps { .. } => "step limit",
             Self::Interrupted { .. } => "interrupted",
@@ -125,7 +125,7 @@ impl fmt::Display for Stop {
         let time = |t: &f64| significant(*t, 12);
         match self {
             Self::Duration => write!(formatter, "the end of the duration was reached"),
-            Self::Calm => write!(formatter, "the energy fell to the rest energy"),
+            Self::RestEnergy => write!(formatter, "the energy fell to the rest energy"),
             Self::NotFinite { t } => {
                 write!(
                     formatter,
@@ -212,12 +212,12 @@ pub(super) fn size(model: &Model, start: Start) -> f64 {
 
 /// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size 1, and a tiny one would
 /// be lost in it.
-pub(super) fn scaled(options: &Options, model: &Model, start: Start) -> Options {
+pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settings {
     let size = size(model, start);
     let scale = if size > 0.0 { size.min(1.0) } else { 1.0 };
-    Options {
-        absolute_tolerance: (scale * options.absolute_tolerance).max(f64::MIN_POSITIVE),
-        ..*options
+    Settings {
+        absolute_tolerance: (scale * settings.absolute_tolerance).max(f64::MIN_POSITIVE),
+        ..*settings
     }
 }
 
@@ -227,13 +227,13 @@ pub(super) fn scaled(options: &Options, model: &Model, start: Start) -> Options 
 /// against the barrier and rests there.
 pub(super) fn enter(
     impacts: &mut Vec<Contact>,
-    (model, options): (&Model, &Options),
+    (model, settings): (&Model, &Settings),
     side: Side,
     t: f64,
     [depth, speed]: [f64; 2],
 ) {
     let place = model.barrier(side).unwrap_or_default().abs();
-    let visible = options.absolute_tolerance + options.relative_tolerance * place;
+    let visible = settings.absolute_tolerance + settings.relative_tolerance * place;
     if let Some(last) = impacts.last_mut()
         && last.side == side
         && let (Some(exit), Some(left)) = (last.exit_time, last.speed_out)
@@ -279,10 +279,10 @@ pub struct Simulation {
     /// From where.
     pub start: Start,
     /// How.
-    pub options: Options,
+    pub settings: Settings,
     /// By which method.
     pub integrator: Integrator,
-    /// The motion as a function of time; empty without [`Options::keep_path`].
+    /// The motion as a function of time; empty without [`Settings::keep_path`].
     pub path: Path,
     /// Every contact, in order.
     pub impacts: Vec<Contact>,

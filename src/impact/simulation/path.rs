@@ -10,7 +10,7 @@ use crate::ode::quadrature::nodes_and_weights;
 
 /// What the pendulum is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum State {
+pub enum Regime {
     /// Swinging freely.
     Free,
     /// Pressing into a barrier.
@@ -21,7 +21,7 @@ pub enum State {
     Stuck,
 }
 
-impl State {
+impl Regime {
     /// One word, for tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -33,7 +33,7 @@ impl State {
     }
 }
 
-/// A stretch of time in one state, from knot to knot.
+/// A stretch of time in one regime, from knot to knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Where it begins.
@@ -41,13 +41,13 @@ pub struct Piece {
     /// Where it ends.
     pub end: f64,
     /// What happens there.
-    pub state: State,
-    form: Form,
+    pub regime: Regime,
+    form: Representation,
 }
 
 /// How x and x' are kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Form {
+enum Representation {
     /// Coefficients of x and x' in (t - start)/unit, from this place of the pool on.
     Time { offset: usize, terms: usize, unit: f64 },
     /// Coefficients of w, x' and t - start in s/unit; the series ends at `length`.
@@ -118,14 +118,14 @@ impl Path {
         &self.pieces
     }
 
-    /// The state in force at a time; nothing outside the time covered.
-    pub fn state_at(&self, t: f64) -> Option<State> {
+    /// The regime in force at a time; nothing outside the time covered.
+    pub fn regime_at(&self, t: f64) -> Option<Regime> {
         let last = self.pieces.last()?;
         if t > last.end {
             return None;
         }
         let index = self.pieces.partition_point(|piece| piece.start <= t).checked_sub(1)?;
-        Some(self.pieces.get(index)?.state)
+        Some(self.pieces.get(index)?.regime)
     }
 
     /// `(t, x, x')` at the ends of the pieces and at `between` times inside each, equally spaced in the variable of
@@ -148,7 +148,7 @@ impl Path {
     pub(in crate::impact) fn push_flight(
         &mut self,
         span: [f64; 2],
-        state: State,
+        regime: Regime,
         unit: f64,
         x: &[f64],
         velocity: &[f64],
@@ -157,7 +157,7 @@ impl Path {
         self.pool.extend_from_slice(x);
         self.pool.extend_from_slice(velocity);
         let terms = x.len();
-        self.push(span, state, Form::Time { offset, terms, unit });
+        self.push(span, regime, Representation::Time { offset, terms, unit });
     }
 
     pub(in crate::impact) fn push_contact(
@@ -172,7 +172,7 @@ impl Path {
         self.pool.extend_from_slice(w);
         self.pool.extend_from_slice(velocity);
         self.pool.extend_from_slice(time);
-        let form = Form::Regularised {
+        let form = Representation::Regularised {
             offset,
             terms: w.len(),
             length,
@@ -180,11 +180,11 @@ impl Path {
             sign: side.sign(),
             unit,
         };
-        self.push(span, State::Contact(side), form);
+        self.push(span, Regime::Contact(side), form);
     }
 
     pub(in crate::impact) fn push_rest(&mut self, span: [f64; 2], x: f64) {
-        self.push(span, State::Stuck, Form::Constant { x });
+        self.push(span, Regime::Stuck, Representation::Constant { x });
     }
 
     pub(in crate::impact) fn judged_phase(&self, t: f64) -> Option<usize> {
@@ -192,15 +192,15 @@ impl Path {
     }
 
     /// A step of the judge, whose coordinate is counted from `origin` in the direction of `sign`.
-    pub(in crate::impact) fn push_judged(&mut self, span: [f64; 2], state: State, [origin, sign]: [f64; 2]) {
-        self.push(span, state, Form::Judged { origin, sign });
+    pub(in crate::impact) fn push_judged(&mut self, span: [f64; 2], regime: Regime, [origin, sign]: [f64; 2]) {
+        self.push(span, regime, Representation::Judged { origin, sign });
     }
 
-    fn push(&mut self, [start, end]: [f64; 2], state: State, form: Form) {
+    fn push(&mut self, [start, end]: [f64; 2], regime: Regime, form: Representation) {
         self.pieces.push(Piece {
             start,
             end,
-            state,
+            regime,
             form,
         });
     }
@@ -226,7 +226,7 @@ impl Path {
     pub(in crate::impact) fn node(&self, piece: &Piece, fraction: f64) -> Node {
         let length = piece.end - piece.start;
         match piece.form {
-            Form::Regularised {
+            Representation::Regularised {
                 offset,
                 terms,
                 length,
@@ -262,14 +262,14 @@ impl Path {
             weight: 0.0,
         };
         match piece.form {
-            Form::Time { offset, terms, unit } => {
+            Representation::Time { offset, terms, unit } => {
                 let u = (t - piece.start) / unit;
                 node(
                     value(self.slice(offset, terms), u),
                     value(self.slice(offset + terms, terms), u),
                 )
             }
-            Form::Regularised {
+            Representation::Regularised {
                 offset, terms, length, ..
             } => {
                 let time = self.slice(offset + 2 * terms, terms);
@@ -281,8 +281,8 @@ impl Path {
                 };
                 self.node(piece, s / length)
             }
-            Form::Constant { x } => node(x, 0.0),
-            Form::Judged { origin, sign } => {
+            Representation::Constant { x } => node(x, 0.0),
+            Representation::Judged { origin, sign } => {
                 // The end of a step may be the beginning of another phase, with another coordinate.
                 let inside = t.clamp(piece.start, piece.end.next_down().max(piece.start));
                 let (value, velocity) = self
@@ -291,7 +291,7 @@ impl Path {
                     .and_then(|path| path.at(inside))
                     .unwrap_or((0.0, 0.0));
                 Node {
-                    depth: if matches!(piece.state, State::Contact(_)) {
+                    depth: if matches!(piece.regime, Regime::Contact(_)) {
                         value.max(0.0)
                     } else {
                         0.0

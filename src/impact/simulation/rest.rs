@@ -145,7 +145,7 @@ impl Simulation {
         let held = self.model.sticks()
             && self.end_velocity == 0.0
             && self.turns.last().is_some_and(|turn| turn.t == self.end_time);
-        if held || self.stop == Stop::Calm {
+        if held || self.stop == Stop::RestEnergy {
             let x = match held {
                 true => self.end_x,
                 false => self.last_swing(),

@@ -1,11 +1,44 @@
 //! Contact: its begin and its end, and what happens in a step of the regularised equation.
 
 use super::{Event, Runner, turning_points};
-use crate::impact::model::Side;
+use crate::impact::hertz;
+use crate::impact::model::{Model, Side};
 use crate::impact::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
-use crate::impact::simulation::State;
+use crate::impact::simulation::Regime;
 use crate::impact::simulation::{Turn, enter};
 use crate::impact::taylor::series::{End, HIGHEST_ORDER};
+
+/// One step of the regularised equation: w, v and t as polynomials.
+struct ContactStep<'a> {
+    side: Side,
+    barrier: f64,
+    w: &'a [f64],
+    v: &'a [f64],
+    time: &'a [f64],
+}
+
+impl ContactStep<'_> {
+    fn depth(&self, u: f64) -> f64 {
+        let w = value(self.w, u);
+        w * w
+    }
+
+    fn x(&self, depth: f64) -> f64 {
+        self.barrier + self.side.sign() * depth
+    }
+
+    /// The part of a step of this length that takes so long: its length, and its values at the end.
+    fn cut(&self, remaining: f64, length: f64) -> (f64, End) {
+        let h = crossing_of(|u| value(self.time, u) - remaining, 0.0, length);
+        let end = End {
+            place: value(self.w, h),
+            velocity: value(self.v, h),
+            time: remaining,
+            variation: variation(self.v, h),
+        };
+        (h, end)
+    }
+}
 
 impl Runner {
     /// Takes a whole step in contact if its ends show that nothing happens in it and nobody wants to see it.
@@ -14,17 +47,17 @@ impl Runner {
         let lowest = self.velocity - end.variation;
         if turns
             || self.model.would_pull(lowest)
-            || self.options.keep_path
+            || self.settings.keep_path
             || self.released
             || end.place <= 0.0
-            || self.options.duration - self.t <= end.time
+            || self.settings.duration - self.t <= end.time
         {
             return false;
         }
         let depth = end.place * end.place;
         let (sine, cosine) = (barrier + side.sign() * depth).sin_cos();
         // What is stored in the barrier comes on top.
-        if self.is_calm(end.velocity, cosine) {
+        if self.is_at_rest_energy(end.velocity, cosine) {
             return false;
         }
         if let Some(impact) = self.impacts.last_mut() {
@@ -43,91 +76,104 @@ impl Runner {
         whole: End,
         series: [&[f64; HIGHEST_ORDER + 1]; 3],
     ) {
-        let order = self.order;
-        let [w, v, time] = series.map(|series| &series[..=order]);
-        let remaining = self.options.duration - self.t;
-        let (mut h, mut whole) = (self.length, whole);
+        let [w, v, time] = series.map(|series| &series[..=self.order]);
+        let step = ContactStep {
+            side,
+            barrier,
+            w,
+            v,
+            time,
+        };
+        let remaining = self.settings.duration - self.t;
         let last = whole.time >= remaining;
-        if last {
-            h = crossing_of(|u| value(time, u) - remaining, 0.0, h);
-            whole = End {
-                place: value(w, h),
-                velocity: value(v, h),
-                time: remaining,
-                variation: variation(v, h),
-            };
-        }
-        let turns = turning_points(v, h, whole);
-        let (mut end, mut event) = (h, None);
-        let (mut from, mut w_from) = (0.0, w[0]);
-        let mut deepest = 0.0_f64;
-        for (to, turning) in turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]) {
-            let w_to = if turning { value(w, to) } else { whole.place };
-            if w_to <= 0.0 && to > 0.0 {
-                let release = if w_from > 0.0 && w_to < 0.0 {
-                    bracketed(w, 0.0, (from, w_from), (to, w_to))
-                } else {
-                    to
-                };
-                (end, event) = (release, Some(Event::Release));
-                break;
-            }
-            deepest = deepest.max(w_to * w_to);
-            if turning {
-                self.turns.push(Turn {
-                    t: self.t + value(time, to),
-                    x: barrier + side.sign() * w_to * w_to,
-                });
-                if self.model.sticks() {
-                    (end, event) = (to, Some(Event::Turn));
-                    break;
-                }
-            }
-            (from, w_from) = (to, w_to);
-        }
-        // The contact never pulls: gamma + mu v stays positive.
-        if self.model.mu > 0.0 && v[0] - variation(v, end) < -self.model.gamma / self.model.mu {
-            let mut excess = [0.0; HIGHEST_ORDER + 1];
-            excess[..=order].copy_from_slice(v);
-            excess[0] = (excess[0] + self.model.gamma / self.model.mu).max(0.0);
-            if let Some(&detach) = sign_changes(&excess[..=order], end).as_slice().first()
-                && detach < end
-            {
-                (end, event) = (detach, Some(Event::Detach));
-            }
+        let (h, whole) = match last {
+            true => step.cut(remaining, self.length),
+            false => (self.length, whole),
+        };
+        let (mut end, mut event, deepest) = self.turns_and_release(&step, h, whole);
+        if let Some(detach) = self.detachment(v, end) {
+            (end, event) = (detach, Some(Event::Detach));
         }
         let energy = |u: f64| {
-            let depth = value(w, u);
-            let depth = depth * depth;
-            self.model.swing_energy(barrier + side.sign() * depth, value(v, u)) + self.model.elastic_energy(depth)
+            let depth = step.depth(u);
+            self.model.swing_energy(step.x(depth), value(v, u)) + self.model.elastic_energy(depth)
         };
-        if let Some(calm) = self.options.rest_energy
-            && energy(end) <= calm
+        if let Some(rest_energy) = self.settings.rest_energy
+            && energy(end) <= rest_energy
         {
-            end = crossing_of(|u| energy(u) - calm, 0.0, end);
-            event = Some(Event::Calm);
+            end = crossing_of(|u| energy(u) - rest_energy, 0.0, end);
+            event = Some(Event::RestEnergy);
         }
         let start = self.t;
         self.t = if last && end == h {
-            self.options.duration
+            self.settings.duration
         } else {
             start + if end == h { whole.time } else { value(time, end) }.max(0.0)
         };
-        if self.options.keep_path {
+        if self.settings.keep_path {
             self.path
                 .push_contact([start, self.t], (side, barrier), end, self.unit, [w, v, time]);
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
         }
-        let (w_end, v_end) = if end == h {
+        (self.place, self.velocity) = if end == h {
             (whole.place, whole.velocity)
         } else {
             (value(w, end), value(v, end))
         };
-        (self.place, self.velocity) = (w_end, v_end);
+        self.go_on(&step, event);
+    }
+
+    /// Notes the turning points of a step and finds where it ends by them: where, why, and the greatest depth until there.
+    fn turns_and_release(&mut self, step: &ContactStep, h: f64, whole: End) -> (f64, Option<Event>, f64) {
+        let turns = turning_points(step.v, h, whole);
+        let (mut from, mut w_from) = (0.0, step.w[0]);
+        let mut deepest = 0.0_f64;
+        for (to, turning) in turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]) {
+            let w_to = if turning { value(step.w, to) } else { whole.place };
+            if w_to <= 0.0 && to > 0.0 {
+                let release = if w_from > 0.0 && w_to < 0.0 {
+                    bracketed(step.w, 0.0, (from, w_from), (to, w_to))
+                } else {
+                    to
+                };
+                return (release, Some(Event::Release), deepest);
+            }
+            deepest = deepest.max(w_to * w_to);
+            if turning {
+                self.turns.push(Turn {
+                    t: self.t + value(step.time, to),
+                    x: step.x(w_to * w_to),
+                });
+                if self.model.sticks() {
+                    return (to, Some(Event::Turn), deepest);
+                }
+            }
+            (from, w_from) = (to, w_to);
+        }
+        (h, None, deepest)
+    }
+
+    /// Where in a step that ends at `end` the barrier would begin to pull: gamma + mu v stays positive.
+    fn detachment(&self, v: &[f64], end: f64) -> Option<f64> {
+        let Model { gamma, mu, .. } = self.model;
+        if mu <= 0.0 || v[0] - variation(v, end) >= -gamma / mu {
+            return None;
+        }
+        let mut excess = [0.0; HIGHEST_ORDER + 1];
+        let excess = &mut excess[..v.len()];
+        excess.copy_from_slice(v);
+        excess[0] = (excess[0] + gamma / mu).max(0.0);
+        let detach = sign_changes(excess, end).as_slice().first().copied();
+        detach.filter(|detach| *detach < end)
+    }
+
+    /// Goes on from the end of a step in contact, which has this w and velocity.
+    fn go_on(&mut self, step: &ContactStep, event: Option<Event>) {
+        let (w, velocity) = (self.place, self.velocity);
         if event != Some(Event::Release) {
-            self.look(barrier + side.sign() * w_end * w_end);
+            self.set_angle(step.x(w * w));
         }
         self.adapt();
         match event {
@@ -136,16 +182,16 @@ impl Runner {
                 self.turn();
             }
             Some(Event::Release) => {
-                self.place = barrier;
-                self.leave(side.sign() * v_end);
+                self.place = step.barrier;
+                self.leave(step.side.sign() * velocity);
             }
             Some(Event::Detach) => {
-                self.state = State::Detached(side);
-                self.place = barrier + side.sign() * w_end * w_end;
-                self.velocity = side.sign() * v_end;
-                self.fly_in_state();
+                self.regime = Regime::Detached(step.side);
+                self.place = step.x(w * w);
+                self.velocity = step.side.sign() * velocity;
+                self.set_flight_unit();
             }
-            Some(Event::Calm) => self.calm(),
+            Some(Event::RestEnergy) => self.end_at_rest_energy(),
             _ => {}
         }
     }
@@ -154,7 +200,7 @@ impl Runner {
     pub(super) fn touch(&mut self, side: Side, speed: f64) {
         enter(
             &mut self.impacts,
-            (&self.model, &self.options),
+            (&self.model, &self.settings),
             side,
             self.t,
             [0.0, speed],
@@ -164,7 +210,7 @@ impl Runner {
 
     /// Goes over to the equation of the contact after free flight from rest on the barrier, which has taken this time
     /// and ends at this depth and speed.
-    pub(super) fn lean(&mut self, side: Side, time: f64, [depth, speed]: [f64; 2]) {
+    pub(super) fn begin_contact_from_rest(&mut self, side: Side, time: f64, [depth, speed]: [f64; 2]) {
         let force = self.model.contact(depth, speed);
         // d ~ t^k.
         let power = 1.5 * speed * time / depth;
@@ -180,14 +226,14 @@ impl Runner {
 
     /// In contact at w with this speed inwards.
     pub(super) fn press(&mut self, side: Side, w: f64, speed: f64) {
-        self.state = State::Contact(side);
+        self.regime = Regime::Contact(side);
         let barrier = self.model.barrier(side).unwrap_or_default();
         self.place = w;
         self.velocity = speed;
-        self.look(barrier + side.sign() * w * w);
+        self.set_angle(barrier + side.sign() * w * w);
         // The time of a Hertz contact in s: its greatest depth is that at which the barrier stores all the energy,
         // v^2/2 = (2/5) gamma d^(5/2), w = sqrt(d), dw/ds = v/2.
-        let reached = (1.25 * speed * speed / self.model.gamma).powf(0.4).max(w * w);
+        let reached = hertz::greatest_depth(self.model.gamma, speed).max(w * w);
         let fastest = (speed * speed + 2.0 * self.model.elastic_energy(w * w)).sqrt();
         // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next to none.
         let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
@@ -204,7 +250,7 @@ impl Runner {
             }
         }
         self.velocity = velocity;
-        self.state = State::Free;
+        self.regime = Regime::Free;
         self.fly();
     }
 }

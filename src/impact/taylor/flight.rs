@@ -1,9 +1,9 @@
-//! Free flight: what ends a step of it, a touch at the barrier, a lean from rest into it, a turning point.
+//! Free flight: what ends a step of it, a touch at the barrier, the onset of a contact from rest on it, a turning point.
 
 use super::{Event, LIGHT, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
 use crate::impact::model::Side;
 use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
-use crate::impact::simulation::State;
+use crate::impact::simulation::Regime;
 use crate::impact::simulation::{Turn, enter};
 use crate::impact::taylor::series::{End, HIGHEST_ORDER};
 
@@ -17,20 +17,20 @@ impl Runner {
                 .is_some_and(|barrier| side.sign() * (end.place - barrier) > 0.0)
         };
         if turns
-            || self.options.keep_path
+            || self.settings.keep_path
             || self.released
-            || self.state != State::Free
+            || self.regime != Regime::Free
             || beyond(Side::Left)
             || beyond(Side::Right)
         {
             return false;
         }
         let (sine, cosine) = end.place.sin_cos();
-        if self.is_calm(end.velocity, cosine) {
+        if self.is_at_rest_energy(end.velocity, cosine) {
             return false;
         }
         self.t = if self.last {
-            self.options.duration
+            self.settings.duration
         } else {
             self.t + self.length * self.unit
         };
@@ -43,8 +43,8 @@ impl Runner {
     pub(super) fn advance_flight(&mut self, whole: End, x: &[f64], v: &[f64]) {
         let (x, v) = (&x[..=self.order], &v[..=self.order]);
         let h = self.length;
-        let (mut end, mut event) = match self.state {
-            State::Detached(side) => self.detached_event(side, x, v, h),
+        let (mut end, mut event) = match self.regime {
+            Regime::Detached(side) => self.detached_event(side, x, v, h),
             _ => self.flight_event(x, v, h, whole),
         };
         let energy = |u: f64| self.model.energy(value(x, u), value(v, u));
@@ -54,25 +54,25 @@ impl Runner {
             (value(x, end), value(v, end))
         };
         let (mut sine, mut cosine) = x_end.sin_cos();
-        if let Some(calm) = self.options.rest_energy
-            && self.is_calm(v_end, cosine)
-            && matches!(self.state, State::Free)
+        if let Some(rest_energy) = self.settings.rest_energy
+            && self.is_at_rest_energy(v_end, cosine)
+            && matches!(self.regime, Regime::Free)
         {
-            end = crossing_of(|u| energy(u) - calm, 0.0, end);
-            event = Some(Event::Calm);
+            end = crossing_of(|u| energy(u) - rest_energy, 0.0, end);
+            event = Some(Event::RestEnergy);
             (x_end, v_end) = (value(x, end), value(v, end));
             (sine, cosine) = x_end.sin_cos();
         }
         let start = self.t;
         self.t = if self.last && end == h {
-            self.options.duration
+            self.settings.duration
         } else {
             start + end * self.unit
         };
-        if self.options.keep_path {
+        if self.settings.keep_path {
             let state = match event {
-                Some(Event::Lean(side)) => State::Contact(side),
-                _ => self.state,
+                Some(Event::Onset(side)) => Regime::Contact(side),
+                _ => self.regime,
             };
             self.path.push_flight([start, self.t], state, self.unit, x, v);
         }
@@ -85,10 +85,16 @@ impl Runner {
                 self.turn();
             }
             Some(Event::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => self.touch(side, side.sign() * v_end),
-            Some(Event::Lean(side)) => {
+            Some(Event::Onset(side)) => {
                 let depth = side.sign() * rise(x, end);
-                enter(&mut self.impacts, (&self.model, &self.options), side, start, [0.0, 0.0]);
-                self.lean(side, end * self.unit, [depth, side.sign() * v_end]);
+                enter(
+                    &mut self.impacts,
+                    (&self.model, &self.settings),
+                    side,
+                    start,
+                    [0.0, 0.0],
+                );
+                self.begin_contact_from_rest(side, end * self.unit, [depth, side.sign() * v_end]);
             }
             Some(Event::Touch(side) | Event::Settle(side)) => {
                 (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
@@ -96,7 +102,7 @@ impl Runner {
             }
             Some(Event::Release) => self.leave(v_end),
             Some(Event::Reattach) => {
-                if let State::Detached(side) = self.state {
+                if let Regime::Detached(side) = self.regime {
                     let barrier = self.model.barrier(side).unwrap_or_default();
                     self.press(
                         side,
@@ -105,7 +111,7 @@ impl Runner {
                     );
                 }
             }
-            Some(Event::Calm) => self.calm(),
+            Some(Event::RestEnergy) => self.end_at_rest_energy(),
             Some(Event::Detach) => {}
         }
     }
@@ -122,7 +128,7 @@ impl Runner {
                 // At rest on the barrier: which way it goes is in the change of x alone, not in x - x_r.
                 if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
                     if sign * rise(x, to) > 0.0 {
-                        return (self.onset(side, x, v, to), Some(Event::Lean(side)));
+                        return (self.onset(side, x, v, to), Some(Event::Onset(side)));
                     }
                     continue;
                 }
@@ -193,11 +199,11 @@ impl Runner {
     }
 
     pub(super) fn fly(&mut self) {
-        self.look(self.place);
-        self.fly_in_state();
+        self.set_angle(self.place);
+        self.set_flight_unit();
     }
 
-    pub(super) fn fly_in_state(&mut self) {
+    pub(super) fn set_flight_unit(&mut self) {
         self.unit = 1.0 / self.velocity.abs().max(self.model.frequency_ratio).max(1.0);
     }
 }

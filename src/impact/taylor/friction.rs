@@ -1,7 +1,7 @@
 //! Coulomb friction at a turning point: it lets the motion go on, or holds it until the excitation tears it loose.
 
 use super::Runner;
-use crate::impact::simulation::State;
+use crate::impact::simulation::Regime;
 use crate::impact::simulation::{Stop, Turn};
 
 impl Runner {
@@ -9,7 +9,7 @@ impl Runner {
     fn force_at_rest(&self) -> f64 {
         let (t, x, _) = self.now();
         let contact = match self.side() {
-            Some((side, _)) if matches!(self.state, State::Contact(_)) => {
+            Some((side, _)) if matches!(self.regime, Regime::Contact(_)) => {
                 side.sign() * self.model.contact(self.place * self.place, 0.0)
             }
             _ => 0.0,
@@ -32,8 +32,8 @@ impl Runner {
         let (start, x, _) = self.now();
         let field = self.force_at_rest() - self.model.field(start, x) - x.sin();
         let (release, direction) = self.model.release(start, x, field).unwrap_or((f64::INFINITY, 0.0));
-        let end = release.min(self.options.duration);
-        if self.options.keep_path && end > start {
+        let end = release.min(self.settings.duration);
+        if self.settings.keep_path && end > start {
             self.path.push_rest([start, end], x);
         }
         if end > start {
@@ -41,7 +41,7 @@ impl Runner {
         }
         self.t = end;
         self.velocity = 0.0;
-        if release < self.options.duration {
+        if release < self.settings.duration {
             self.direction = direction;
             self.released = true;
         } else {

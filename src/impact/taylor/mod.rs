@@ -5,7 +5,7 @@
 //! turn:    v = 0, every change of sign in the step; between two of them x only rises or only falls
 //! touch:   x = x_r on a rising part that ends beyond it: whether there is one is decided at the turning point, where
 //!          x is known best, so grazing contacts are neither missed nor invented
-//! lean:    from rest on the barrier into it; w = 0, v = 0 is a standstill of the regularised equation, so the first
+//! onset:   from rest on the barrier into it; w = 0, v = 0 is a standstill of the regularised equation, so the first
 //!          moment is free flight, until the contact force begins to count: v - F t/(3k/2 + 1), d ~ t^k, F ~ d^(3/2)
 //! release: w = 0 on a falling part
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
@@ -26,7 +26,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
-use super::simulation::{Contact, Integrator, Options, Path, Simulation, State, Stop, Turn, enter, scaled};
+use super::simulation::{Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled};
 pub(super) use lanes::follow;
 use series::{Coefficients, End, HIGHEST_ORDER, LAST, Moment, Terms};
 use step::step_length;
@@ -40,7 +40,7 @@ const SAFETY: f64 = 0.5;
 /// The longest step in contact, in units of its own scale.
 const LONGEST_CONTACT_STEP: f64 = 64.0;
 
-/// The part of the velocity that the contact force may have taken when a motion that leans on a barrier is handed to the
+/// The part of the velocity that the contact force may have taken when a contact that begins from rest is handed to the
 /// equation of the contact: its first order is taken off then, so what is left out is the square of it.
 const LIGHT: f64 = 1e-8;
 
@@ -63,9 +63,9 @@ enum Equation {
 /// One run and where it is.
 pub(super) struct Runner {
     model: Model,
-    options: Options,
+    settings: Settings,
     order: usize,
-    state: State,
+    regime: Regime,
     t: f64,
     /// x in flight, w in contact, where it and the velocity are seen in the mirror of the side.
     place: f64,
@@ -94,21 +94,21 @@ pub(super) struct Runner {
 enum Event {
     Turn,
     Touch(Side),
-    /// Turned on the barrier and pushed in: at rest there, from where it leans.
+    /// Turned on the barrier and pushed in: at rest there, and the contact begins from rest.
     Settle(Side),
     /// From rest on the barrier into it, far enough for the contact force to begin to count.
-    Lean(Side),
+    Onset(Side),
     Release,
     /// The contact would begin to pull.
     Detach,
     /// The barrier has come back and presses again.
     Reattach,
-    Calm,
+    RestEnergy,
 }
 
 /// One motion from its start to its end.
-pub(super) fn alone(model: Model, start: Start, options: Options) -> Simulation {
-    let mut runner = Runner::new(model, start, options);
+pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulation {
+    let mut runner = Runner::new(model, start, settings);
     let mut series = Coefficients::<1>::new();
     let mut moment = Moment::<1>::new();
     let (order, terms) = (runner.order(), runner.terms());
@@ -133,13 +133,13 @@ fn order_for(tolerance: f64) -> usize {
 
 impl Runner {
     /// A run from this start, which has been checked.
-    pub(super) fn new(model: Model, start: Start, options: Options) -> Self {
-        let options = scaled(&options, &model, start);
+    pub(super) fn new(model: Model, start: Start, settings: Settings) -> Self {
+        let settings = scaled(&settings, &model, start);
         let mut runner = Self {
             model,
-            options,
-            order: order_for(options.relative_tolerance),
-            state: State::Free,
+            settings,
+            order: order_for(settings.relative_tolerance),
+            regime: Regime::Free,
             t: 0.0,
             place: start.x,
             velocity: start.velocity,
@@ -169,9 +169,9 @@ impl Runner {
         }
         if let Some((side, depth)) = model.depth(start.x) {
             let speed = side.sign() * start.velocity;
-            enter(&mut runner.impacts, (&model, &options), side, 0.0, [depth, speed]);
+            enter(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
             match model.would_pull(speed) {
-                true => runner.state = State::Detached(side),
+                true => runner.regime = Regime::Detached(side),
                 false => runner.press(side, depth.sqrt(), speed),
             }
         }
@@ -181,11 +181,11 @@ impl Runner {
                 velocity => runner.direction = velocity.signum(),
             }
         }
-        if options
+        if settings
             .rest_energy
             .is_some_and(|energy| model.energy(start.x, start.velocity) <= energy)
         {
-            runner.stop = Some(Stop::Calm);
+            runner.stop = Some(Stop::RestEnergy);
         }
         runner
     }
@@ -196,7 +196,7 @@ impl Runner {
         Simulation {
             model: self.model,
             start,
-            options: self.options,
+            settings: self.settings,
             integrator: Integrator::Taylor,
             path: self.path,
             impacts: self.impacts,
@@ -212,7 +212,7 @@ impl Runner {
     /// Time, displacement and velocity now.
     fn now(&self) -> (f64, f64, f64) {
         match self.side() {
-            Some((side, barrier)) if matches!(self.state, State::Contact(_)) => (
+            Some((side, barrier)) if matches!(self.regime, Regime::Contact(_)) => (
                 self.t,
                 barrier + side.sign() * self.place * self.place,
                 side.sign() * self.velocity,
@@ -240,21 +240,21 @@ impl Runner {
         if self.stop.is_some() {
             return None;
         }
-        if self.t >= self.options.duration {
+        if self.t >= self.settings.duration {
             self.stop = Some(Stop::Duration);
             return None;
         }
-        if self.steps >= self.options.maximum_steps {
+        if self.steps >= self.settings.maximum_steps {
             self.stop = Some(Stop::Steps { t: self.t });
             return None;
         }
-        if self.options.interrupt.is_requested() {
+        if self.settings.interrupt.is_requested() {
             self.stop = Some(Stop::Interrupted { t: self.t });
             return None;
         }
         self.steps += 1;
-        match self.state {
-            State::Contact(_) => Some(Equation::Contact),
+        match self.regime {
+            Regime::Contact(_) => Some(Equation::Contact),
             _ => Some(Equation::Flight),
         }
     }
@@ -262,8 +262,8 @@ impl Runner {
     /// Writes the present moment into one lane.
     fn moment<const L: usize>(&self, lane: usize, moment: &mut Moment<L>) {
         let model = &self.model;
-        let mirror = match self.state {
-            State::Contact(side) => side.sign(),
+        let mirror = match self.regime {
+            Regime::Contact(side) => side.sign(),
             _ => 1.0,
         };
         let arctangent = model.friction == Friction::Arctangent;
@@ -293,8 +293,8 @@ impl Runner {
     /// How far the series reaches, in its unit: from the last coefficients of the velocity. The step ends there if
     /// nothing happens before.
     fn reach(&mut self, last: [f64; LAST]) -> f64 {
-        let tolerance = &self.options;
-        if matches!(self.state, State::Contact(_)) {
+        let tolerance = &self.settings;
+        if matches!(self.regime, Regime::Contact(_)) {
             let entry = self.impacts.last().map_or(0.0, |impact| impact.speed_in);
             let size = entry.max(self.velocity.abs()).max(tolerance.absolute_tolerance);
             let allowed = SAFETY * (tolerance.relative_tolerance * size + tolerance.absolute_tolerance);
@@ -310,7 +310,7 @@ impl Runner {
             .max(tolerance.absolute_tolerance);
         let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
         self.proposed = step_length(size, allowed, last, self.order);
-        let remaining = self.options.duration - self.t;
+        let remaining = self.settings.duration - self.t;
         let length = self.proposed.min(LONGEST_STEP / self.unit);
         self.last = length * self.unit >= remaining;
         self.length = if self.last { remaining / self.unit } else { length };
@@ -325,7 +325,7 @@ impl Runner {
             self.stop = Some(Stop::NotFinite { t: self.t });
             return;
         }
-        let contact = self.side().filter(|_| matches!(self.state, State::Contact(_)));
+        let contact = self.side().filter(|_| matches!(self.regime, Regime::Contact(_)));
         if contact.is_none() && !self.last && self.t + self.length * self.unit <= self.t {
             self.stop = Some(Stop::StepTooSmall { t: self.t });
             return;
@@ -352,28 +352,28 @@ impl Runner {
     }
 
     /// Whether the swing alone has no more than the rest energy.
-    fn is_calm(&self, velocity: f64, cosine: f64) -> bool {
-        self.options
+    fn is_at_rest_energy(&self, velocity: f64, cosine: f64) -> bool {
+        self.settings
             .rest_energy
-            .is_some_and(|calm| 0.5 * velocity * velocity + (1.0 - cosine) <= calm)
+            .is_some_and(|rest_energy| 0.5 * velocity * velocity + (1.0 - cosine) <= rest_energy)
     }
 
     fn side(&self) -> Option<(Side, f64)> {
-        match self.state {
-            State::Contact(side) | State::Detached(side) => Some((side, self.model.barrier(side)?)),
+        match self.regime {
+            Regime::Contact(side) | Regime::Detached(side) => Some((side, self.model.barrier(side)?)),
             _ => None,
         }
     }
 
     /// Ends the run where it is; turning points noted in the rest of the step are no longer part of it.
-    fn calm(&mut self) {
-        self.stop = Some(Stop::Calm);
+    fn end_at_rest_energy(&mut self) {
+        self.stop = Some(Stop::RestEnergy);
         while self.turns.last().is_some_and(|turn| turn.t > self.t) {
             self.turns.pop();
         }
     }
 
-    fn look(&mut self, x: f64) {
+    fn set_angle(&mut self, x: f64) {
         (self.sine, self.cosine) = x.sin_cos();
     }
 
@@ -381,7 +381,7 @@ impl Runner {
     fn adapt(&mut self) {
         let proposed = self.proposed;
         if !(0.125..=8.0).contains(&proposed) && proposed.is_finite() {
-            let in_contact = matches!(self.state, State::Contact(_));
+            let in_contact = matches!(self.regime, Regime::Contact(_));
             let unit = self.unit * proposed.min(LONGEST_CONTACT_STEP);
             if unit > 0.0 && (unit <= LONGEST_STEP || in_contact && unit.is_finite()) {
                 self.unit = unit;

@@ -14,14 +14,15 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero;
 
-use crate::decimal::{decimal, rounded, rounded_to};
+use crate::decimal::{rounded, rounded_to};
 use crate::exact::Rational;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::oscillator::{Equilibria, Oscillator, OscillatorError, Others};
 use crate::series::taylor::taylor;
 use crate::solution::Definition;
+use crate::solution::note::Position;
 use crate::symbol::{Symbol, fresh};
 use search::{Zero as SignChange, polynomial_zeros, zeros};
 use shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved, value_at};
@@ -99,7 +100,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
             (None, false) => Err(OscillatorError::BeyondPole {
                 force: force.at_rest(&at_zero),
                 coordinate: position,
-                stable: force.stable_texts(),
+                stable: force.stable_equilibria(),
             }),
         };
     }
@@ -155,8 +156,9 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
     const ROUNDING: f64 = 1e-3;
     let force = Force::new(still, oscillator.coordinate);
     let none_there = || OscillatorError::NoSuchEquilibrium {
-        position: format!("{} = {asked}", oscillator.coordinate),
-        stable: force.stable_texts(),
+        coordinate: oscillator.coordinate,
+        asked: asked.clone(),
+        stable: force.stable_equilibria(),
     };
     let exact = value_at(still, oscillator.coordinate, asked).is_ok_and(|value| value.is_zero());
     if exact {
@@ -350,20 +352,20 @@ impl<'a> Force<'a> {
     fn unstable(&self) -> OscillatorError {
         OscillatorError::Unstable {
             coordinate: self.coordinate,
-            stable: self.stable_texts(),
+            stable: self.stable_equilibria(),
         }
     }
 
-    /// The stable equilibria as text: the nearest few, and the period with which they come back.
-    fn stable_texts(&self) -> Vec<String> {
+    /// The stable equilibria: the nearest few, and the period with which they come back.
+    fn stable_equilibria(&self) -> Equilibria {
         const MOST: usize = 4;
         if self.value.is_none() {
             let forms = closed_forms(self.force, self.coordinate);
-            return self
-                .stable_at(&forms, 1.0)
-                .into_iter()
-                .map(|(_, form)| form.to_string())
-                .collect();
+            let stable = self.stable_at(&forms, 1.0).into_iter();
+            return Equilibria {
+                positions: stable.map(|(_, form)| Position::Exact(form)).collect(),
+                others: None,
+            };
         }
         let period = self.period();
         let half = period
@@ -375,19 +377,18 @@ impl<'a> Force<'a> {
         let more = positions.len() > MOST;
         positions.truncate(MOST);
         positions.sort_by(f64::total_cmp);
-        let text = |position: &f64| match exact_zero(self.force, self.coordinate, *position) {
-            Some(exact) if exact.to_string().len() <= 12 => exact.to_string(),
-            _ => decimal(*position),
+        let named = |position: f64| match exact_zero(self.force, self.coordinate, position) {
+            Some(exact) if exact.to_string().len() <= 12 => Position::Exact(exact),
+            _ => Position::Number(position),
         };
-        let mut texts: Vec<String> = positions.iter().map(text).collect();
-        if let Some(last) = texts.last_mut() {
-            match period {
-                Some(period) => last.push_str(&format!(", and again every {period}")),
-                None if more => last.push_str(" and farther out"),
-                None => {}
-            }
+        let others = match period {
+            Some(period) => Some(Others::Every(period)),
+            None => more.then_some(Others::FartherOut),
+        };
+        Equilibria {
+            others: others.filter(|_| !positions.is_empty()),
+            positions: positions.into_iter().map(named).collect(),
         }
-        texts
     }
 
     /// The period of a force of angles, by trying those of its sines and cosines.
@@ -700,7 +701,7 @@ mod tests {
     #[test]
     fn unstable_and_missing_ones_are_refused() {
         let stable = |text: &str| match position(text) {
-            Err(OscillatorError::Unstable { stable, .. }) => stable.join(", "),
+            Err(OscillatorError::Unstable { stable, .. }) => stable.to_string(),
             other => panic!("{text}: {other:?}"),
         };
         assert_eq!(stable("x'' - x + x^3"), "-1, 1");

@@ -9,6 +9,7 @@
 //! `omega0^2 x`, where `delta` is a parameter of the equation or the amplitude itself.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 use num_traits::Zero;
 
@@ -16,7 +17,8 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Equation, Expr, ExprError, ParseError, Typed, parse_equation};
 use crate::series::taylor::{TaylorError, taylor};
-use crate::solution::Definition;
+use crate::solution::note::Position;
+use crate::solution::{Advice, AmplitudeConvention, Definition, Method, Setting};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// An equation of motion `x'' + force = 0` for one coordinate.
@@ -108,8 +110,8 @@ pub enum OscillatorError {
     NoEquilibrium(String),
     /// There is a force at rest, and stable equilibria only where no motion from rest leads.
     #[error(
-        "the force at rest is `{force}`, not zero, and no stable equilibrium was found before the force has a pole or ends; beyond there {}",
-        beyond(stable)
+        "the force at rest is `{force}`, not zero, and no stable equilibrium was found before the force has a pole or ends; beyond there {} {stable}",
+        if stable.positions.len() == 1 { "is one at" } else { "are some at" }
     )]
     BeyondPole {
         /// The force at rest.
@@ -117,30 +119,32 @@ pub enum OscillatorError {
         /// The coordinate.
         coordinate: Symbol,
         /// The stable equilibria beyond.
-        stable: Vec<String>,
+        stable: Equilibria,
     },
     /// The equilibrium depends on parameters.
     #[error("the force at rest is `{0}`, so the equilibrium depends on parameters")]
     SymbolicEquilibrium(String),
     /// The equilibrium `x = 0` is unstable.
-    #[error("{coordinate} = 0 is an unstable equilibrium{}", stable_ones(coordinate, .stable))]
+    #[error("{coordinate} = 0 is an unstable equilibrium{}", stable_ones(*coordinate, .stable))]
     Unstable {
         /// The coordinate.
         coordinate: Symbol,
         /// Those that are stable.
-        stable: Vec<String>,
+        stable: Equilibria,
     },
     /// What was asked for is no stable equilibrium.
-    #[error("{position} is no stable equilibrium{}", stable_ones(&position[..1], .stable))]
+    #[error("{coordinate} = {asked} is no stable equilibrium{}", stable_ones(*coordinate, .stable))]
     NoSuchEquilibrium {
-        /// As it was asked for: `x = 1`.
-        position: String,
+        /// The coordinate.
+        coordinate: Symbol,
+        /// What was asked for.
+        asked: Expr,
         /// Those that are stable.
-        stable: Vec<String>,
+        stable: Equilibria,
     },
     /// No linear restoring force.
     #[error("the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0")]
-    NoRestoringForce(String),
+    NoRestoringForce(Expr),
     /// A term that does not vanish with the small parameter.
     #[error("the term `{term}` does not vanish with the small parameter `{small}`")]
     NotSmall {
@@ -163,15 +167,40 @@ pub enum OscillatorError {
     UnknownParameter(Symbol),
 }
 
-fn beyond(stable: &[String]) -> String {
-    let verb = if stable.len() == 1 { "is one at" } else { "are some at" };
-    format!("{verb} {}", stable.join(", "))
+/// The stable equilibria of a force, as many as a message names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibria {
+    /// Where they are; those without a short closed form by their numbers.
+    pub positions: Vec<Position>,
+    /// Where there are others.
+    pub others: Option<Others>,
 }
 
-fn stable_ones(coordinate: impl std::fmt::Display, positions: &[String]) -> String {
-    match positions.is_empty() {
+/// Where there are more equilibria than a message names.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Others {
+    /// Again after each period of the force.
+    Every(Expr),
+    /// Farther from rest.
+    FartherOut,
+}
+
+impl fmt::Display for Equilibria {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let positions: Vec<String> = self.positions.iter().map(ToString::to_string).collect();
+        formatter.write_str(&positions.join(", "))?;
+        match &self.others {
+            Some(Others::Every(period)) => write!(formatter, ", and again every {period}"),
+            Some(Others::FartherOut) => formatter.write_str(" and farther out"),
+            None => Ok(()),
+        }
+    }
+}
+
+fn stable_ones(coordinate: Symbol, stable: &Equilibria) -> String {
+    match stable.positions.is_empty() {
         true => ", and no stable one was found".to_owned(),
-        false => format!("; stable ones are at {coordinate} = {}", positions.join(", ")),
+        false => format!("; stable ones are at {coordinate} = {stable}"),
     }
 }
 
@@ -185,29 +214,42 @@ fn list(symbols: &[Symbol]) -> String {
 
 impl OscillatorError {
     /// What to try, where something is worth trying.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::AmbiguousSmallParameter(candidates) => {
-                Some(format!("choose one with `--small {}`", candidates.first()?))
-            }
-            Self::NotSmall { .. } => Some("expand in the amplitude instead: `--small A`".to_owned()),
+    pub fn help(&self) -> Option<Advice> {
+        let either = |words: &str, [first, second]: [Method; 2]| {
+            let first = Advice::words(words).choose(Setting::Method(first));
+            first.then("` or `").choose(Setting::Method(second)).then("`")
+        };
+        Some(match self {
+            Self::AmbiguousSmallParameter(candidates) => Advice::words("choose one with `")
+                .choose(Setting::Small(*candidates.first()?))
+                .then("`"),
+            Self::NotSmall { .. } => Advice::words("expand in the amplitude instead: `")
+                .choose(Setting::Small(AmplitudeConvention::Initial.symbol()))
+                .then("`"),
             Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. }) if !term.contains('\'') => {
-                Some("take the force as it is: `--method hamiltonian` or `--method harmonic-balance`".to_owned())
+                either(
+                    "take the force as it is: `",
+                    [Method::Hamiltonian, Method::HarmonicBalance],
+                )
             }
-            Self::NoRestoringForce(term) if term == "0" => Some(
-                "methods that need no linear part: `--method parameter-expansion` or `--method harmonic-balance`"
-                    .to_owned(),
+            Self::NoRestoringForce(force) if force.is_zero() => either(
+                "methods that need no linear part: `",
+                [Method::ParameterExpansion, Method::HarmonicBalance],
             ),
             Self::SymbolicEquilibrium(_) => {
-                Some("give numbers for the parameters, or measure x from the equilibrium".to_owned())
+                Advice::words("give numbers for the parameters, or measure x from the equilibrium")
             }
             Self::Unstable { coordinate, stable } | Self::BeyondPole { coordinate, stable, .. } => {
-                let positive = stable.iter().find(|position| !position.starts_with('-'));
-                let position = positive.or(stable.first())?.split(&[',', ' ']).next()?;
-                Some(format!("choose one with `--about {coordinate}={position}`"))
+                let positions = &stable.positions;
+                let positive = positions.iter().find(|position| !position.is_negative());
+                let setting = Setting::About {
+                    coordinate: *coordinate,
+                    position: positive.or(positions.first())?.clone(),
+                };
+                Advice::words("choose one with `").choose(setting).then("`")
             }
-            _ => None,
-        }
+            _ => return None,
+        })
     }
 }
 
@@ -437,9 +479,8 @@ impl Oscillator {
     pub fn expand(&self, small: SmallParameter, order: u32) -> Result<PerturbedForce, OscillatorError> {
         let force = self.expand_with_any_stiffness(small, order)?;
         if force.lacks_restoring_force() {
-            return Err(OscillatorError::NoRestoringForce(
-                (&force.linear_in_full() * &Expr::from(self.coordinate)).to_string(),
-            ));
+            let linear = &force.linear_in_full() * &Expr::from(self.coordinate);
+            return Err(OscillatorError::NoRestoringForce(linear));
         }
         Ok(force)
     }

@@ -2,6 +2,7 @@
 //!
 //! A formula without its amplitude convention, order and validity is half a formula, so all of them travel together.
 
+mod advice;
 mod branch;
 mod law;
 mod method;
@@ -12,6 +13,7 @@ use std::fmt;
 
 use num_traits::{One, Signed};
 
+pub use advice::{Advice, Setting};
 pub use branch::Branch;
 pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};

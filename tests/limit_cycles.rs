@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use lindstedt::Values;
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::parse_expression;
-use lindstedt::method::{Options, Refusal, solve};
+use lindstedt::method::{Options, Refusal, Unsuited, solve};
 use lindstedt::solution::Solution;
 use lindstedt::verify::{Verdict, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
@@ -362,7 +362,13 @@ fn without_a_balance_there_is_no_cycle() {
         "x'' + 2*zeta*x' + x + eps*x^3",
     ] {
         assert!(
-            matches!(refused(equation), Refusal::Damping { .. }),
+            matches!(
+                refused(equation),
+                Refusal::Unsuited {
+                    reason: Unsuited::Damping { .. },
+                    ..
+                }
+            ),
             "{equation}: {}",
             refused(equation)
         );

@@ -140,7 +140,9 @@ fn residual(solution: &Solution, unit: &Expr, numbers: &Numbers, small: (&str, f
     let squared = &value_of("omega0^2", &lines) * &(Expr::one() + sum("W", 1));
     let omega = squared.evaluate(&numbers).expect("a number").sqrt();
     let (velocity, acceleration) = (derivative(&motion), derivative(&derivative(&motion)));
-    let force = Oscillator::parse(&solution.equation).expect("an equation").force;
+    let force = Oscillator::from_equation(&solution.equation)
+        .expect("an equation")
+        .force;
     let defect = |theta: f64| {
         let mut at_theta = numbers.clone();
         at_theta.insert("x".into(), at(&motion, &numbers, theta));

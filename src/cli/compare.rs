@@ -40,11 +40,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if small.is_some() {
         oscillator
             .small_parameter(small)
-            .map_err(|error| Failure::refused(&error, error.help()))?;
+            .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(|error| match &error {
-        comparison::ComparisonError::NoMethod(reason) => Failure::refused(&error, reason.help()),
+        comparison::ComparisonError::NoMethod(refused) => {
+            Failure::advised(&error, refused.first().and_then(|first| first.reason.help()))
+        }
         comparison::ComparisonError::Verification(verify::VerificationError::Missing(names)) => {
             let example: Vec<String> = names.iter().map(|name| format!("--at {name}=...")).collect();
             Failure::refused(&error, Some(format!("add {}", example.join(" "))))

@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if options.small.is_some() {
         oscillator
             .small_parameter(options.small.as_deref())
-            .map_err(|error| Failure::refused(&error, error.help()))?;
+            .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
@@ -175,12 +175,11 @@ fn solve_at(
     match (method::solve(&oscillator, options), values) {
         (Ok(solution), values) => Ok((oscillator, values, solution)),
         (Err(Refusal::LimitCycle { equation, .. }), Some(values)) => {
-            let names: Vec<Symbol> =
-                parse_expression(&equation).map_or_else(|_| vec![], |it| it.symbols().into_iter().collect());
+            let names: Vec<Symbol> = equation.symbols().into_iter().collect();
             let (known, rest) = values.split(&names);
             let oscillator = oscillator
                 .with_values(&known)
-                .map_err(|error| Failure::refused(&error, error.help()))?;
+                .map_err(|error| Failure::advised(&error, error.help()))?;
             let solution = method::solve(&oscillator, options).map_err(|refusal| refused(&oscillator, &refusal))?;
             Ok((oscillator, Some(rest), solution))
         }
@@ -192,7 +191,7 @@ fn solve_at(
 fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     let place = refusal.term().and_then(|term| oscillator.typed.place(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
-    Failure::refused(&format!("{refusal}{shown}"), refusal.help())
+    Failure::advised(&format!("{refusal}{shown}"), refusal.help())
 }
 
 /// The oscillator of a problem that has an equation, about the equilibrium asked for.
@@ -202,7 +201,7 @@ pub(super) fn oscillator(problem: &Problem, about: Option<&str>) -> Result<Oscil
             "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
         ));
     };
-    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::refused(&error, error.help()))?;
+    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::advised(&error, error.help()))?;
     let Some(about) = about.or(problem.about.as_deref()) else {
         return Ok(oscillator);
     };
@@ -233,7 +232,7 @@ pub(super) fn with_known_equilibrium(
     };
     let (known, rest) = given.split(&oscillator.parameters);
     let numerical = equilibrium::with_numbers_where_needed(&oscillator, &known)
-        .map_err(|error| Failure::refused(&error, error.help()))?;
+        .map_err(|error| Failure::advised(&error, error.help()))?;
     Ok(match numerical {
         Some(numerical) => (numerical, Some(rest)),
         None => (oscillator, Some(given)),

@@ -22,6 +22,7 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use lindstedt::problem::LARGEST_FILE;
+use lindstedt::solution::{Advice, Setting};
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
 use serde::Serialize;
 
@@ -115,6 +116,26 @@ impl Failure {
             None => error.to_string(),
         })
     }
+
+    /// A refusal with the advice of the library.
+    fn advised(error: &impl Display, advice: Option<Advice>) -> Self {
+        Self::refused(error, advice.as_ref().map(in_flags))
+    }
+}
+
+/// Advice of the library with its options as they are typed here.
+fn in_flags(advice: &Advice) -> String {
+    advice.spelt(|setting| match setting {
+        Setting::Method(method) => format!("--method {}", method.name()),
+        Setting::Order(order) => format!("--order {order}"),
+        Setting::Degrees(above, below) => format!("--order {above},{below}"),
+        Setting::Amplitude(convention) => format!("--amplitude {}", convention.name()),
+        Setting::Small(name) => format!("--small {name}"),
+        Setting::Taylor => "--taylor DEGREE".to_owned(),
+        Setting::About { coordinate, position } => format!("--about {coordinate}={position}"),
+        Setting::Values => "--at".to_owned(),
+        other => other.to_string(),
+    })
 }
 
 /// Writes a result to where it is to go.

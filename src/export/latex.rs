@@ -286,7 +286,10 @@ pub fn comparison(comparison: &Comparison) -> String {
         "% {}; true omega = {}\n\\begin{{tabular}}{{lrrrl}}\n\\hline\n",
         comparison.equation,
         comparison.true_frequency.map_or_else(
-            || format!("not known: {}", comparison.reason.as_deref().unwrap_or_default()),
+            || format!(
+                "not known: {}",
+                comparison.reason.as_ref().map(ToString::to_string).unwrap_or_default()
+            ),
             decimal
         )
     );

@@ -189,9 +189,16 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     };
     line(
         "omega",
-        verification
-            .frequency
-            .map_or_else(|| verification.reason.clone().unwrap_or_default(), decimal),
+        verification.frequency.map_or_else(
+            || {
+                verification
+                    .reason
+                    .as_ref()
+                    .map(ToString::to_string)
+                    .unwrap_or_default()
+            },
+            decimal,
+        ),
     );
     line("true omega", decimal(verification.true_frequency));
     if let Some(error) = verification.relative_error {

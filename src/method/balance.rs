@@ -47,7 +47,7 @@ pub struct Balance {
 pub enum Lost {
     /// The branch never reaches the amplitude.
     #[error(
-        "no balance: followed from rest, the motion of these harmonics ends at A = {}; another --order may reach farther",
+        "no balance: followed from rest, the motion of these harmonics ends at A = {}; another order may reach farther",
         significant(*amplitude, 6)
     )]
     Ends {

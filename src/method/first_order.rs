@@ -21,7 +21,7 @@
 use num_traits::Zero;
 
 use super::one_term::{integral_law, note_even_part, set_law, shared_integral, unsolved};
-use super::{Options, Refusal};
+use super::{Options, Refusal, Refuser, Unsuited};
 use crate::derivation::Line;
 use crate::exact::Rational;
 use crate::expr::Expr;
@@ -31,7 +31,6 @@ use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
 /// What refusals call it.
-const TITLE: &str = "the first order of a force that is no polynomial";
 
 /// The answer to first order in `small`; `None` where the equation is not conservative, not linear without `small`, or its
 /// projection has no closed form.
@@ -55,15 +54,12 @@ pub(super) fn solve(
         return Ok(None);
     };
     if order > 1 {
-        return Err(Refusal::PolynomialOnly {
-            method: Method::LindstedtPoincare.title(),
-            force: (&force - &force.substitute(small, &Expr::zero())?)
-                .expand()?
-                .to_string(),
-        });
+        let force = (&force - &force.substitute(small, &Expr::zero())?).expand()?;
+        let force = force.to_string();
+        return Err(Unsuited::PolynomialOnly { force }.to(Method::LindstedtPoincare));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention { method: TITLE });
+        return Err(Unsuited::Convention.by(Refuser::FirstOrder));
     }
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;
@@ -142,12 +138,12 @@ mod tests {
     #[test]
     fn what_the_first_order_cannot_is_refused_with_a_way_forward() {
         for (text, order, way) in [
-            ("x'' + x + eps*sin(x) = 0", 2, "--order 1"),
-            ("x'' + x + eps*tan(x) = 0", 1, "--method"),
-            ("x'' + x + sin(x) + eps*abs(x)*x = 0", 1, "--method"),
+            ("x'' + x + eps*sin(x) = 0", 2, "order 1"),
+            ("x'' + x + eps*tan(x) = 0", 1, "method"),
+            ("x'' + x + sin(x) + eps*abs(x)*x = 0", 1, "method"),
         ] {
             let refusal = solve(&Oscillator::parse(text).unwrap(), &options(order)).unwrap_err();
-            let help = refusal.help().unwrap_or_default();
+            let help = refusal.help().expect(text).to_string();
             assert!(help.contains(way), "{text}: {refusal} {help}");
         }
         let first_harmonic = Options {
@@ -157,7 +153,10 @@ mod tests {
         let oscillator = Oscillator::parse("x'' + x + eps*sin(x) = 0").unwrap();
         assert!(matches!(
             solve(&oscillator, &first_harmonic),
-            Err(Refusal::Convention { .. })
+            Err(Refusal::Unsuited {
+                reason: Unsuited::Convention,
+                ..
+            })
         ));
     }
 }

@@ -25,7 +25,7 @@ use num_traits::{One, Zero};
 
 use super::iteration_perturbation::{horner, polynomial_coefficients};
 use super::one_term::{conservative_force, integral_law, set_law, shared_integral, unsolved};
-use super::{Options, Refusal};
+use super::{Options, Refusal, Unsuited};
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
@@ -53,10 +53,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > MOST_HARMONICS {
-        return Err(Refusal::HighestOrder {
-            method: METHOD.title(),
+        return Err(Unsuited::HighestOrder {
             highest: MOST_HARMONICS,
-        });
+        }
+        .to(METHOD));
     }
     let odd = is_odd(&force, oscillator.coordinate)?;
     let mut solution = unsolved(oscillator, options, METHOD, order);

@@ -26,7 +26,7 @@ use num_traits::One;
 
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::secular::SecularError;
-use super::{Options, Refusal};
+use super::{Options, Refusal, Unsuited};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
@@ -66,10 +66,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     conservative_force(oscillator, options, METHOD)?;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > HIGHEST {
-        return Err(Refusal::HighestOrder {
-            method: METHOD.title(),
-            highest: HIGHEST,
-        });
+        return Err(Unsuited::HighestOrder { highest: HIGHEST }.to(METHOD));
     }
     let polynomial = oscillator.polynomial_degree()?;
     let degree = match polynomial {

@@ -28,7 +28,7 @@ use super::expansion::expand_exactly;
 use super::inertia::VariableMass;
 use super::one_term::conservative_force;
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
-use super::{Options, Refusal};
+use super::{Options, Refusal, Unsuited};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -57,7 +57,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     if !moving {
         conservative_force(oscillator, options, METHOD)?;
     } else if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention { method: METHOD.title() });
+        return Err(Unsuited::Convention.to(METHOD));
     }
     let order = options.order.unwrap_or(2);
     let degree = match oscillator.polynomial_degree()? {

@@ -28,7 +28,7 @@ use super::energy_balance::positive_amplitude;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
 use super::table::Entry;
-use super::{Options, Refusal};
+use super::{Options, Refusal, Unsuited};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::potential::potential;
@@ -170,9 +170,7 @@ pub(super) fn solve(entry: &Entry, oscillator: &Oscillator, options: &Options) -
         return Ok(None);
     };
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention {
-            method: entry.method.title(),
-        });
+        return Err(Unsuited::Convention.to(entry.method));
     }
     (approach.solve)(&moving, oscillator, options).map(Some)
 }
@@ -452,10 +450,7 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
     const WRITTEN_OUT: usize = 6;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > HIGHEST {
-        return Err(Refusal::HighestOrder {
-            method: METHOD.title(),
-            highest: HIGHEST,
-        });
+        return Err(Unsuited::HighestOrder { highest: HIGHEST }.to(METHOD));
     }
     let x = oscillator.coordinate;
     let odd = moving.is_odd(oscillator)?;

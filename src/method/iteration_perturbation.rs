@@ -24,7 +24,7 @@ use num_traits::{One, Zero};
 use super::one_term::{
     conservative_force, cosine, first_projection, law_of, note_even_part_last, solve_by_integral, unsolved,
 };
-use super::{Options, Refusal};
+use super::{Options, Refusal, Unsuited};
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
@@ -55,10 +55,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let passes = options.order.unwrap_or(1);
     if passes > MOST_PASSES {
-        return Err(Refusal::HighestOrder {
-            method: METHOD.title(),
-            highest: MOST_PASSES,
-        });
+        return Err(Unsuited::HighestOrder { highest: MOST_PASSES }.to(METHOD));
     }
     if passes > 1 {
         return iterated(oscillator, options, &force, passes);
@@ -130,9 +127,11 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
 /// Several passes for a polynomial force: an implicit relation in even powers of omega.
 fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u32) -> Result<Solution, Refusal> {
     let (omega, amplitude) = (Symbol::new("omega"), Symbol::new("A"));
-    let not_polynomial = || Refusal::PolynomialOnly {
-        method: METHOD.title(),
-        force: force.to_string(),
+    let not_polynomial = || {
+        Unsuited::PolynomialOnly {
+            force: force.to_string(),
+        }
+        .to(METHOD)
     };
     let coefficients = polynomial_coefficients(oscillator, force)?.ok_or_else(not_polynomial)?;
     // Every pass multiplies the number of harmonics by the degree.

@@ -90,11 +90,11 @@ impl AmplitudeEquation {
     }
 
     /// The equation in `z`, for messages.
-    pub fn text(&self, z: Symbol) -> String {
+    pub fn in_square(&self, z: Symbol) -> Polynomial {
         let term =
             |(k, coefficient): (usize, &Polynomial)| coefficient.times_monomial(&Monomial::power_of(z, k as i32));
         let terms = self.rest.iter().enumerate().map(term);
-        terms.fold(Polynomial::zero(), |sum, term| sum + term).to_string()
+        terms.fold(Polynomial::zero(), |sum, term| sum + term)
     }
 
     /// The secular sine of the first order, which vanishes at the amplitude `unknown` of the cycle.

@@ -31,7 +31,7 @@ use super::expansion::expand_exactly;
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
 use super::secular::{Amplitude, Detuning, Normalisation, Scheme, SecularError, bounded};
-use super::{Options, Refusal, first_order, first_term};
+use super::{Options, Refusal, Refuser, Unsuited, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
@@ -41,8 +41,6 @@ use crate::series::taylor::TaylorError;
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
-const TITLE: &str = "the method of Lindstedt and Poincare";
-
 /// Derives frequency and motion as power series in the small parameter.
 ///
 /// # Errors
@@ -50,10 +48,8 @@ const TITLE: &str = "the method of Lindstedt and Poincare";
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        return Err(Refusal::Forcing {
-            method: TITLE,
-            term: first_term(&parts.forcing),
-        });
+        let term = first_term(&parts.forcing);
+        return Err(Unsuited::Forcing { term }.by(Refuser::Expansion));
     }
     let Perturbation {
         force,
@@ -99,7 +95,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             let cycles = equation
                 .cycles(marker.unwrap_or(small), &linear_frequency, &taken)
                 .map_err(|reason| {
-                    let equation = equation.text(fresh("z", &taken));
+                    let equation = equation.in_square(fresh("z", &taken));
                     Refusal::LimitCycle { equation, reason }
                 })?;
             if marker.is_none() {
@@ -108,12 +104,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 });
             }
             let number = chosen(&cycles, options.cycle, || match equation.is_single_term() {
-                true => Refusal::Damping {
-                    method: TITLE,
-                    term: first_term(&parts.damping),
-                },
+                true => damped(&parts),
                 false => Refusal::NoLimitCycle {
-                    equation: equation.text(fresh("z", &taken)),
+                    equation: equation.in_square(fresh("z", &taken)),
                 },
             })?;
             Some((cycles, number))
@@ -131,7 +124,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     ) = (cycle, &equation)
     {
         return Err(Refusal::LimitCycle {
-            equation: equation.text(fresh("z", &taken)),
+            equation: equation.in_square(fresh("z", &taken)),
             reason: "a multiple root: no expansion in powers begins there",
         });
     }
@@ -327,7 +320,7 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
         Err(OscillatorError::NotSmall { term, .. })
             if parts.damping.terms().iter().any(|part| part.to_string() == term) =>
         {
-            return Err(Refusal::Damping { method: TITLE, term });
+            return Err(Unsuited::Damping { term }.by(Refuser::Expansion));
         }
         // |x'| x', a dry friction and their like damp whether or not they have a series.
         Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(TaylorError::NotAnalytic { .. }))
@@ -379,13 +372,15 @@ fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
     AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency(&[]).0))
 }
 
+fn damped(parts: &Parts) -> Refusal {
+    let term = first_term(&parts.damping);
+    Unsuited::Damping { term }.by(Refuser::Expansion)
+}
+
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
 fn damping_or_excitation(parts: &Parts) -> Refusal {
     match parts.damping.terms() {
-        [_] => Refusal::Damping {
-            method: TITLE,
-            term: first_term(&parts.damping),
-        },
+        [_] => damped(parts),
         _ => Refusal::AmplitudeNotFree {
             term: first_term(&parts.damping),
         },
@@ -440,10 +435,8 @@ mod tests {
             ("x'' + x + c*x'^(1/3) = 0", "c*x'^(1/3)"),
         ] {
             let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
-            let expected = Refusal::Damping {
-                method: TITLE,
-                term: term.to_owned(),
-            };
+            let term = term.to_owned();
+            let expected = Unsuited::Damping { term }.by(Refuser::Expansion);
             assert_eq!(refusal, expected, "{equation}");
         }
     }

@@ -33,17 +33,18 @@ pub(crate) mod variational_iteration;
 pub use harmonic_balance::MOST_HARMONICS;
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use num_traits::Zero;
 use table::{Choice, Entry, that_take};
 
 use crate::equilibrium::{Centred, centred};
 use crate::exact::{POLYNOMIALS, Polynomial};
-use crate::expr::{Expr, ExprError, parse_expression};
+use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
-use crate::solution::{AmplitudeConvention, Method, Note, Solution, note::Position};
+use crate::solution::{Advice, AmplitudeConvention, Method, Note, Setting, Solution, note::Position};
 use crate::symbol::Symbol;
 
 /// The highest order any method accepts.
@@ -77,35 +78,13 @@ pub enum Refusal {
     /// The equation is no oscillator, or cannot be expanded.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
-    /// Terms that take energy out, so that no motion repeats.
-    #[error("{method} needs a periodic motion, but the term `{term}` damps it")]
-    Damping {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The damping term.
-        term: String,
-    },
-    /// Terms that drive the motion in time.
-    #[error("{method} is for free vibrations, but the term `{term}` drives the motion")]
-    Forcing {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The forcing term.
-        term: String,
-    },
-    /// Terms with velocities, in a method for forces of position alone.
-    #[error("{method} is for forces of the position alone, but `{term}` depends on the velocity")]
-    Velocity {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The term.
-        term: String,
-    },
-    /// A method that measures the amplitude in one way only.
-    #[error("{method} measures the amplitude as A = x(0)")]
-    Convention {
-        /// The method's name in running text.
-        method: &'static str,
+    /// The method is not for this equation, or not for what was asked of it.
+    #[error("{refuser} {reason}")]
+    Unsuited {
+        /// The method.
+        refuser: Refuser,
+        /// Why not.
+        reason: Unsuited,
     },
     /// A self-excited oscillator whose amplitude the equation determines, asked for in powers of that amplitude.
     #[error("the term `{term}` feeds or drains energy, so the amplitude is not free and nothing can be expanded in it")]
@@ -117,7 +96,7 @@ pub enum Refusal {
     #[error("the amplitude of the limit cycle follows from `{equation} = 0`, {reason}")]
     LimitCycle {
         /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z of its own.
-        equation: String,
+        equation: Polynomial,
         /// Why that is not possible.
         reason: &'static str,
     },
@@ -125,7 +104,7 @@ pub enum Refusal {
     #[error("no limit cycle to first order: `{equation} = 0` has no positive root z = amplitude^2")]
     NoLimitCycle {
         /// The polynomial in z.
-        equation: String,
+        equation: Polynomial,
     },
     /// A limit cycle that the equation does not have.
     #[error("there is no limit cycle number {asked}: the equation has {count} to leading order")]
@@ -138,48 +117,6 @@ pub enum Refusal {
     /// The periodic expansion breaks down.
     #[error("no periodic expansion: {0}")]
     Secular(#[from] secular::SecularError),
-    /// An even part of the force, in a method for odd forces.
-    #[error("{method} is for forces with f(-x) = -f(x), but `{term}` is not odd")]
-    NotOdd {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The even term.
-        term: String,
-    },
-    /// As [`Refusal::NotOdd`], about an equilibrium that is not zero.
-    #[error("{method} is for forces that are odd about the equilibrium, but `{term}` is not odd about {position}")]
-    NotOddAbout {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The term.
-        term: String,
-        /// The equilibrium, `x = 1`.
-        position: String,
-    },
-    /// An order beyond what a method has.
-    #[error("{method} has no order above {highest}")]
-    HighestOrder {
-        /// The method's name in running text.
-        method: &'static str,
-        /// Its highest order.
-        highest: u32,
-    },
-    /// An option that says nothing to the method.
-    #[error("{method} takes no {}", choice.words())]
-    NoSuchChoice {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The option.
-        choice: Choice,
-    },
-    /// A force that is no polynomial, where one is needed.
-    #[error("{method} needs a polynomial force at this order, not `{force}`")]
-    PolynomialOnly {
-        /// The method's name in running text.
-        method: &'static str,
-        /// The force.
-        force: String,
-    },
     /// `f(x)/x` has no finite bounds.
     #[error("max-min needs bounds of f(x)/x, but none was found at rest for `{quotient}`")]
     Unbounded {
@@ -219,23 +156,152 @@ pub enum Refusal {
     Expression(#[from] ExprError),
 }
 
+/// Why a method is not for an equation, or not for what was asked of it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unsuited {
+    /// Terms that take energy out, so that no motion repeats.
+    #[error("needs a periodic motion, but the term `{term}` damps it")]
+    Damping {
+        /// The damping term.
+        term: String,
+    },
+    /// Terms that drive the motion in time.
+    #[error("is for free vibrations, but the term `{term}` drives the motion")]
+    Forcing {
+        /// The forcing term.
+        term: String,
+    },
+    /// Terms with velocities, in a method for forces of position alone.
+    #[error("is for forces of the position alone, but `{term}` depends on the velocity")]
+    Velocity {
+        /// The term.
+        term: String,
+    },
+    /// A method that measures the amplitude in one way only.
+    #[error("measures the amplitude as A = x(0)")]
+    Convention,
+    /// An even part of the force, in a method for odd forces.
+    #[error("is for forces with f(-x) = -f(x), but `{term}` is not odd")]
+    NotOdd {
+        /// The even term.
+        term: String,
+    },
+    /// As [`Unsuited::NotOdd`], about an equilibrium that is not zero.
+    #[error(
+        "is for forces that are odd about the equilibrium, but `{term}` is not odd about {coordinate} = {position}"
+    )]
+    NotOddAbout {
+        /// The term.
+        term: String,
+        /// The coordinate.
+        coordinate: Symbol,
+        /// The equilibrium.
+        position: Expr,
+    },
+    /// An order beyond what a method has.
+    #[error("has no order above {highest}")]
+    HighestOrder {
+        /// Its highest order.
+        highest: u32,
+    },
+    /// An option that says nothing to the method.
+    #[error("takes no {}", choice.words())]
+    NoSuchChoice {
+        /// The option.
+        choice: Choice,
+    },
+    /// A force that is no polynomial, where one is needed.
+    #[error("needs a polynomial force at this order, not `{force}`")]
+    PolynomialOnly {
+        /// The force.
+        force: String,
+    },
+}
+
+/// What a refusal says is unsuited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refuser {
+    /// A method, by its title.
+    Method(Method),
+    /// The expansion of Lindstedt and Poincare, whoever uses it.
+    Expansion,
+    /// The first order of that method for a force that is no polynomial.
+    FirstOrder,
+}
+
+impl fmt::Display for Refuser {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Method(method) => method.title(),
+            Self::Expansion => "the method of Lindstedt and Poincare",
+            Self::FirstOrder => "the first order of a force that is no polynomial",
+        })
+    }
+}
+
+impl Unsuited {
+    /// The refusal of a method.
+    pub fn to(self, method: Method) -> Refusal {
+        self.by(Refuser::Method(method))
+    }
+
+    /// The refusal of a method or a part of one.
+    pub fn by(self, refuser: Refuser) -> Refusal {
+        Refusal::Unsuited { refuser, reason: self }
+    }
+
+    fn help(&self, refuser: Refuser) -> Advice {
+        let first = |rest: &str| Advice::words("try ").choose(Setting::Order(1)).then(rest);
+        match self {
+            Self::Damping { .. } => Advice::words(
+                "there is no frequency-amplitude law of a motion that dies out; leave the term out to get that of the undamped motion",
+            ),
+            Self::Forcing { .. } => {
+                Advice::words("leave the term out to get the frequency of the free vibration (the backbone curve)")
+            }
+            Self::Velocity { .. } => Advice::words("try ").choose(Setting::Method(Method::LindstedtPoincare)),
+            Self::Convention => {
+                Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::FirstHarmonic))
+            }
+            Self::NotOdd { .. } | Self::NotOddAbout { .. } => Advice::words("try ")
+                .choose(Setting::Method(Method::HarmonicBalance))
+                .then(", which balances the drift as well"),
+            Self::HighestOrder { highest } => Advice::words("try ").choose(Setting::Order(*highest)),
+            Self::NoSuchChoice { choice } => Advice::words(format!("it belongs to {}", that_take(*choice))),
+            Self::PolynomialOnly { .. } => match refuser {
+                Refuser::Method(Method::IterationPerturbation) => {
+                    first(", which takes any force, or ").choose(Setting::Method(Method::HomotopyPerturbation))
+                }
+                Refuser::Method(Method::LindstedtPoincare) => first(", which takes this force as it is"),
+                _ => first(", which takes any force, or ").choose(Setting::Taylor),
+            },
+        }
+    }
+}
+
 impl Refusal {
     /// The message without the name of the method at its head, for lists that name it already.
     pub fn reason(&self, method: Method) -> String {
-        let text = self.to_string();
-        text.strip_prefix(method.title())
-            .map_or(text.clone(), |rest| rest.trim_start().to_owned())
+        match self {
+            Self::Unsuited { refuser, reason } if *refuser == Refuser::Method(method) => reason.to_string(),
+            other => other.to_string(),
+        }
     }
 
     /// The term that it names, where it names one of the equation.
     pub fn term(&self) -> Option<&str> {
         match self {
-            Self::Damping { term, .. }
-            | Self::Forcing { term, .. }
-            | Self::Velocity { term, .. }
+            Self::Unsuited {
+                reason:
+                    Unsuited::Damping { term }
+                    | Unsuited::Forcing { term }
+                    | Unsuited::Velocity { term }
+                    | Unsuited::NotOdd { term }
+                    | Unsuited::NotOddAbout { term, .. },
+                ..
+            }
             | Self::AmplitudeNotFree { term }
-            | Self::NotOdd { term, .. }
-            | Self::NotOddAbout { term, .. }
             | Self::Oscillator(
                 OscillatorError::NotSmall { term, .. }
                 | OscillatorError::NotPolynomial(term)
@@ -247,49 +313,33 @@ impl Refusal {
     }
 
     /// A way forward, where one is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Oscillator(error) => error.help(),
-            Self::Damping { .. } => Some(
-                "there is no frequency-amplitude law of a motion that dies out; leave the term out to get that of the undamped motion"
-                    .to_owned(),
-            ),
-            Self::Forcing { .. } => {
-                Some("leave the term out to get the frequency of the free vibration (the backbone curve)".to_owned())
+    pub fn help(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Oscillator(error) => return error.help(),
+            Self::Unsuited { refuser, reason } => reason.help(*refuser),
+            Self::Unbounded { .. } | Self::NoSlope { .. } => {
+                Advice::words("try ").choose(Setting::Method(Method::Hamiltonian))
             }
-            Self::Velocity { .. } => Some("try --method lindstedt-poincare".to_owned()),
-            Self::NotOdd { .. } | Self::NotOddAbout { .. } => Some("try --method harmonic-balance, which balances the drift as well".to_owned()),
-            Self::NoSuchChoice { choice, .. } => Some(format!("it belongs to {}", that_take(*choice))),
-            Self::HighestOrder { highest, .. } => Some(format!("try --order {highest}")),
-            Self::PolynomialOnly { method, .. } if *method == Method::IterationPerturbation.title() => {
-                Some("try --order 1, which takes any force, or --method homotopy-perturbation".to_owned())
+            Self::Pade { .. } => Advice::words("try other degrees, such as ").choose(Setting::Degrees(1, 1)),
+            Self::AmplitudeNotFree { .. } => {
+                let small = Setting::Small(AmplitudeConvention::Initial.symbol());
+                Advice::words("limit cycles start from x'' + omega0^2*x with all other terms small: do not ask for `")
+                    .choose(small)
+                    .then("`, and write a polynomial such as x - eps*x^3/6 for sin(x)")
             }
-            Self::PolynomialOnly { method, .. } if *method == Method::LindstedtPoincare.title() => {
-                Some("try --order 1, which takes this force as it is".to_owned())
+            Self::NoLimitCycle { .. } => {
+                Advice::words("energy is fed at every amplitude or drained at every amplitude: no motion repeats")
             }
-            Self::PolynomialOnly { .. } => {
-                Some("try --order 1, which takes any force, or --taylor DEGREE".to_owned())
+            Self::NoSuchCycle { .. } => Advice::words("they are counted from 1, the smallest first"),
+            // Numbers alone do not help where there are numbers already.
+            Self::LimitCycle { equation, .. } if equation.symbols().len() > 1 => {
+                Advice::words("give numbers for the parameters in it, in the equation or by `")
+                    .choose(Setting::Values)
+                    .then("`")
             }
-            Self::Unbounded { .. } | Self::NoSlope { .. } => Some("try --method hamiltonian".to_owned()),
-            Self::Pade { .. } => Some("try other degrees, such as --order 1,1".to_owned()),
-            Self::TooLong { .. } => Some("try a lower order".to_owned()),
-            Self::Convention { .. } => Some("leave out --amplitude first-harmonic".to_owned()),
-            Self::AmplitudeNotFree { .. } => Some(
-                "limit cycles start from x'' + omega0^2*x with all other terms small: do not ask for `--small A`, and write a polynomial such as x - eps*x^3/6 for sin(x)"
-                    .to_owned(),
-            ),
-            Self::NoLimitCycle { .. } => Some(
-                "energy is fed at every amplitude or drained at every amplitude: no motion repeats".to_owned(),
-            ),
-            Self::NoSuchCycle { .. } => Some("they are counted from 1, the smallest first".to_owned()),
-            Self::LimitCycle { equation, .. } => {
-                // Numbers alone do not help where there are numbers already.
-                let symbols = parse_expression(equation).map(|equation| equation.symbols().len());
-                symbols.is_ok_and(|count| count > 1).then(|| "give numbers for the parameters in it, in the equation or by `--at`".to_owned())
-            }
-            Self::Order { .. } | Self::Secular(_) => Some("try a lower order".to_owned()),
-            Self::Expression(_) => None,
-        }
+            Self::TooLong { .. } | Self::Order { .. } | Self::Secular(_) => Advice::words("try a lower order"),
+            Self::LimitCycle { .. } | Self::Expression(_) => return None,
+        })
     }
 }
 
@@ -355,10 +405,7 @@ fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), 
         (Choice::Cycle, options.cycle.is_some()),
     ];
     match given.iter().find(|(choice, given)| *given && !entry.takes(*choice)) {
-        Some(&(choice, _)) => Err(Refusal::NoSuchChoice {
-            method: entry.method.title(),
-            choice,
-        }),
+        Some(&(choice, _)) => Err(Unsuited::NoSuchChoice { choice }.to(entry.method)),
         None => Ok(()),
     }
 }

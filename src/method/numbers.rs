@@ -61,6 +61,15 @@ pub enum NoNumbers {
         /// Where.
         amplitude: f64,
     },
+    /// omega^2 is not positive.
+    #[error("not real: omega^2 <= 0")]
+    NotReal,
+    /// The law is larger than any number.
+    #[error("{law} is beyond the range of double precision, 1.8e308")]
+    LawBeyond {
+        /// `omega^2` or `omega`.
+        law: &'static str,
+    },
     /// The assumed motion leaves the places where the force is defined and finite.
     #[error(
         "does not apply: the assumed motion runs through {coordinate} = {}, where the force has no finite value",
@@ -102,6 +111,13 @@ pub enum NoNumbers {
     /// A quadrature, the exact motion or a search for hbar failed.
     #[error("no finite value at these numbers")]
     NoValue,
+}
+
+impl NoNumbers {
+    /// Whether there is no frequency because it would not be real.
+    pub fn is_not_real(&self) -> bool {
+        matches!(self, Self::BranchEnds { .. } | Self::Undefined { .. } | Self::NotReal)
+    }
 }
 
 /// omega^2 and the motion of `solution`, an answer for `oscillator`, with `numbers` for the parameters and the amplitude.

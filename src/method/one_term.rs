@@ -14,7 +14,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::{Options, Refusal, first_term};
+use super::{Options, Refusal, Unsuited, first_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::parity::twice_even_part;
@@ -34,29 +34,28 @@ use crate::symbol::Symbol;
 /// The term in the way, by name; or an amplitude of the first harmonic, which these methods do not use.
 pub(super) fn conservative_force(oscillator: &Oscillator, options: &Options, method: Method) -> Result<Expr, Refusal> {
     let parts = oscillator.parts()?;
-    let title = method.title();
     if !parts.forcing.is_zero() {
         let term = first_term(&parts.forcing);
-        return Err(Refusal::Forcing { method: title, term });
+        return Err(Unsuited::Forcing { term }.to(method));
     }
     match parts.damping.terms() {
         [zero] if zero.is_zero() => {}
         [only] => {
             let term = only.to_string();
-            return Err(Refusal::Damping { method: title, term });
+            return Err(Unsuited::Damping { term }.to(method));
         }
         // Terms that feed energy for some motions and drain it for others.
         _ => {
             let term = first_term(&parts.damping);
-            return Err(Refusal::Velocity { method: title, term });
+            return Err(Unsuited::Velocity { term }.to(method));
         }
     }
     if !parts.inertia.is_zero() {
         let term = first_term(&parts.inertia);
-        return Err(Refusal::Velocity { method: title, term });
+        return Err(Unsuited::Velocity { term }.to(method));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention { method: title });
+        return Err(Unsuited::Convention.to(method));
     }
     Ok(oscillator.force.clone())
 }
@@ -67,20 +66,15 @@ pub(super) fn require_odd(oscillator: &Oscillator, force: &Expr, method: Method)
         return Ok(());
     }
     let term = even_part(oscillator, force)?;
-    Err(Refusal::NotOdd {
-        method: method.title(),
-        term: first_term(&term),
-    })
+    let term = first_term(&term);
+    Err(Unsuited::NotOdd { term }.to(method))
 }
 
 /// Refuses any order but the first.
 pub(super) fn first_order_only(options: &Options, method: Method) -> Result<(), Refusal> {
     match options.order {
         None | Some(1) => Ok(()),
-        Some(_) => Err(Refusal::HighestOrder {
-            method: method.title(),
-            highest: 1,
-        }),
+        Some(_) => Err(Unsuited::HighestOrder { highest: 1 }.to(method)),
     }
 }
 

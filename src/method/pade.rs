@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
-use super::{Options, Refusal, lindstedt_poincare};
+use super::{Options, Refusal, Unsuited, lindstedt_poincare};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
@@ -62,7 +62,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return refused("degrees go up to [40/20]");
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Refusal::Convention { method: METHOD.title() });
+        return Err(Unsuited::Convention.to(METHOD));
     }
     let order = numerator_degree + denominator_degree;
     let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;

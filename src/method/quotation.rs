@@ -6,7 +6,7 @@
 
 use std::convert::Infallible;
 
-use super::Refusal;
+use super::{Refusal, Unsuited};
 use crate::equilibrium::Centred;
 use crate::expr::{Expr, ExprError, parse_expression};
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -15,19 +15,10 @@ use crate::series::taylor::TaylorError;
 /// A refusal whose term is quoted as it was typed, where it can be told which that was.
 pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &Centred) -> Refusal {
     let moved = !centred.position.is_zero();
-    let position = format!("{} = {}", oscillator.coordinate, centred.position);
+    if let Refusal::Unsuited { reason, .. } = &mut refusal {
+        quote(reason, oscillator, centred);
+    }
     match &mut refusal {
-        Refusal::NotOdd { method, term } => {
-            let found = typed(term, oscillator, centred);
-            if let (Some(term), true) = (&found, moved) {
-                return Refusal::NotOddAbout {
-                    method,
-                    term: term.clone(),
-                    position,
-                };
-            }
-            replace(term, found);
-        }
         Refusal::Oscillator(OscillatorError::Taylor(TaylorError::NotAnalytic { term, point })) => {
             // A part of a term is quoted as it is where it stands so in the text.
             if !moved && oscillator.typed.contains(term) {
@@ -36,15 +27,12 @@ pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &
             if let Some(found) = typed_around(term, oscillator, centred) {
                 *term = found;
                 if moved {
+                    let position = format!("{} = {}", oscillator.coordinate, centred.position);
                     *point = point.replacen(&format!("{} = 0", oscillator.coordinate), &position, 1);
                 }
             }
         }
-        Refusal::Damping { term, .. }
-        | Refusal::Forcing { term, .. }
-        | Refusal::Velocity { term, .. }
-        | Refusal::AmplitudeNotFree { term }
-        | Refusal::PolynomialOnly { force: term, .. }
+        Refusal::AmplitudeNotFree { term }
         | Refusal::Oscillator(OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term)) => {
             let found = typed(term, oscillator, centred);
             replace(term, found);
@@ -52,6 +40,29 @@ pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &
         _ => {}
     }
     refusal
+}
+
+fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
+    match reason {
+        Unsuited::NotOdd { term } => match typed(term, oscillator, centred) {
+            Some(term) if !centred.position.is_zero() => {
+                *reason = Unsuited::NotOddAbout {
+                    term,
+                    coordinate: oscillator.coordinate,
+                    position: centred.position.clone(),
+                };
+            }
+            found => replace(term, found),
+        },
+        Unsuited::Damping { term }
+        | Unsuited::Forcing { term }
+        | Unsuited::Velocity { term }
+        | Unsuited::PolynomialOnly { force: term } => {
+            let found = typed(term, oscillator, centred);
+            replace(term, found);
+        }
+        _ => {}
+    }
 }
 
 fn replace(term: &mut String, found: Option<String>) {

@@ -439,6 +439,16 @@ impl fmt::Display for Poles {
     }
 }
 
+impl Position {
+    /// Whether a minus stands before it.
+    pub fn is_negative(&self) -> bool {
+        match self {
+            Self::Exact(position) | Self::WhereReal(position) => position.has_leading_minus(),
+            Self::Number(position) => *position < 0.0,
+        }
+    }
+}
+
 impl fmt::Display for Position {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -7,6 +7,7 @@ use super::validity::{self, Reach};
 use super::{TrueMotion, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
+use crate::method::numbers::NoNumbers;
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -22,7 +23,7 @@ pub struct Row {
     /// omega by the formula; `None` where there is none.
     pub frequency: Option<f64>,
     /// Why there is none.
-    pub reason: Option<String>,
+    pub reason: Option<NoNumbers>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
     pub chosen: Vec<(Symbol, f64)>,
     /// `frequency / true_frequency - 1`.
@@ -67,7 +68,7 @@ pub struct Comparison {
     /// omega of the true motion; `None` where it cannot be computed.
     pub true_frequency: Option<f64>,
     /// Why it cannot.
-    pub reason: Option<String>,
+    pub reason: Option<VerificationError>,
     /// The tolerance of verdicts and ranges.
     pub tolerance: f64,
     /// The methods that apply, in the order of [`Method::ALL`].
@@ -82,9 +83,9 @@ pub struct Comparison {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ComparisonError {
-    /// No method applies; the reason of the first.
-    #[error("no method applies: {0}")]
-    NoMethod(Box<Refusal>),
+    /// No method applies, each for its reason; the message has that of the first.
+    #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
+    NoMethod(Vec<Refused>),
     /// There is no true motion to compare with.
     #[error(transparent)]
     Verification(#[from] VerificationError),
@@ -133,7 +134,12 @@ pub fn compare(
 ) -> Result<Comparison, ComparisonError> {
     // A force too long to be written out stops every method at the same place: once is enough.
     if let Err(error) = oscillator.parts() {
-        return Err(ComparisonError::NoMethod(Box::new(error.into())));
+        let reason = Refusal::from(error);
+        let refused = Method::ALL.map(|method| Refused {
+            method,
+            reason: reason.clone(),
+        });
+        return Err(ComparisonError::NoMethod(refused.into()));
     }
     let (mut solutions, mut refused) = (Vec::new(), Vec::new());
     for options in variants(small) {
@@ -147,14 +153,12 @@ pub fn compare(
     }
     solutions.dedup_by(|second, first| second.method == first.method && second.formula() == first.formula());
     let Some(first) = solutions.first() else {
-        let reason = refused.into_iter().next().map(|refused| refused.reason);
-        let reason = reason.unwrap_or(Refusal::Order { asked: 0 });
-        return Err(ComparisonError::NoMethod(Box::new(reason)));
+        return Err(ComparisonError::NoMethod(refused));
     };
     let numbers = checked_numbers(first, at)?;
     let (true_motion, reason) = match TrueMotion::of(oscillator, first, &numbers) {
         Ok(motion) => (Some(motion), None),
-        Err(error) if error.leaves_the_truth_open() => (None, Some(error.to_string())),
+        Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
         Err(error) => return Err(error.into()),
     };
     let at_amplitude = Truth::new(oscillator, first, &numbers);
@@ -233,7 +237,8 @@ pub fn backbones(
     comparison: &Comparison,
 ) -> Result<(Backbone, Vec<Backbone>), ComparisonError> {
     const POINTS: usize = 120;
-    let first = &comparison.rows.first().ok_or(VerificationError::AtRest)?.solution;
+    let no_method = || ComparisonError::NoMethod(comparison.refused.clone());
+    let first = &comparison.rows.first().ok_or_else(no_method)?.solution;
     let numbers = checked_numbers(first, &comparison.at)?;
     let truth = Truth::new(oscillator, first, &numbers);
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());

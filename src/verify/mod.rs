@@ -81,7 +81,7 @@ pub struct Verification {
     /// omega by the formula; `None` where there is none.
     pub frequency: Option<f64>,
     /// Why there is none.
-    pub reason: Option<String>,
+    pub reason: Option<NoNumbers>,
     /// omega of the true motion.
     pub true_frequency: f64,
     /// `frequency / true_frequency - 1`.
@@ -325,16 +325,15 @@ fn numbers_or_reason(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> (Option<Numbers>, Option<String>) {
+) -> (Option<Numbers>, Option<NoNumbers>) {
     match evaluate(oscillator, solution, numbers) {
         Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => (Some(found), None),
-        Ok(_) => (None, Some("not real: omega^2 <= 0".to_owned())),
+        Ok(_) => (None, Some(NoNumbers::NotReal)),
         Err(NoNumbers::NoValue | NoNumbers::Undefined { .. }) if law_overflows(solution, numbers) => {
             let law = judged_on(solution);
-            let reason = format!("{law} is beyond the range of double precision, 1.8e308");
-            (None, Some(reason))
+            (None, Some(NoNumbers::LawBeyond { law }))
         }
-        Err(reason) => (None, Some(reason.to_string())),
+        Err(reason) => (None, Some(reason)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use lindstedt::Oscillator;
 use lindstedt::method::numbers::evaluate;
-use lindstedt::method::{MOST_HARMONICS, Options, Refusal};
+use lindstedt::method::{MOST_HARMONICS, Options, Refusal, Unsuited};
 use lindstedt::solution::Method;
 
 use super::{by, by_options, numbers};
@@ -56,8 +56,10 @@ fn harmonic_balance_converges_to_the_exact_motion() {
                 ..Options::default()
             }
         ),
-        Err(Refusal::HighestOrder {
-            highest: MOST_HARMONICS,
+        Err(Refusal::Unsuited {
+            reason: Unsuited::HighestOrder {
+                highest: MOST_HARMONICS
+            },
             ..
         })
     ));

@@ -273,7 +273,7 @@ pub fn verification(verification: &verify::Verification) -> Verification {
     Verification {
         at: values(&verification.at),
         frequency: finite(verification.frequency),
-        reason: verification.reason.clone(),
+        reason: verification.reason.as_ref().map(ToString::to_string),
         true_frequency: verification.true_frequency,
         relative_error: finite(verification.relative_error),
         judged_on: verification.judged_on.to_owned(),

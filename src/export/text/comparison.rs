@@ -23,10 +23,8 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
     } else {
         format!(" at {}", at.join(", "))
     };
-    let reason = comparison.reason.as_deref().unwrap_or_default();
-    let truth = comparison
-        .true_frequency
-        .map_or_else(|| format!("not known: {reason}"), decimal);
+    let unknown = || format!("not known: {}", in_words(comparison.reason.as_ref()));
+    let truth = comparison.true_frequency.map_or_else(unknown, decimal);
     let _ = writeln!(text, "True omega{place}: {truth}\n");
     text.push_str(&table(comparison, width));
     let titles = comparison.rows.iter().map(|row| row.solution.title());
@@ -51,7 +49,7 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
     }
     let without = comparison.rows.iter().filter(|row| row.frequency.is_none());
     let mut without: Vec<(String, String)> = without
-        .map(|row| (row.solution.title(), row.reason.clone().unwrap_or_default()))
+        .map(|row| (row.solution.title(), in_words(row.reason.as_ref())))
         .collect();
     without.dedup();
     section("No frequency", &without);
@@ -172,10 +170,14 @@ fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
     lines.join("\n")
 }
 
+fn in_words(reason: Option<&impl ToString>) -> String {
+    reason.map(ToString::to_string).unwrap_or_default()
+}
+
 /// What stands in the place of a frequency.
 fn without_number(row: &Row) -> &'static str {
     match &row.reason {
-        Some(reason) if reason.starts_with("not real") => "not real",
+        Some(reason) if reason.is_not_real() => "not real",
         _ => "none",
     }
 }

@@ -30,8 +30,6 @@ use crate::series::taylor::taylor;
 use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
-/// What refusals call it.
-
 /// The answer to first order in `small`; `None` where the equation is not conservative, not linear without `small`, or its
 /// projection has no closed form.
 ///

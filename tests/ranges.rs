@@ -302,7 +302,7 @@ fn an_expansion_ends_at_the_first_corner() {
         };
         let said = |oscillator: &Oscillator| {
             let solution = solve(oscillator, &options).unwrap();
-            solution.validity.iter().any(|note| *note == Note::Corners)
+            solution.validity.contains(&Note::Corners)
         };
         assert_eq!(said(&oscillator), expands, "{}", method.name());
         assert!(!said(&smooth), "{}", method.name());

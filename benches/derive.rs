@@ -1,4 +1,4 @@
-//! The derivations and the impact whose speed is promised in the README: `cargo bench`.
+//! The derivations and the impact whose speed is promised in the README: `cargo bench --workspace`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;

@@ -1,4 +1,4 @@
-//! Time of simulations on one core: `cargo bench --bench simulate`.
+//! Time of simulations on one core: `cargo bench --workspace --bench simulate`.
 //!
 //! A hundredth of the two workloads of `examples/damper_workloads.rs`, one motion at a time and several at a time, and the
 //! judge for comparison.

@@ -41,6 +41,7 @@
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
 //! | [`problem`] | problem files |
 //! | [`catalog`] | classical oscillators |
+//! | [`report`] | what a report of a result says, for every format |
 //! | [`export`] | text, LaTeX, JSON, pictures |
 //!
 //! | feature | what it adds |
@@ -95,6 +96,8 @@ pub mod impact;
 pub mod problem;
 
 pub mod catalog;
+
+pub mod report;
 
 pub mod export;
 

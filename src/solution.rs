@@ -4,9 +4,10 @@
 
 mod advice;
 mod branch;
-mod law;
+pub mod law;
 mod method;
 pub mod note;
+mod sum;
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -15,9 +16,11 @@ use num_traits::{One, Signed};
 
 pub use advice::{Advice, Setting};
 pub use branch::Branch;
+use law::Shown;
 pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};
 pub use note::Note;
+pub use sum::Sum;
 
 use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::derivation::{Line, Step};
@@ -26,7 +29,7 @@ use crate::exact::rational::Rational;
 use crate::exact::scaled::Scaled;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Equation, Expr};
-use crate::series::{FourierSeries, terms};
+use crate::series::FourierSeries;
 use crate::symbol::{Symbol, fresh};
 
 /// What the amplitude in a formula measures.
@@ -354,26 +357,23 @@ impl Solution {
 
     /// The law in one line, with the definitions it needs.
     pub fn formula(&self) -> String {
-        let law = if let Some(law) = self.law.frequency_squared() {
-            format!("omega^2 = {}", self.written(law))
-        } else if let Some(form) = self.law.closed_form().filter(|_| !self.numerical) {
-            form.to_string()
-        } else if let Some(form) = self.law.closed_form() {
-            format!("{} in closed form, with rounded coefficients", form.name())
-        } else if let Some(law) = self.law.frequency() {
-            format!("omega = {}", self.written(law))
-        } else if let Some(relation) = self.law.relation() {
-            format!("0 = {}", self.written(relation))
-        } else if self.method.counts() == Counts::Harmonics {
-            let harmonics = self.displacement.harmonics();
-            let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
-            return format!("harmonics {} balanced, solved by numbers", kept.join(", "));
-        } else {
-            return self.by_numbers().unwrap_or_default();
+        let shown = self.law.in_one_line();
+        let law = match shown {
+            Shown::Squared(law) => format!("omega^2 = {}", self.ordered(law)),
+            Shown::Frequency(law) => format!("omega = {}", self.ordered(law)),
+            Shown::Relation(relation) => format!("0 = {}", self.ordered(relation)),
+            Shown::Closed(form) if self.numerical => {
+                format!("{} in closed form, with rounded coefficients", form.name())
+            }
+            Shown::Closed(form) => form.to_string(),
+            Shown::Quadrature(_) | Shown::System(_) if self.method.counts() == Counts::Harmonics => {
+                let harmonics = self.displacement.harmonics();
+                let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
+                return format!("harmonics {} balanced, solved by numbers", kept.join(", "));
+            }
+            Shown::Quadrature(_) | Shown::System(_) => return self.by_numbers().unwrap_or_default(),
         };
-        let mut used: BTreeSet<Symbol> = self.law.polynomials().flat_map(Polynomial::symbols).collect();
-        used.extend(self.law.closed_form().into_iter().flat_map(|form| form.value.symbols()));
-        let definitions = self.definitions_behind(used).into_iter();
+        let definitions = self.definitions_behind(shown.symbols()).into_iter();
         let definitions =
             definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
         std::iter::once(law).chain(definitions).collect()
@@ -391,30 +391,15 @@ impl Solution {
         definitions.filter(|entry| symbols.contains(&entry.symbol)).collect()
     }
 
-    /// The terms of a polynomial, those with the lowest power of the small parameters first.
-    pub fn lowest_first<'a>(&self, law: &'a Polynomial) -> Vec<(&'a Monomial, &'a Rational)> {
-        terms::in_order(law, |monomial| self.order_of(monomial))
+    /// A polynomial of this solution, the terms with the lowest power of the small parameters first.
+    pub fn ordered(&self, polynomial: &Polynomial) -> Sum {
+        Sum::new(polynomial, self.numerical, |monomial| self.order_of(monomial))
     }
 
-    /// A polynomial as text, its terms in that order.
-    fn written(&self, law: &Polynomial) -> String {
-        let mut text = String::new();
-        for (monomial, number) in self.lowest_first(law) {
-            let term = match (self.numerical && !number.is_integer(), monomial.factors().is_empty()) {
-                (false, _) => Polynomial::term(monomial.clone(), number.clone()).to_string(),
-                (true, true) => significant_fraction(number, 6),
-                (true, false) => {
-                    let rest = Polynomial::term(monomial.clone(), One::one());
-                    format!("{}*{rest}", significant_fraction(number, 6))
-                }
-            };
-            match (text.is_empty(), term.strip_prefix('-')) {
-                (true, _) => text.push_str(&term),
-                (false, Some(rest)) => text.extend([" - ", rest]),
-                (false, None) => text.extend([" + ", &term]),
-            }
-        }
-        if text.is_empty() { "0".to_owned() } else { text }
+    /// A relation of this solution, the terms with the highest power of omega first.
+    pub fn by_falling_frequency(&self, relation: &Polynomial) -> Sum {
+        let omega = Symbol::new("omega");
+        Sum::new(relation, self.numerical, |monomial| -monomial.exponent(omega))
     }
 
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that continues omega0^2

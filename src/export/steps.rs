@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use num_traits::Zero;
 
 use super::latex::{self, symbol};
-use super::text::by_order;
 use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, NOTATION, Step};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::Expr;
@@ -82,7 +81,7 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     let waves = |series: &FourierSeries<Polynomials>| {
         terms::sum(terms::waves(
             series,
-            |coefficient| by_order(coefficient, solution),
+            |coefficient| solution.ordered(coefficient).to_string(),
             &NOTATION,
         ))
     };
@@ -95,10 +94,14 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     if n == 0 {
         lines.push(format!("    {y}0'' + {y}0 = 0"));
     } else {
-        let secular = secular_terms(step, |resonance| by_order(resonance, solution), format!("{w}{n}"));
+        let secular = secular_terms(
+            step,
+            |resonance| solution.ordered(resonance).to_string(),
+            format!("{w}{n}"),
+        );
         let driven = terms::waves(
             &step.right_side,
-            |coefficient| by_order(coefficient, solution),
+            |coefficient| solution.ordered(coefficient).to_string(),
             &NOTATION,
         );
         let resonant = match step.resonance.is_zero() {
@@ -113,7 +116,7 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
         if !step.resonance.is_zero() {
             lines.push(format!(
                 "    fixes               {w}{n} = {}",
-                by_order(&step.correction, solution)
+                solution.ordered(&step.correction)
             ));
         }
     }
@@ -122,7 +125,7 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
         lines.push(format!(
             "    no secular sin(theta) at order {}:  {} = 0",
             n + 1,
-            by_order(sine, solution)
+            solution.ordered(sine)
         ));
         let what = match n {
             0 => "the amplitude of the limit cycle".to_owned(),
@@ -188,7 +191,7 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     let n = step.order;
     let [y, w] = letters(solution);
     let (y, w) = (indexed(&y, n), indexed(&w, n));
-    let law = |polynomial: &Polynomial| latex::law(polynomial, solution);
+    let law = |polynomial: &Polynomial| latex::sum(&solution.ordered(polynomial));
     let conditions: Vec<String> = step
         .conditions
         .iter()

@@ -1,25 +1,20 @@
-//! Results as text that reads like a textbook. Formulas print so that they can be typed back in.
+//! Documents as text that reads like a textbook. Formulas print so that they can be typed back in.
 
 mod comparison;
+mod impact;
 
 use std::fmt::Write as _;
 
-use num_traits::One;
-
-pub use comparison::comparison;
-
 pub use super::steps::text as steps;
-use crate::decimal::{decimal, significant, significant_fraction};
+use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
-use crate::exact::polynomial::Monomial;
-use crate::exact::{Polynomial, Polynomials, Rational};
-use crate::impact::{ContactSpeed, Impact};
-use crate::method::homotopy_analysis::HBAR;
-use crate::series::FourierSeries;
+use crate::impact::Impact;
+use crate::report::{self, Block, Document};
 use crate::series::terms;
-use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
+use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::verify::Verification;
+use crate::verify::comparison::Comparison;
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
 pub fn percent(error: f64) -> String {
@@ -40,146 +35,126 @@ fn size_in_percent(size: f64) -> String {
 
 /// The derived formula, and the verdict where it was judged.
 pub fn solution(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> String {
-    let mut text = format!("{}\n\n", solution.equation);
-    let _ = writeln!(text, "{}, {}", solution.title(), solution.amplitude);
-    text.push('\n');
-    let mut law = |name: &str, law: Option<&Polynomial>| {
-        if let Some(law) = law {
-            let _ = writeln!(text, "  {name:<8}= {}", by_order(law, solution));
-        }
-    };
-    law("omega^2", solution.law.frequency_squared());
-    law("omega", solution.law.frequency());
-    if let (None, Some(relation)) = (solution.law.frequency_squared(), solution.law.relation()) {
-        let _ = writeln!(
-            text,
-            "  0       = {}",
-            ordered(relation, solution.numerical, |monomial| -monomial
-                .exponent(Symbol::new("omega")))
-        );
-    }
-    if let Some(closed_form) = solution.law.closed_form() {
-        let _ = writeln!(text, "  {closed_form}");
-    }
-    if let Some(cycle) = &solution.limit_cycle {
-        let _ = writeln!(
-            text,
-            "\n  limit cycle of amplitude {} = {}",
-            solution.amplitude.symbol(),
-            by_order(&cycle.amplitude, solution)
-        );
-        for line in other_cycles(cycle, solution) {
-            let _ = writeln!(text, "  {line}");
-        }
-    }
-    for line in solution.law.quadrature().into_iter().flatten() {
-        let _ = writeln!(text, "  {line}");
-    }
-    if let Some(system) = solution.law.system() {
-        let names: Vec<&str> = system.unknowns.iter().map(|name| name.name()).collect();
-        let _ = writeln!(text, "  for {}:", names.join(", "));
-        for equation in &system.equations {
-            let _ = writeln!(text, "  0 = {equation}");
-        }
-    }
-    match solution.displacement.is_zero() {
-        true => text.push_str("\n  the motion follows by quadrature of the energy\n"),
-        false => {
-            let _ = writeln!(text, "\n{}", motion(solution));
-        }
-    }
-    for definition in &solution.definitions {
-        let _ = writeln!(text, "  {} = {}", definition.symbol, definition.meaning_in_words());
-    }
-    text.push_str("\nValidity\n");
-    for line in &solution.validity {
-        let _ = writeln!(text, "  {line}");
-    }
-    if let Some(verification) = verification {
-        text.push('\n');
-        text.push_str(&self::verification(verification, tolerance));
-    }
-    text
+    document(&report::solution(solution, verification, tolerance), usize::MAX)
 }
 
-/// Where an equation has several limit cycles: all of them, to leading order.
-pub fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
-    if cycle.cycles.len() < 2 {
-        return vec![];
-    }
-    let symbol = solution.amplitude.symbol();
-    let small: Vec<&str> = solution.small_parameters().map(|name| name.name()).collect();
-    let head = format!(
-        "cycle {} of {}; for {} -> 0:",
-        cycle.number,
-        cycle.cycles.len(),
-        small.join(", ")
-    );
-    let line = |(k, each): (usize, &LeadingCycle)| {
-        let own = if k + 1 == cycle.number { "*" } else { " " };
-        let amplitude = &each.amplitude;
-        let value = match amplitude.as_number() {
-            Some(_) => String::new(),
-            None => {
-                let value = amplitude.evaluate(&std::collections::BTreeMap::new());
-                value.map_or_else(|_| String::new(), |value| format!(" = {}", decimal(value)))
+/// Every method in one table, and below it those that do not apply, in lines of at most `width` characters where words allow
+/// it. Formulas stand at the end of their rows where all of them fit there, and below the table where not.
+pub fn comparison(comparison: &Comparison, width: usize) -> String {
+    document(&report::comparison(comparison), width)
+}
+
+/// The whole story of an impact.
+pub fn impact(impact: &Impact, tolerance: f64) -> String {
+    document(&report::impact(impact, tolerance), usize::MAX)
+}
+
+/// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.
+pub fn document(document: &Document, width: usize) -> String {
+    let page = Page {
+        width,
+        longest_title: comparison::longest_title(document),
+    };
+    let sections = document.sections.iter();
+    let sections: Vec<String> = sections
+        .map(|blocks| blocks.iter().map(|block| page.block(block, blocks)).collect())
+        .collect();
+    sections.join("\n")
+}
+
+/// What the blocks of a document have in common.
+struct Page {
+    width: usize,
+    /// The longest name of a method, beside which words stand.
+    longest_title: usize,
+}
+
+impl Page {
+    /// The lines of a block; `section` is where it stands.
+    fn block(&self, block: &Block, section: &[Block]) -> String {
+        match block {
+            Block::Question(equation) => format!("{equation}\n"),
+            Block::QuestionAsTyped(equation) => format!("{equation}\n"),
+            Block::Title { words, amplitude } => format!("{words}, {amplitude}\n"),
+            Block::Heading(words) => format!("{words}\n"),
+            Block::Note(words) | Block::Remark(words) | Block::Detail(words) => format!("  {words}\n"),
+            Block::Law { left, right } => format!("  {:<8}= {right}\n", left.to_string()),
+            Block::Relation(sum) => format!("  0       = {sum}\n"),
+            Block::Equality { left, right } => format!("  {left} = {right}\n"),
+            Block::Line(line) => format!("  {line}\n"),
+            Block::Unknowns(names) => {
+                let names: Vec<&str> = names.iter().map(|name| name.name()).collect();
+                format!("  for {}:\n", names.join(", "))
             }
-        };
-        let exact = constant_in_words(amplitude);
-        format!("{own} {}  {symbol} = {exact}{value}, {}", k + 1, each.stability())
-    };
-    std::iter::once(head)
-        .chain(cycle.cycles.iter().enumerate().map(line))
-        .collect()
-}
-
-/// A polynomial with the lowest power of the small parameter first.
-pub fn by_order(polynomial: &Polynomial, solution: &Solution) -> String {
-    ordered(polynomial, solution.numerical, |monomial| solution.order_of(monomial))
-}
-
-fn ordered(polynomial: &Polynomial, numerical: bool, key: impl Fn(&Monomial) -> i32) -> String {
-    terms::polynomial(polynomial, key, |monomial, coefficient| {
-        single_term(monomial, coefficient, numerical)
-    })
-}
-
-/// One term; rounded coefficients print as decimals.
-fn single_term(monomial: &Monomial, coefficient: &Rational, numerical: bool) -> String {
-    let term = |number: Rational| Polynomial::term(monomial.clone(), number).to_string();
-    if !numerical || coefficient.is_integer() {
-        return term(coefficient.clone());
+            Block::CycleAmplitude { symbol, amplitude } => {
+                format!("  limit cycle of amplitude {symbol} = {amplitude}\n")
+            }
+            Block::Motion(solution) => motion(solution),
+            Block::Definition(definition) => {
+                format!("  {} = {}\n", definition.symbol, definition.meaning_in_words())
+            }
+            Block::Value { name, value, source } => {
+                let width = section
+                    .iter()
+                    .filter_map(name_of_value)
+                    .map(|name| name.name().len())
+                    .max();
+                let source = source.map_or(String::new(), |source| format!("   ({source})"));
+                let width = width.unwrap_or(0);
+                format!("  {:<width$} = {}{source}\n", name.name(), decimal(*value))
+            }
+            Block::Judged {
+                verification,
+                series_of_omega,
+                hbar,
+                tolerance,
+            } => judged(verification, *series_of_omega, *hbar, *tolerance),
+            Block::Truth {
+                equation,
+                at,
+                frequency,
+            } => comparison::truth(equation, at, frequency),
+            Block::Methods { rows, tolerance, .. } => comparison::methods(rows, *tolerance, self),
+            Block::Entries { heading, entries } => comparison::entries(heading, entries, self),
+            Block::Refused(refused) => comparison::refused(refused, self),
+            Block::TrueMotion(lines) => comparison::true_motion(lines, self.width),
+            Block::Closing(words) => comparison::wrapped(words, self.width, "", "") + "\n",
+            Block::Speed(speed) => impact::speed(*speed),
+            Block::Phase(phase) => impact::phase(phase),
+            Block::Quantities { rows, deviations } => impact::quantities(rows, deviations),
+            Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
+            Block::Shortcoming { speed, errors, cause } => impact::shortcoming(*speed, errors, cause),
+        }
     }
-    let number = significant_fraction(coefficient, 6);
-    match monomial.factors().is_empty() {
-        true => number,
-        false => format!("{number}*{}", term(Rational::one())),
-    }
 }
 
-fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) -> Vec<String> {
-    terms::waves(series, |coefficient| by_order(coefficient, solution), &NOTATION)
+fn name_of_value(block: &Block) -> Option<Symbol> {
+    match block {
+        Block::Value { name, .. } => Some(*name),
+        _ => None,
+    }
 }
 
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
-    let name = solution.coordinate();
-    let mut lines = terms::lines(
-        &waves(&solution.displacement, solution),
-        &format!("  {name}(t) = "),
-        "         ",
+    if solution.displacement.is_zero() {
+        return "  the motion follows by quadrature of the energy\n".to_owned();
+    }
+    let waves = terms::waves(
+        &solution.displacement,
+        |coefficient| solution.ordered(coefficient).to_string(),
+        &NOTATION,
     );
-    lines.push("         theta = omega*t".to_owned());
+    let first = format!("  {}(t) = ", solution.coordinate());
+    let mut lines = terms::lines(&waves, &first, "         ");
+    lines.push("         theta = omega*t\n".to_owned());
     lines.join("\n")
 }
 
 /// The verdict, number by number.
-pub fn verification(verification: &Verification, tolerance: f64) -> String {
-    let at: Vec<String> = verification
-        .at
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
+fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbol, tolerance: f64) -> String {
+    let at = verification.at.iter();
+    let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
     let mut text = match at.is_empty() {
         true => "Judged against the true motion\n".to_owned(),
         false => format!("Judged against the true motion at {}\n", at.join(", ")),
@@ -187,60 +162,41 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<20}{value}");
     };
-    line(
-        "omega",
-        verification.frequency.map_or_else(
-            || {
-                verification
-                    .reason
-                    .as_ref()
-                    .map(ToString::to_string)
-                    .unwrap_or_default()
-            },
-            decimal,
-        ),
-    );
+    let reason = || {
+        verification
+            .reason
+            .as_ref()
+            .map(ToString::to_string)
+            .unwrap_or_default()
+    };
+    line("omega", verification.frequency.map_or_else(reason, decimal));
     line("true omega", decimal(verification.true_frequency));
     if let Some(error) = verification.relative_error {
         line("relative error", percent(error));
     }
-    match verification.error_of_omega {
-        Some(other)
-            if verification
-                .relative_error
-                .is_none_or(|error| (other - error).abs() > 1e-9) =>
-        {
-            line(
-                "judged on",
-                format!(
-                    "the root of omega^2; the series of omega itself errs by {}",
-                    percent(other)
-                ),
-            )
-        }
-        _ => line("judged on", verification.judged_on.to_owned()),
-    }
+    let judged_on = match series_of_omega {
+        Some(other) => format!(
+            "the root of omega^2; the series of omega itself errs by {}",
+            percent(other)
+        ),
+        None => verification.judged_on.to_owned(),
+    };
+    line("judged on", judged_on);
     if let Some(deviation) = verification.max_deviation {
+        let deviation = size_in_percent(deviation);
         line(
             "largest deviation",
-            format!("{} of the amplitude over one period", size_in_percent(deviation)),
+            format!("{deviation} of the amplitude over one period"),
         );
     }
     if let Some(residual) = verification.residual {
         line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
     }
-    line(
-        "slope of the error",
-        verification
-            .slope
-            .map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}")),
-    );
+    let slope = verification.slope;
+    let slope = slope.map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}"));
+    line("slope of the error", slope);
     for (name, value) in &verification.chosen {
-        let how = if name.name().starts_with(HBAR) {
-            " (least squared residual)"
-        } else {
-            ""
-        };
+        let how = if *name == hbar { " (least squared residual)" } else { "" };
         line(name.name(), format!("{}{how}", significant(*value, 6)));
     }
     for range in &verification.ranges {
@@ -248,140 +204,7 @@ pub fn verification(verification: &Verification, tolerance: f64) -> String {
         line("range", format!("{}{mark}", range.text));
     }
     let verdict = verification.verdict.name();
-    line(
-        "verdict",
-        format!(
-            "{verdict} (|relative error| <= {} %)",
-            significant(100.0 * tolerance, 3)
-        ),
-    );
-    text
-}
-
-/// The whole story of an impact.
-pub fn impact(impact: &Impact, tolerance: f64) -> String {
-    let setup = &impact.setup;
-    let mut text = format!("{}\n", impact.equation);
-    let _ = writeln!(
-        text,
-        "x(0) = -A, x'(0) = 0: released from rest, towards a barrier at xc\n"
-    );
-    let _ = writeln!(text, "  A     = {}", decimal(setup.amplitude));
-    let _ = writeln!(text, "  xc    = {}", decimal(setup.barrier));
-    let _ = writeln!(
-        text,
-        "  gamma = {}   ({})",
-        decimal(setup.stiffness),
-        setup.stiffness_source
-    );
-    let law = impact
-        .free_swing
-        .law
-        .frequency_squared()
-        .map(ToString::to_string)
-        .unwrap_or_default();
-    let _ = writeln!(
-        text,
-        "\nThe law of the free swing, {} to order {} in A",
-        impact.free_swing.method.title(),
-        impact.free_swing.order
-    );
-    let _ = writeln!(text, "  {}", impact.free_swing.equation);
-    let _ = writeln!(text, "  omega^2 = {law}");
-    let _ = writeln!(
-        text,
-        "  omega   = {}   (A = {})",
-        decimal(impact.frequency()),
-        decimal(setup.amplitude)
-    );
-    for (title, phases) in [
-        (
-            "The paper's way: every join continuous, contact speed from the one-term motion",
-            &impact.paper,
-        ),
-        (
-            "With the contact speed from the energy, v = sqrt(2*(cos(xc) - cos(A)))",
-            &impact.energy,
-        ),
-    ] {
-        let _ = writeln!(text, "\n{title}");
-        let line = phases.line;
-        let constant = phases.line.q(setup.barrier);
-        let _ = writeln!(
-            text,
-            "  elastic force gamma*({}*x {} {}), fitted by {} over the depth {}",
-            decimal(line.slope),
-            if constant < 0.0 { '+' } else { '-' },
-            decimal(constant.abs()),
-            setup.rule,
-            decimal(phases.fitted_depth)
-        );
-        for (phase, conditions) in
-            phases
-                .phases
-                .iter()
-                .zip(["x = -A to x = xc", "x = xc to x = xc", "x = xc to x = -A"])
-        {
-            let times = format!("{} <= t <= {}", decimal(phase.start), decimal(phase.end));
-            let _ = writeln!(text, "  {:<9} {conditions},  {times}", phase.name);
-            let _ = writeln!(text, "            {}", phase.closed_form());
-        }
-        if phases.velocity_jump != 0.0 {
-            let _ = writeln!(
-                text,
-                "  the velocity jumps by {} at either join",
-                decimal(phases.velocity_jump)
-            );
-        }
-    }
-    text.push_str("\nBeside Runge-Kutta on the original equation\n");
-    let _ = writeln!(
-        text,
-        "  {:<18}{:>12}{:>12}{:>14}{:>22}",
-        "", "Runge-Kutta", "paper", "", "energy"
-    );
-    for quantity in impact.quantities() {
-        let _ = writeln!(
-            text,
-            "  {:<18}{:>12}{:>12}{:>12}{:>12}{:>12}",
-            quantity.name,
-            decimal(quantity.runge_kutta),
-            decimal(quantity.paper),
-            percent(quantity.paper_error()),
-            decimal(quantity.energy),
-            percent(quantity.energy_error())
-        );
-    }
-    let relative = |deviation: f64| format!("{} %", significant(100.0 * deviation / setup.amplitude, 3));
-    let (paper, energy) = (
-        relative(impact.paper_deviation.total),
-        relative(impact.energy_deviation.total),
-    );
-    let _ = writeln!(
-        text,
-        "  {:<18}{:>12}{paper:>12}{:>12}{energy:>12}",
-        "largest deviation", "", ""
-    );
-    let drift = 10_f64.powf(impact.truth.energy_drift.max(1e-15).log10().ceil());
-    let _ = writeln!(
-        text,
-        "  Runge-Kutta keeps the energy to {drift:e} of the kinetic energy at touch"
-    );
-    let _ = writeln!(
-        text,
-        "  verdict (every number within {} %): paper {}, energy {}",
-        significant(100.0 * tolerance, 3),
-        impact.verdict(ContactSpeed::Paper, tolerance).name(),
-        impact.verdict(ContactSpeed::Energy, tolerance).name()
-    );
-    for (column, title) in [(ContactSpeed::Paper, "paper"), (ContactSpeed::Energy, "energy")] {
-        for (errors, cause) in impact.shortcomings(column, tolerance) {
-            let errors: Vec<String> = errors
-                .iter()
-                .map(|(name, error)| format!("{name} {}", percent(*error)))
-                .collect();
-            let _ = writeln!(text, "    {title:<8}{}: {cause}", errors.join(", "));
-        }
-    }
+    let within = significant(100.0 * tolerance, 3);
+    line("verdict", format!("{verdict} (|relative error| <= {within} %)"));
     text
 }

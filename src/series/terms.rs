@@ -1,4 +1,4 @@
-//! Sums and Fourier series put together from their terms, in whatever notation: shared by text and LaTeX.
+//! Sums and Fourier series put together from their terms, in whatever notation.
 
 use num_traits::Zero;
 
@@ -34,17 +34,6 @@ pub fn in_order(polynomial: &Polynomial, key: impl Fn(&Monomial) -> i32) -> Vec<
     let mut terms: Vec<_> = polynomial.terms().collect();
     terms.sort_by_key(|(monomial, _)| key(monomial));
     terms
-}
-
-/// A polynomial as text, its terms in the order of `key`.
-pub fn polynomial(
-    polynomial: &Polynomial,
-    key: impl Fn(&Monomial) -> i32,
-    term: impl Fn(&Monomial, &Rational) -> String,
-) -> String {
-    sum(in_order(polynomial, key)
-        .into_iter()
-        .map(|(monomial, coefficient)| term(monomial, coefficient)))
 }
 
 /// The terms of a Fourier series, a minus in front of those that have one; `law` writes a coefficient.

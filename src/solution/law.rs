@@ -1,5 +1,6 @@
 //! The law of the frequency: one kind for each form in which methods give it.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::derivation::Line;
@@ -167,6 +168,73 @@ impl Law {
         self.quadrature().is_some()
             || self.polynomials().any(|law| law.symbols().contains(&symbol))
             || forms.into_iter().any(|form| form.contains(symbol))
+    }
+}
+
+/// A law in one of the forms in which reports show it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shown<'a> {
+    /// omega^2 is this polynomial.
+    Squared(&'a Polynomial),
+    /// omega is this polynomial.
+    Frequency(&'a Polynomial),
+    /// This polynomial in omega and the amplitude is zero.
+    Relation(&'a Polynomial),
+    /// An expression that is no polynomial.
+    Closed(&'a ClosedForm),
+    /// Integrals.
+    Quadrature(&'a [Line]),
+    /// Equations for numbers.
+    System(&'a System),
+}
+
+impl Law {
+    /// All forms of it that a report of one answer shows, in their order. A relation that is solved by a polynomial is left out.
+    pub fn shown(&self) -> Vec<Shown<'_>> {
+        let shown = self.in_one_line();
+        let beside = match self {
+            Self::Series { frequency, .. } => frequency.as_ref().map(Shown::Frequency),
+            _ => None,
+        };
+        let before = match self {
+            Self::Relation {
+                relation,
+                root: Some(Root::Closed(_)),
+            } => Some(Shown::Relation(relation)),
+            _ => None,
+        };
+        before.into_iter().chain([shown]).chain(beside).collect()
+    }
+
+    /// The form that stands for it where there is room for one.
+    pub fn in_one_line(&self) -> Shown<'_> {
+        match self {
+            Self::Series { squared, .. }
+            | Self::Relation {
+                root: Some(Root::Polynomial(squared)),
+                ..
+            } => Shown::Squared(squared),
+            Self::Frequency(frequency) => Shown::Frequency(frequency),
+            Self::Closed(form)
+            | Self::Relation {
+                root: Some(Root::Closed(form)),
+                ..
+            } => Shown::Closed(form),
+            Self::Relation { relation, root: None } => Shown::Relation(relation),
+            Self::Quadrature(lines) => Shown::Quadrature(lines),
+            Self::System(system) => Shown::System(system),
+        }
+    }
+}
+
+impl Shown<'_> {
+    /// The symbols of a formula; of what only numbers solve none.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        match self {
+            Self::Squared(law) | Self::Frequency(law) | Self::Relation(law) => law.symbols().into_iter().collect(),
+            Self::Closed(form) => form.value.symbols(),
+            Self::Quadrature(_) | Self::System(_) => BTreeSet::new(),
+        }
     }
 }
 

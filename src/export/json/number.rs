@@ -81,7 +81,7 @@ impl Polynomial {
             value: finite(Some(to_f64(coefficient))),
         };
         Self {
-            terms: solution.lowest_first(polynomial).into_iter().map(term).collect(),
+            terms: solution.ordered(polynomial).terms().map(term).collect(),
         }
     }
 

@@ -1,83 +1,92 @@
-//! Every method on one equation as a table that fits the terminal.
+//! The blocks of a comparison as text: a table that fits the terminal, and lists.
 
 use std::fmt::Write as _;
 
-use super::{percent, size_in_percent};
+use super::{Page, percent, size_in_percent};
 use crate::decimal::{decimal, significant};
+use crate::expr::Equation;
+use crate::report::{Block, Document, MethodRow};
 use crate::symbol::Symbol;
+use crate::values::Values;
 use crate::verify::Verdict;
-use crate::verify::comparison::{Comparison, Row};
+use crate::verify::comparison::{Refused, Row};
 use crate::verify::validity::Reach;
 
-/// Every method in one table, and below it those that do not apply, in lines of at most `width` characters where words allow
-/// it. Formulas stand at the end of their rows where all of them fit there, and below the table where not.
-pub fn comparison(comparison: &Comparison, width: usize) -> String {
-    let at: Vec<String> = comparison
-        .at
+/// The length of the longest name of a method in the tables and lists of a document.
+pub(super) fn longest_title(document: &Document) -> usize {
+    let length = |title: &str| title.chars().count();
+    let longest = |block: &Block| match block {
+        Block::Methods { rows, .. } => rows.iter().map(|row| length(&row.title)).max(),
+        Block::Refused(refused) => refused.iter().map(|refused| length(refused.method.title())).max(),
+        _ => None,
+    };
+    document
+        .sections
         .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    let mut text = format!("{}\n\n", comparison.equation);
-    let place = if at.is_empty() {
-        String::new()
-    } else {
-        format!(" at {}", at.join(", "))
+        .flatten()
+        .filter_map(longest)
+        .max()
+        .unwrap_or(0)
+}
+
+pub(super) fn truth(equation: &Equation, at: &Values, frequency: &Result<f64, String>) -> String {
+    let at: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let place = match at.is_empty() {
+        true => String::new(),
+        false => format!(" at {}", at.join(", ")),
     };
-    let unknown = || format!("not known: {}", in_words(comparison.reason.as_ref()));
-    let truth = comparison.true_frequency.map_or_else(unknown, decimal);
-    let _ = writeln!(text, "True omega{place}: {truth}\n");
-    text.push_str(&table(comparison, width));
-    let titles = comparison.rows.iter().map(|row| row.solution.title());
-    let titles = titles.chain(
-        comparison
-            .refused
-            .iter()
-            .map(|refused| refused.method.title().to_owned()),
-    );
-    let longest = titles.map(|title| title.chars().count()).max().unwrap_or(0);
-    let mut section = |heading: &str, entries: &[(String, String)]| {
-        if !entries.is_empty() {
-            let _ = writeln!(text, "\n{heading}");
-            for (name, words) in entries {
-                text.push_str(&entry(name, words, longest, width));
-            }
-        }
+    let truth = match frequency {
+        Ok(frequency) => decimal(*frequency),
+        Err(reason) => format!("not known: {reason}"),
     };
-    if !formulas_in_table(comparison, width) {
-        let formulas = comparison.rows.iter().map(|row| (row.solution.title(), with_hbar(row)));
-        section("Formulas", &formulas.collect::<Vec<_>>());
+    format!("{equation}\n\nTrue omega{place}: {truth}\n")
+}
+
+/// The table, and the formulas below it where it has no room for them.
+pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &Page) -> String {
+    let cells = cells(rows, tolerance);
+    let formulas: Vec<String> = rows.iter().map(formula).collect();
+    let widths = widths(&cells);
+    let columns: usize = widths.iter().map(|width| width + 2).sum();
+    let longest = formulas.iter().map(|formula| formula.chars().count()).max();
+    let room = columns + 2 + longest.unwrap_or(0) <= page.width;
+    let mut text = table(&cells, widths, room.then_some(&formulas), page.width);
+    if !room {
+        let formulas = rows.iter().map(|row| row.title.clone()).zip(formulas);
+        text.push('\n');
+        text.push_str(&entries("Formulas", &formulas.collect::<Vec<_>>(), page));
     }
-    let without = comparison.rows.iter().filter(|row| row.frequency.is_none());
-    let mut without: Vec<(String, String)> = without
-        .map(|row| (row.solution.title(), in_words(row.reason.as_ref())))
-        .collect();
-    without.dedup();
-    section("No frequency", &without);
-    let refused = comparison.refused.iter();
-    let refused = refused.map(|refused| (refused.method.title().to_owned(), refused.reason.reason(refused.method)));
-    section("Not applicable", &refused.collect::<Vec<_>>());
-    if !comparison.validity.is_empty() {
-        text.push_str("\nTrue motion\n");
-        for line in &comparison.validity {
-            let _ = writeln!(text, "{}", wrapped(line, width, "  ", "    "));
-        }
-    }
-    let convention = comparison.rows.first().map(|row| row.solution.amplitude.to_string());
-    let closing = format!(
-        "{}; deviation: largest over one period, of the amplitude",
-        convention.unwrap_or_default()
-    );
-    let _ = writeln!(text, "\n{}", wrapped(&closing, width, "", ""));
     text
 }
 
+/// Names and what is said of each.
+pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &Page) -> String {
+    let entries = entries
+        .iter()
+        .map(|(name, words)| entry(name, words, page.longest_title, page.width));
+    format!("{heading}\n") + &entries.collect::<String>()
+}
+
+pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
+    let named = |refused: &Refused| {
+        let reason = refused.reason.reason(refused.method);
+        (refused.method.title().to_owned(), reason)
+    };
+    entries("Not applicable", &refused.iter().map(named).collect::<Vec<_>>(), page)
+}
+
+pub(super) fn true_motion(lines: &[String], width: usize) -> String {
+    let lines = lines.iter().map(|line| wrapped(line, width, "  ", "    ") + "\n");
+    "True motion\n".to_owned() + &lines.collect::<String>()
+}
+
 /// Header and rows, without the formulas.
-fn cells(comparison: &Comparison) -> Vec<[String; 6]> {
-    let within = format!("{} % up to", significant(100.0 * comparison.tolerance, 3));
+fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
+    let within = format!("{} % up to", significant(100.0 * tolerance, 3));
     let header = ["method", "omega", "error", "deviation", "verdict", &within].map(str::to_owned);
-    let row = |row: &Row| {
+    let cells = |MethodRow { row, title, .. }: &MethodRow| {
         [
-            row.solution.title(),
+            title.clone(),
             row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
             row.relative_error.map_or("-".to_owned(), percent),
             row.max_deviation.map_or("-".to_owned(), size_in_percent),
@@ -85,38 +94,31 @@ fn cells(comparison: &Comparison) -> Vec<[String; 6]> {
             reach(row.reach, row.solution.amplitude.symbol()),
         ]
     };
-    std::iter::once(header).chain(comparison.rows.iter().map(row)).collect()
+    std::iter::once(header).chain(rows.iter().map(cells)).collect()
 }
 
 fn widths(cells: &[[String; 6]]) -> [usize; 6] {
     std::array::from_fn(|column| cells.iter().map(|row| row[column].chars().count()).max().unwrap_or(0))
 }
 
-/// Whether every row has room for its formula.
-fn formulas_in_table(comparison: &Comparison, width: usize) -> bool {
-    let columns: usize = widths(&cells(comparison)).iter().map(|width| width + 2).sum();
-    let formulas = comparison.rows.iter().map(|row| with_hbar(row).chars().count());
-    columns + 2 + formulas.max().unwrap_or(0) <= width
-}
-
-fn table(comparison: &Comparison, width: usize) -> String {
-    let cells = cells(comparison);
-    let mut widths = widths(&cells);
+fn table(cells: &[[String; 6]], mut widths: [usize; 6], formulas: Option<&Vec<String>>, width: usize) -> String {
     let numbers: usize = widths[1..].iter().map(|width| width + 2).sum();
     // Names may take a second line; numbers may not.
     const NARROWEST: usize = 16;
     widths[0] = widths[0].min(width.saturating_sub(numbers + 2).max(NARROWEST));
-    let formulas = formulas_in_table(comparison, width);
-    let mut formula = std::iter::once("formula".to_owned()).chain(comparison.rows.iter().map(with_hbar));
+    let header = formulas.map(|_| "formula");
+    let mut formulas = header
+        .into_iter()
+        .chain(formulas.into_iter().flatten().map(String::as_str));
     let mut text = String::new();
-    for row in &cells {
+    for row in cells {
         let name = wrapped(&row[0], widths[0], "", "  ");
         let (first, more) = name.split_once('\n').unwrap_or((&name, ""));
         let mut line = format!("  {first:<width$}", width = widths[0]);
         for column in 1..6 {
             let _ = write!(line, "  {:>width$}", row[column], width = widths[column]);
         }
-        if let Some(formula) = formula.next().filter(|_| formulas) {
+        if let Some(formula) = formulas.next() {
             let _ = write!(line, "  {formula}");
         }
         let _ = writeln!(text, "{line}");
@@ -139,7 +141,7 @@ fn entry(name: &str, words: &str, longest: usize, width: usize) -> String {
 
 /// Text in lines of at most `width` characters, `first` before the first of them and `next` before the others. A sign stays
 /// with the term that it belongs to, and a value with its name.
-fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
+pub(super) fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
     let mut lines = vec![first.to_owned()];
     let mut indent = first.chars().count();
     let mut words: Vec<String> = Vec::new();
@@ -170,10 +172,6 @@ fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
     lines.join("\n")
 }
 
-fn in_words(reason: Option<&impl ToString>) -> String {
-    reason.map(ToString::to_string).unwrap_or_default()
-}
-
 /// What stands in the place of a frequency.
 fn without_number(row: &Row) -> &'static str {
     match &row.reason {
@@ -183,10 +181,11 @@ fn without_number(row: &Row) -> &'static str {
 }
 
 /// The formula of a row, and the hbar with which it was evaluated.
-fn with_hbar(row: &Row) -> String {
-    let hbar = row.chosen_hbar();
-    let value = hbar.map(|(name, value)| format!(", {name} = {}", significant(value, 6)));
-    row.solution.formula() + &value.unwrap_or_default()
+fn formula(row: &MethodRow) -> String {
+    let value = row
+        .hbar
+        .map(|(name, value)| format!(", {name} = {}", significant(value, 6)));
+    row.row.solution.formula() + &value.unwrap_or_default()
 }
 
 fn reach(reach: Option<Reach>, amplitude: Symbol) -> String {

@@ -1,0 +1,86 @@
+//! The blocks of a comparison as LaTeX.
+
+use super::{constant, expression, scientific, scientific_text, sum, symbol};
+use crate::decimal::{decimal, significant};
+use crate::expr::Equation;
+use crate::report::MethodRow;
+use crate::solution::law::Shown;
+use crate::values::Values;
+
+pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> String {
+    let truth = match frequency {
+        Ok(frequency) => decimal(*frequency),
+        Err(reason) => format!("not known: {reason}"),
+    };
+    format!("{equation}; true omega = {truth}")
+}
+
+/// The table, a formula at the end of each row.
+pub(super) fn methods(rows: &[MethodRow], at: &Values) -> String {
+    let at = at.iter();
+    let at: Vec<String> = at
+        .map(|(name, value)| format!("{} = {}", symbol(name), expression(value)))
+        .collect();
+    let place = match at.is_empty() {
+        true => String::new(),
+        false => format!(" at ${}$", at.join(", ")),
+    };
+    let head = format!("method & $\\omega${place} & error in \\% & deviation in \\% & formula \\\\\n\\hline\n");
+    let rows: String = rows.iter().map(row).collect();
+    format!("\\begin{{tabular}}{{lrrrl}}\n\\hline\n{head}{rows}\\hline\n\\end{{tabular}}\n")
+}
+
+fn row(method: &MethodRow) -> String {
+    let percent = |value: Option<f64>| {
+        value.map_or("--".to_owned(), |value| {
+            let sign = if value < 0.0 { "-" } else { "" };
+            let size = 100.0 * value.abs();
+            match size < 1e-7 {
+                true => "$< 10^{-7}$".to_owned(),
+                false => format!("${sign}{}$", scientific_text(&significant(size, 3))),
+            }
+        })
+    };
+    let frequency = method.row.frequency;
+    let frequency = frequency.map_or("--".to_owned(), |value| format!("${}$", scientific(value)));
+    format!(
+        "{} & {frequency} & {} & {} & {} \\\\\n",
+        method.title,
+        percent(method.row.relative_error),
+        percent(method.row.max_deviation),
+        with_hbar(method),
+    )
+}
+
+/// The formula of a row, and the hbar with which it was evaluated.
+fn with_hbar(method: &MethodRow) -> String {
+    let hbar = method.hbar.map(|(name, value)| {
+        let value = scientific_text(&significant(value, 6));
+        format!(", \\; {} = {value}", symbol(name))
+    });
+    match formula(method) {
+        Ok(formula) => format!("${formula}{}$", hbar.unwrap_or_default()),
+        Err(words) => words.to_owned(),
+    }
+}
+
+/// The law in one line, with the definitions it needs; in words where it is no formula.
+fn formula(method: &MethodRow) -> Result<String, &'static str> {
+    let ordered = |law| sum(&method.row.solution.ordered(law));
+    let law = match method.law {
+        Shown::Squared(squared) => format!("\\omega^{{2}} = {}", ordered(squared)),
+        Shown::Closed(_) if method.row.solution.numerical => return Err("closed form, rounded coefficients"),
+        Shown::Closed(form) => {
+            let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
+            format!("{name} = {}", expression(&form.value))
+        }
+        Shown::Frequency(frequency) => format!("\\omega = {}", ordered(frequency)),
+        Shown::Relation(relation) => format!("0 = {}", ordered(relation)),
+        Shown::Quadrature(_) | Shown::System(_) => return Err("by numbers"),
+    };
+    let definitions = method.definitions.iter().map(|definition| {
+        let meaning = constant(&definition.meaning);
+        format!(", \\; {} = {meaning}", symbol(definition.symbol))
+    });
+    Ok(law + &definitions.collect::<String>())
+}

@@ -1,0 +1,58 @@
+//! Every method on one equation.
+
+use super::{Block, Document, MethodRow};
+use crate::verify::comparison::{Comparison, Row};
+
+/// The document of a comparison: the truth, the table, why some rows have no frequency, who does not apply, where the true
+/// motion is periodic.
+pub fn comparison(comparison: &Comparison) -> Document<'_> {
+    let reason = || comparison.reason.as_ref().map(ToString::to_string);
+    let truth = Block::Truth {
+        equation: &comparison.equation,
+        at: &comparison.at,
+        frequency: comparison.true_frequency.ok_or_else(|| reason().unwrap_or_default()),
+    };
+    let methods = Block::Methods {
+        rows: comparison.rows.iter().map(method_row).collect(),
+        at: &comparison.at,
+        tolerance: comparison.tolerance,
+    };
+    let without = comparison.rows.iter().filter(|row| row.frequency.is_none());
+    let mut without: Vec<(String, String)> = without
+        .map(|row| {
+            let reason = row.reason.as_ref().map(ToString::to_string);
+            (row.solution.title(), reason.unwrap_or_default())
+        })
+        .collect();
+    without.dedup();
+    let mut sections = vec![vec![truth], vec![methods]];
+    if !without.is_empty() {
+        sections.push(vec![Block::Entries {
+            heading: "No frequency",
+            entries: without,
+        }]);
+    }
+    if !comparison.refused.is_empty() {
+        sections.push(vec![Block::Refused(&comparison.refused)]);
+    }
+    if !comparison.validity.is_empty() {
+        sections.push(vec![Block::TrueMotion(&comparison.validity)]);
+    }
+    let convention = comparison.rows.first().map(|row| row.solution.amplitude.to_string());
+    sections.push(vec![Block::Closing(format!(
+        "{}; deviation: largest over one period, of the amplitude",
+        convention.unwrap_or_default()
+    ))]);
+    Document { sections }
+}
+
+fn method_row(row: &Row) -> MethodRow<'_> {
+    let law = row.solution.law.in_one_line();
+    MethodRow {
+        row,
+        title: row.solution.title(),
+        law,
+        definitions: row.solution.definitions_behind(law.symbols()),
+        hbar: row.chosen_hbar(),
+    }
+}

@@ -1,0 +1,179 @@
+//! What a report says, before any format says how: one file for each kind of result, which makes a [`Document`] of it.
+//!
+//! In come results: a [`Solution`] with its [`Verification`], a [`Comparison`](crate::verify::comparison::Comparison), an
+//! [`Impact`](crate::impact::Impact). Out go documents, sections of blocks; every format of `export` knows each kind of block
+//! and nothing of the results. Which law is shown, what is left out and what stands beside what is chosen here, once.
+
+mod comparison;
+mod impact;
+mod solution;
+
+pub use comparison::comparison;
+pub use impact::impact;
+pub use solution::solution;
+
+use crate::derivation::Line;
+use crate::expr::{Equation, Expr};
+use crate::impact::{ContactSpeed, Phase, Quantity};
+use crate::solution::law::Shown;
+use crate::solution::{AmplitudeConvention, Definition, Solution, Sum};
+use crate::symbol::Symbol;
+use crate::values::Values;
+use crate::verify::comparison::{Refused, Row};
+use crate::verify::{Verdict, Verification};
+
+/// Sections of blocks, in the order in which they are read.
+#[derive(Clone, Debug)]
+pub struct Document<'a> {
+    /// The sections; text leaves a line empty between them.
+    pub sections: Vec<Vec<Block<'a>>>,
+}
+
+/// One thing that a report says.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Block<'a> {
+    /// The equation of motion that the report is about.
+    Question(&'a Equation),
+    /// The same in its own words, where it has no normal form.
+    QuestionAsTyped(&'a str),
+    /// Who derived the answer, and what its amplitude measures.
+    Title {
+        /// The method and its order.
+        words: String,
+        /// The convention.
+        amplitude: AmplitudeConvention,
+    },
+    /// The beginning of a section, or a sentence of its own.
+    Heading(String),
+    /// What a reader should know of the result.
+    Note(String),
+    /// A note of second rank, such as a list of the other limit cycles.
+    Remark(String),
+    /// What only the longest format has room for.
+    Detail(String),
+    /// A law: omega^2, omega, or zero.
+    Law {
+        /// The left side.
+        left: Expr,
+        /// The right side.
+        right: Sum,
+    },
+    /// A relation between omega and the amplitude, zero.
+    Relation(Sum),
+    /// An equation that is no polynomial.
+    Equality {
+        /// The left side.
+        left: Expr,
+        /// The right side.
+        right: &'a Expr,
+    },
+    /// A line of a derivation.
+    Line(&'a Line),
+    /// What a system of equations is solved for.
+    Unknowns(&'a [Symbol]),
+    /// The amplitude of a limit cycle.
+    CycleAmplitude {
+        /// Its symbol.
+        symbol: Symbol,
+        /// Its value.
+        amplitude: Sum,
+    },
+    /// The motion of an answer; it may be zero, where only quadrature gives it.
+    Motion(&'a Solution),
+    /// A symbol and what it stands for.
+    Definition(&'a Definition),
+    /// A symbol and its number.
+    Value {
+        /// The symbol.
+        name: Symbol,
+        /// Its number.
+        value: f64,
+        /// Where that comes from.
+        source: Option<&'a str>,
+    },
+    /// A formula judged at given values.
+    Judged {
+        /// What the judge found.
+        verification: &'a Verification,
+        /// The error of the series of omega, where it stands beside omega^2 and differs.
+        series_of_omega: Option<f64>,
+        /// Where hbar was chosen by the least squared residual, its name.
+        hbar: Symbol,
+        /// The error up to which it passes.
+        tolerance: f64,
+    },
+    /// The true frequency, which a table is compared with.
+    Truth {
+        /// The equation.
+        equation: &'a Equation,
+        /// The values.
+        at: &'a Values,
+        /// The frequency, or why there is none.
+        frequency: Result<f64, String>,
+    },
+    /// A table of methods.
+    Methods {
+        /// A row each.
+        rows: Vec<MethodRow<'a>>,
+        /// The values at which they are judged.
+        at: &'a Values,
+        /// The error up to which they pass.
+        tolerance: f64,
+    },
+    /// Names with what is said of each.
+    Entries {
+        /// What they have in common.
+        heading: &'static str,
+        /// The names and the words.
+        entries: Vec<(String, String)>,
+    },
+    /// The methods that do not apply.
+    Refused(&'a [Refused]),
+    /// Where the true motion is periodic.
+    TrueMotion(&'a [String]),
+    /// What closes a report.
+    Closing(String),
+    /// The phases that follow, by where the speed of contact comes from.
+    Speed(ContactSpeed),
+    /// A phase of an impact.
+    Phase(&'a Phase),
+    /// The numbers of an impact beside those of Runge-Kutta.
+    Quantities {
+        /// A row each.
+        rows: Vec<Quantity>,
+        /// The largest deviations over the amplitude: of the paper's phases, of those by the energy.
+        deviations: [f64; 2],
+    },
+    /// The verdicts on an impact.
+    Verdicts {
+        /// On the paper's phases, on those by the energy.
+        verdicts: [Verdict; 2],
+        /// The error up to which they pass.
+        tolerance: f64,
+    },
+    /// Numbers beyond the tolerance, and what they come from.
+    Shortcoming {
+        /// Whose numbers.
+        speed: ContactSpeed,
+        /// The names and the relative errors.
+        errors: Vec<(&'static str, f64)>,
+        /// The cause.
+        cause: String,
+    },
+}
+
+/// A row of a table of methods.
+#[derive(Clone, Debug)]
+pub struct MethodRow<'a> {
+    /// The method, its answer and its numbers.
+    pub row: &'a Row,
+    /// The method and its order.
+    pub title: String,
+    /// Its law.
+    pub law: Shown<'a>,
+    /// The definitions that the law needs.
+    pub definitions: Vec<&'a Definition>,
+    /// The hbar with which it was evaluated.
+    pub hbar: Option<(Symbol, f64)>,
+}

@@ -1,0 +1,111 @@
+//! A derived formula, and the verdict where it was judged.
+
+use super::{Block, Document};
+use crate::decimal::decimal;
+use crate::expr::Expr;
+use crate::method::homotopy_analysis::convergence_control;
+use crate::solution::law::Shown;
+use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
+use crate::verify::Verification;
+
+/// The document of a solution: equation, title, law, limit cycle, motion with definitions, validity, verdict.
+pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verification>, tolerance: f64) -> Document<'a> {
+    let title = Block::Title {
+        words: solution.title(),
+        amplitude: solution.amplitude,
+    };
+    let shown = solution.law.shown();
+    let laws = shown.into_iter().flat_map(|law| law_blocks(solution, law));
+    let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws.collect()];
+    if let Some(cycle) = &solution.limit_cycle {
+        let amplitude = Block::CycleAmplitude {
+            symbol: solution.amplitude.symbol(),
+            amplitude: solution.ordered(&cycle.amplitude),
+        };
+        let others = other_cycles(cycle, solution).into_iter().map(Block::Remark);
+        sections.push(std::iter::once(amplitude).chain(others).collect());
+    }
+    let definitions = solution.definitions.iter().map(Block::Definition);
+    sections.push(std::iter::once(Block::Motion(solution)).chain(definitions).collect());
+    let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
+    let heading = Block::Heading("Validity".to_owned());
+    sections.push(std::iter::once(heading).chain(notes).collect());
+    sections.extend(verification.map(|verification| vec![judged(solution, verification, tolerance)]));
+    Document { sections }
+}
+
+/// A law as blocks.
+fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Block<'a>> {
+    let omega = Expr::symbol("omega");
+    let explicit = |left: Expr, right| Block::Law {
+        left,
+        right: solution.ordered(right),
+    };
+    match law {
+        Shown::Squared(squared) => vec![explicit(&omega * &omega, squared)],
+        Shown::Frequency(frequency) => vec![explicit(omega, frequency)],
+        Shown::Relation(relation) => vec![Block::Relation(solution.by_falling_frequency(relation))],
+        Shown::Closed(form) => vec![Block::Equality {
+            left: if form.squared { &omega * &omega } else { omega },
+            right: &form.value,
+        }],
+        Shown::Quadrature(lines) => lines.iter().map(Block::Line).collect(),
+        Shown::System(system) => {
+            let equations = system.equations.iter();
+            let equations = equations.map(|right| Block::Equality {
+                left: Expr::zero(),
+                right,
+            });
+            std::iter::once(Block::Unknowns(&system.unknowns))
+                .chain(equations)
+                .collect()
+        }
+    }
+}
+
+/// The verdict, with what of it is worth saying.
+fn judged<'a>(solution: &Solution, verification: &'a Verification, tolerance: f64) -> Block<'a> {
+    /// Errors that differ by less are one.
+    const SAME: f64 = 1e-9;
+    let differs = |other: &f64| {
+        let error = verification.relative_error;
+        error.is_none_or(|error| (other - error).abs() > SAME)
+    };
+    Block::Judged {
+        verification,
+        series_of_omega: verification.error_of_omega.filter(differs),
+        hbar: convergence_control(solution),
+        tolerance,
+    }
+}
+
+/// Where an equation has several limit cycles: all of them, to leading order.
+fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
+    if cycle.cycles.len() < 2 {
+        return vec![];
+    }
+    let symbol = solution.amplitude.symbol();
+    let small: Vec<&str> = solution.small_parameters().map(|name| name.name()).collect();
+    let head = format!(
+        "cycle {} of {}; for {} -> 0:",
+        cycle.number,
+        cycle.cycles.len(),
+        small.join(", ")
+    );
+    let line = |(k, each): (usize, &LeadingCycle)| {
+        let own = if k + 1 == cycle.number { "*" } else { " " };
+        let amplitude = &each.amplitude;
+        let value = match amplitude.as_number() {
+            Some(_) => String::new(),
+            None => {
+                let value = amplitude.evaluate(&std::collections::BTreeMap::new());
+                value.map_or_else(|_| String::new(), |value| format!(" = {}", decimal(value)))
+            }
+        };
+        let exact = constant_in_words(amplitude);
+        format!("{own} {}  {symbol} = {exact}{value}, {}", k + 1, each.stability())
+    };
+    std::iter::once(head)
+        .chain(cycle.cycles.iter().enumerate().map(line))
+        .collect()
+}

@@ -7,7 +7,7 @@ use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
-use super::derive::{exact_values, oscillator, with_known_equilibrium};
+use super::derive::{exact_values, formula, oscillator, with_known_equilibrium};
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, files, json_text, tolerance, whole};
 
@@ -30,13 +30,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    problem
-        .check_keys(Reader::Compare)
-        .map_err(|error| Failure::refused(&error, None))?;
-    let oscillator = oscillator(&problem, arguments.about.as_deref())?;
+    let formula = formula(&problem, Reader::Compare)?;
+    let oscillator = oscillator(&formula, arguments.about.as_deref())?;
     let (oscillator, values) = with_known_equilibrium(oscillator, exact_values(&arguments.at, &problem)?)?;
     let values = values.unwrap_or_default();
-    let small = arguments.small.as_deref().or(problem.small.as_deref());
+    let small = arguments.small.as_deref().or(formula.small);
     if small.is_some() {
         oscillator
             .small_parameter(small)

@@ -7,7 +7,7 @@ use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal};
-use lindstedt::problem::{self, Problem, Reader};
+use lindstedt::problem::{self, Formula, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::spelling::nearest;
 use lindstedt::verify::{self, VerificationError};
@@ -99,11 +99,9 @@ impl std::str::FromStr for Order {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    problem
-        .check_keys(Reader::Derive)
-        .map_err(|error| Failure::refused(&error, None))?;
-    let oscillator = oscillator(&problem, arguments.about.as_deref())?;
-    let options = options(arguments, &problem)?;
+    let formula = formula(&problem, Reader::Derive)?;
+    let oscillator = oscillator(&formula, arguments.about.as_deref())?;
+    let options = options(arguments, &formula)?;
     // The name is refused here, for a method that has no use for it would pass over it.
     if options.small.is_some() {
         oscillator
@@ -194,15 +192,17 @@ fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     Failure::advised(&format!("{refusal}{shown}"), refusal.help())
 }
 
-/// The oscillator of a problem that has an equation, about the equilibrium asked for.
-pub(super) fn oscillator(problem: &Problem, about: Option<&str>) -> Result<Oscillator, Failure> {
-    let Some(equation) = &problem.equation else {
-        return Err(Failure::Refused(
-            "the file has no `equation`\n  help: equation = \"x'' + sin(x) = 0\"".to_owned(),
-        ));
-    };
-    let oscillator = Oscillator::parse(equation).map_err(|error| Failure::advised(&error, error.help()))?;
-    let Some(about) = about.or(problem.about.as_deref()) else {
+/// What a problem says to this command.
+pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<Formula<'_>, Failure> {
+    problem
+        .formula(reader)
+        .map_err(|error| Failure::refused(&error, error.help()))
+}
+
+/// The oscillator of an equation, about the equilibrium asked for.
+pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscillator, Failure> {
+    let oscillator = Oscillator::parse(formula.equation).map_err(|error| Failure::advised(&error, error.help()))?;
+    let Some(about) = about.or(formula.about) else {
         return Ok(oscillator);
     };
     let x = oscillator.coordinate;
@@ -239,9 +239,9 @@ pub(super) fn with_known_equilibrium(
     })
 }
 
-fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure> {
+fn options(arguments: &Arguments, formula: &Formula) -> Result<Options, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
-    let method = match arguments.method.as_ref().or(problem.method.as_ref()) {
+    let method = match arguments.method.as_deref().or(formula.method) {
         None => None,
         Some(name) => match Method::from_name(name) {
             Some(method) => Some(method),
@@ -250,7 +250,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             }
         },
     };
-    let amplitude = match (arguments.amplitude, &problem.amplitude) {
+    let amplitude = match (arguments.amplitude, formula.amplitude) {
         (Some(Convention::Initial), _) => Some(AmplitudeConvention::Initial),
         (Some(Convention::FirstHarmonic), _) => Some(AmplitudeConvention::FirstHarmonic),
         (None, None) => None,
@@ -277,7 +277,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
     if arguments.cycle.is_some() && !entry.takes(Choice::Cycle) {
         return without("--cycle", &that_take(Choice::Cycle));
     }
-    let (order, pade) = match arguments.order.or(problem.order.map(Order::from)) {
+    let (order, pade) = match arguments.order.or(formula.order.map(Order::from)) {
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
             return without("--order, or `order` in the file,", "the methods that approximate");
         }
@@ -305,7 +305,7 @@ fn options(arguments: &Arguments, problem: &Problem) -> Result<Options, Failure>
             Err(error) => return usage(format!("--hbar {text}: {error}")),
         },
     };
-    let small = arguments.small.clone().or_else(|| problem.small.clone());
+    let small = arguments.small.as_deref().or(formula.small).map(str::to_owned);
     Ok(Options {
         method,
         order,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lindstedt::export::{json, latex, text};
 use lindstedt::impact::{ContactSpeed, Impact, Setup, solve};
-use lindstedt::problem::{Barrier, Order, Problem, Reader};
+use lindstedt::problem::Problem;
 
 use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
@@ -23,7 +23,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => Problem::default(),
         Some(path) => from_file(path)?,
     };
-    let impact = solve(setup(&problem)?).map_err(|error| Failure::refused(&error, None))?;
+    let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;
+    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
     let tolerance = tolerance(&arguments.common);
     let text = match arguments.common.format {
         Format::Text => text::impact(&impact, tolerance),
@@ -42,77 +43,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         note: None,
         verdict: Some(impact.verdict(ContactSpeed::Paper, tolerance)),
         partial: false,
-    })
-}
-
-/// The default order of the law: equation (12), the first term beyond the linear one.
-const ORDER: u32 = 2;
-
-fn setup(problem: &Problem) -> Result<Setup, Failure> {
-    let refuse = |message: &str| Err(Failure::Refused(message.to_owned()));
-    problem
-        .check_keys(Reader::Impact)
-        .map_err(|error| Failure::refused(&error, None))?;
-    let damping = &problem.damping;
-    if damping.zeta != 0.0
-        || damping.alpha != 0.0
-        || problem
-            .contact
-            .mu
-            .or(problem.contact.lambda)
-            .is_some_and(|mu| mu != 0.0)
-    {
-        return refuse(
-            "the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda, or use `lindstedt simulate`",
-        );
-    }
-    if problem.excitation.beta != 0.0 {
-        return refuse(
-            "the three phases in closed form are those of the free motion, equation (9): leave out [excitation], or use `lindstedt simulate`",
-        );
-    }
-    if problem.pendulum.start.is_some() || problem.pendulum.speed.is_some() {
-        return refuse(
-            "the three phases begin at rest at x = -amplitude: leave out `start` and `speed`, or use `lindstedt simulate`",
-        );
-    }
-    let order = match problem.order {
-        None => ORDER,
-        Some(Order::Power(order)) => order,
-        Some(Order::Degrees(_)) => return refuse("the order of the law is one whole number"),
-    };
-    if problem.equation.is_some() {
-        return refuse("the swing of an impact is x'' + sin(x) = 0: leave out `equation`, or use `lindstedt derive`");
-    }
-    if problem
-        .method
-        .as_deref()
-        .is_some_and(|name| name != "lindstedt-poincare")
-    {
-        return refuse("the law of the approach is derived by lindstedt-poincare: leave out `method`");
-    }
-    let amplitude = problem.pendulum.amplitude;
-    let barrier = match problem.pendulum.barrier {
-        Barrier::Right(position) => position,
-        // A left barrier beyond the release is never touched again.
-        Barrier::Both([left, right]) if left < -amplitude => right,
-        Barrier::Both(_) => {
-            return refuse(
-                "released from rest at x = -amplitude the pendulum starts behind the left barrier: move it below -amplitude",
-            );
-        }
-    };
-    let refused = |error: lindstedt::problem::ProblemError| Failure::refused(&error, error.help());
-    let (stiffness, source) = problem.stiffness().map_err(refused)?;
-    Ok(Setup {
-        amplitude,
-        barrier,
-        stiffness,
-        stiffness_source: source.to_owned(),
-        order,
-        rule: problem.linearisation().map_err(refused)?,
-        integrator_tolerance: problem.run.integrator_tolerance,
-        step_limit: problem.run.step_limit,
     })
 }
 

@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
-use lindstedt::impact::sweep::{Axis, MOST_MOTIONS, Summary, sweep, sweep_on};
-use lindstedt::impact::{Integrator, Simulation, simulate};
+use lindstedt::impact::sweep::{Axis, AxisError, MOST_MOTIONS, Summary, grid_values, sweep, sweep_on};
+use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, simulate};
 use lindstedt::interrupt::Interrupt;
-use lindstedt::problem::{DamperError, Problem};
+use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
 
 use super::problem::from_file;
@@ -54,8 +54,7 @@ fn time(text: &str) -> Result<f64, String> {
 }
 
 fn axis(text: &str) -> Result<Axis, String> {
-    text.parse()
-        .map_err(|error: lindstedt::impact::sweep::AxisError| error.to_string())
+    text.parse().map_err(|error: AxisError| error.to_string())
 }
 
 /// Without `--tolerance`: the energy that may go astray, relative to the largest.
@@ -84,24 +83,26 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { note, ..outcome })
 }
 
-fn refused(error: DamperError) -> Failure {
+fn refused(error: SimulateError) -> Failure {
     let help = error.help();
     Failure::refused(&error, help)
 }
 
 fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
-    let mut damper = problem.damper().map_err(refused)?;
-    damper.options.interrupt = Interrupt::by(&STOP);
-    let duration = damper.options.duration;
+    let asked = Simulate::try_from(problem).map_err(refused)?;
+    let (model, start) = asked.case.motion().map_err(|error| refused(error.into()))?;
+    let settings = Settings {
+        interrupt: Interrupt::by(&STOP),
+        ..asked.settings
+    };
+    let duration = settings.duration;
     if let Some(late) = arguments.sample.iter().find(|sample| **sample > duration) {
         return Err(Failure::Refused(format!(
             "--sample {late} lies beyond the duration {duration}\n  help: raise `duration` in [run]"
         )));
     }
-    let follow = |integrator| {
-        simulate(&damper.model, damper.start, integrator, &damper.options)
-            .map_err(|error| Failure::refused(&error, None))
-    };
+    let follow =
+        |integrator| simulate(&model, start, integrator, &settings).map_err(|error| Failure::refused(&error, None));
     let motion = match arguments.integrator {
         Method::RungeKutta => follow(Integrator::RungeKutta)?,
         Method::Taylor | Method::Both => follow(Integrator::Taylor)?,
@@ -113,7 +114,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let report = Report {
         motion: &motion,
         judge: judge.as_ref(),
-        sources: [damper.gamma_source, damper.mu_source],
+        sources: [asked.gamma_source, asked.mu_source],
         tolerance: problem.run.integrator_tolerance,
         samples: &arguments.sample,
     };
@@ -153,6 +154,52 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
     Verdict::of(agreed && motion.stop.is_complete() && motion.energy().residual <= allowed)
 }
 
+/// The motions of a sweep, the last parameter varying fastest, and how to follow them.
+fn motions(axes: &[Axis], problem: &Problem) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
+    let total = axes
+        .iter()
+        .try_fold(1_usize, |product, axis| product.checked_mul(axis.count))
+        .filter(|total| *total <= MOST_MOTIONS);
+    let Some(total) = total else {
+        return Err(Failure::Refused(format!(
+            "the sweep has more than {MOST_MOTIONS} motions: lower the counts"
+        )));
+    };
+    for axis in axes {
+        if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name.as_str()) {
+            return Err(Failure::Refused(format!(
+                "`{}` is the same for all motions of a sweep: give it in [run]",
+                axis.name
+            )));
+        }
+    }
+    if let [down, across] = axes
+        && down.name == across.name
+    {
+        return Err(Failure::Usage(format!("`{}` is swept twice", down.name)));
+    }
+    let named = |axis: &Axis| axis.name.parse::<Parameter>();
+    let swept: Vec<Parameter> = axes
+        .iter()
+        .map(named)
+        .collect::<Result<_, _>>()
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let asked = problem.simulate(&swept).map_err(refused)?;
+    let mut motions = Vec::with_capacity(total);
+    for number in 0..total {
+        let mut case = asked.case;
+        for (parameter, value) in swept.iter().zip(grid_values(axes, number)) {
+            case.set(*parameter, value);
+        }
+        motions.push(case.motion().map_err(|error| refused(error.into()))?);
+    }
+    let settings = Settings {
+        interrupt: Interrupt::by(&STOP),
+        ..asked.settings
+    };
+    Ok((motions, settings))
+}
+
 fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     if arguments.sweep.len() > 2 {
         return Err(Failure::Usage("a sweep has one or two parameters".to_owned()));
@@ -163,58 +210,8 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
                 .to_owned(),
         ));
     }
-    let total = arguments
-        .sweep
-        .iter()
-        .try_fold(1_usize, |product, axis| product.checked_mul(axis.count))
-        .filter(|total| *total <= MOST_MOTIONS);
-    let Some(total) = total else {
-        return Err(Failure::Refused(format!(
-            "the sweep has more than {MOST_MOTIONS} motions: lower the counts"
-        )));
-    };
-    let mut motions = Vec::with_capacity(total);
-    let mut options = None;
-    let mut varied = problem.clone();
-    let mut add = |varied: &Problem| -> Result<(), Failure> {
-        let damper = varied.damper().map_err(refused)?;
-        motions.push((damper.model, damper.start));
-        options = Some(damper.options);
-        Ok(())
-    };
-    for axis in &arguments.sweep {
-        if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name.as_str()) {
-            return Err(Failure::Refused(format!(
-                "`{}` is the same for all motions of a sweep: give it in [run]",
-                axis.name
-            )));
-        }
-    }
-    match &arguments.sweep[..] {
-        [one] => {
-            for value in one.values() {
-                varied.set(&one.name, value).map_err(refused)?;
-                add(&varied)?;
-            }
-        }
-        [down, across] => {
-            if down.name == across.name {
-                return Err(Failure::Usage(format!("`{}` is swept twice", down.name)));
-            }
-            for value in down.values() {
-                varied.set(&down.name, value).map_err(refused)?;
-                for value in across.values() {
-                    varied.set(&across.name, value).map_err(refused)?;
-                    add(&varied)?;
-                }
-            }
-        }
-        _ => {}
-    }
-    let Some(mut options) = options else {
-        return Err(Failure::Usage("the sweep has no motion".to_owned()));
-    };
-    options.interrupt = Interrupt::by(&STOP);
+    let (motions, settings) = motions(&arguments.sweep, problem)?;
+    let total = motions.len();
     // Draws on standard error, and only where that is a terminal.
     let bar = if arguments.quiet {
         ProgressBar::hidden()
@@ -226,8 +223,8 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     }
     let progress = |done: usize| bar.inc(done as u64);
     let rows: Vec<Summary> = match arguments.jobs {
-        Some(threads) => sweep_on(usize::from(threads), &motions, &options, progress),
-        None => sweep(&motions, &options, progress),
+        Some(threads) => sweep_on(usize::from(threads), &motions, &settings, progress),
+        None => sweep(&motions, &settings, progress),
     }
     .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();

@@ -10,7 +10,9 @@
 //! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and modulus, equation (8).
 //! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
 //! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
+//! - `parameter`: the numbers that a study may vary, by name, group and unit.
 //! - `model`: the forces of equation (7) and what its parameters may be.
+//! - `case`: a [`Case`], the same by dimensions and materials, any number of which a [`Parameter`] reads or writes.
 //! - `polynomial`: polynomials on an interval, and where their sign changes.
 //! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
 //! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
@@ -40,11 +42,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod case;
 mod closed_form;
 pub mod hertz;
 mod judge;
 mod linearisation;
 mod model;
+mod parameter;
 mod phases;
 mod polynomial;
 mod simulate;
@@ -52,10 +56,12 @@ mod simulation;
 pub mod sweep;
 mod taylor;
 
+pub use case::{Case, CaseError, ContactDamping};
 pub use closed_form::{Impact, ImpactError, Quantity, SampledMotion, Setup, solve};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
+pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, Form, Phase, PhasesError, Swing, ThreePhases, three_phases};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{

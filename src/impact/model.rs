@@ -16,6 +16,7 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 use thiserror::Error;
 
 use super::hertz;
+use super::parameter::Parameter;
 
 /// How dry friction depends on the velocity.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -128,18 +129,18 @@ impl Default for Start {
 #[non_exhaustive]
 pub enum ModelError {
     /// A parameter that is no finite number.
-    #[error("{name} must be a finite number, not {value}")]
+    #[error("{parameter} must be a finite number, not {value}")]
     NotFinite {
-        /// The section and key of the problem file.
-        name: &'static str,
+        /// Which.
+        parameter: Parameter,
         /// What was given.
         value: f64,
     },
     /// A parameter below zero.
-    #[error("{name} must not be negative, but is {value}")]
+    #[error("{parameter} must not be negative, but is {value}")]
     Negative {
-        /// The section and key of the problem file.
-        name: &'static str,
+        /// Which.
+        parameter: Parameter,
         /// What was given.
         value: f64,
     },
@@ -163,21 +164,21 @@ impl Model {
     /// [`ModelError`] names the first parameter that does not.
     pub fn check(&self, start: Start) -> Result<(), ModelError> {
         let numbers = [
-            ("[damping] zeta", self.zeta),
-            ("[damping] alpha", self.alpha),
-            ("[contact] mu", self.mu),
-            ("[excitation] frequency_ratio", self.frequency_ratio),
-            ("[excitation] beta", self.beta),
-            ("[pendulum] barrier", self.left.unwrap_or(0.0)),
-            ("[pendulum] barrier", self.right.unwrap_or(0.0)),
-            ("[pendulum] start", start.x),
-            ("[pendulum] speed", start.velocity),
+            (Parameter::Zeta, self.zeta),
+            (Parameter::Alpha, self.alpha),
+            (Parameter::Mu, self.mu),
+            (Parameter::FrequencyRatio, self.frequency_ratio),
+            (Parameter::Beta, self.beta),
+            (Parameter::Barrier, self.left.unwrap_or(0.0)),
+            (Parameter::Barrier, self.right.unwrap_or(0.0)),
+            (Parameter::Start, start.x),
+            (Parameter::Speed, start.velocity),
         ];
-        if let Some(&(name, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
-            return Err(ModelError::NotFinite { name, value });
+        if let Some(&(parameter, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
+            return Err(ModelError::NotFinite { parameter, value });
         }
-        if let Some(&(name, value)) = numbers[..4].iter().find(|(_, value)| *value < 0.0) {
-            return Err(ModelError::Negative { name, value });
+        if let Some(&(parameter, value)) = numbers[..4].iter().find(|(_, value)| *value < 0.0) {
+            return Err(ModelError::Negative { parameter, value });
         }
         if !(self.gamma.is_finite() && self.gamma > 0.0) {
             return Err(ModelError::Stiffness(self.gamma));

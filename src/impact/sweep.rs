@@ -34,7 +34,7 @@ const CHUNK: usize = 96;
 /// A parameter and the values it takes: `NAME=from:to:count`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// The key of the problem file.
+    /// The name of the parameter, such as that of a [`Parameter`](super::Parameter).
     pub name: String,
     /// The first value.
     pub from: f64,
@@ -103,6 +103,27 @@ impl Axis {
     pub fn values(&self) -> Vec<f64> {
         (0..self.count).map(|index| self.value(index)).collect()
     }
+}
+
+/// The values of the parameters in the motion of this number, where the last axis varies fastest.
+///
+/// ```
+/// use lindstedt::impact::sweep::grid_values;
+///
+/// let axes = ["zeta=0:1:2".parse()?, "mu=5:7:3".parse()?];
+/// assert_eq!(grid_values(&axes, 4), [1.0, 6.0]);
+/// # Ok::<(), lindstedt::impact::sweep::AxisError>(())
+/// ```
+pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
+    let mut rest = number;
+    let value = |axis: &Axis| {
+        let index = rest % axis.count.max(1);
+        rest /= axis.count.max(1);
+        axis.value(index)
+    };
+    let mut values: Vec<f64> = axes.iter().rev().map(value).collect();
+    values.reverse();
+    values
 }
 
 /// What came of one motion.
@@ -195,6 +216,21 @@ pub fn sweep(
 ///
 /// # Errors
 /// As [`sweep`].
+///
+/// ```
+/// use lindstedt::impact::{Case, Parameter, Settings, sweep::{sweep, sweep_on}};
+///
+/// let mut case = Case { zeta: 0.05, ..Case::default() };
+/// let mut motions = Vec::new();
+/// for barrier in [0.1, 0.2, 0.3, 0.4] {
+///     case.set(Parameter::Barrier, barrier);
+///     motions.push(case.motion()?);
+/// }
+/// let settings = Settings::default();
+/// let alone = sweep_on(1, &motions, &settings, |_done| {}).map_err(|(_, error)| error)?;
+/// assert_eq!(alone, sweep(&motions, &settings, |_done| {}).map_err(|(_, error)| error)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[cfg(feature = "parallel")]
 pub fn sweep_on(
     threads: usize,

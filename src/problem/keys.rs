@@ -64,13 +64,6 @@ pub const KEYS: [(&str, &[Reader]); 28] = [
     ("[run] step_limit", &[Impact, Simulate]),
 ];
 
-/// The key of a parameter that a sweep varies: `zeta` stands in `[damping]`.
-pub(super) fn key_of(parameter: &str) -> Option<&'static str> {
-    KEYS.iter()
-        .map(|(key, _)| *key)
-        .find(|key| key.split_once("] ").is_some_and(|(_, name)| name == parameter))
-}
-
 /// The keys that a file gives.
 pub(super) fn given(file: &toml::Table) -> Vec<String> {
     let mut keys = Vec::new();
@@ -138,6 +131,13 @@ impl Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_parameter_of_a_study_has_its_key() {
+        for parameter in crate::impact::Parameter::ALL {
+            assert!(KEYS.iter().any(|(key, _)| *key == parameter.to_string()), "{parameter}");
+        }
+    }
 
     #[test]
     fn every_key_that_a_file_may_have_is_listed() {

@@ -10,7 +10,7 @@ pub use csv::{simulation as csv, sweep as sweep_csv};
 pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::decimal::decimal;
-use crate::impact::sweep::{Axis, Summary};
+use crate::impact::sweep::{Axis, Summary, grid_values};
 use crate::impact::{Friction, Simulation};
 
 /// What is handed on of one run.
@@ -40,19 +40,7 @@ pub struct SweepReport<'a> {
 impl SweepReport<'_> {
     /// The values of the parameters of a row.
     pub(super) fn values(&self, row: usize) -> Vec<f64> {
-        let mut rest = row;
-        let mut values: Vec<f64> = self
-            .axes
-            .iter()
-            .rev()
-            .map(|axis| {
-                let index = rest % axis.count.max(1);
-                rest /= axis.count.max(1);
-                axis.value(index)
-            })
-            .collect();
-        values.reverse();
-        values
+        grid_values(self.axes, row)
     }
 }
 

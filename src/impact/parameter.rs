@@ -1,0 +1,164 @@
+//! The parameters of a pendulum and its barrier that a study may vary: sweeps now, whatever searches for the best next.
+//!
+//! In: the name of a parameter. Out: a [`Parameter`]: its name, where it belongs, its unit. Its value is read and written on a
+//! [`Case`](super::Case).
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::spelling::nearest;
+
+/// A number that a study may vary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Parameter {
+    /// A: the release is from rest at x = -A.
+    Amplitude,
+    /// x(0), where it is not -A.
+    Start,
+    /// x'(0).
+    Speed,
+    /// x_c, the place of the right barrier.
+    Barrier,
+    /// Stiffness of the contact.
+    Gamma,
+    /// Damping of the contact.
+    Mu,
+    /// Damping of the contact by its material, of Hunt and Crossley.
+    Lambda,
+    /// Viscous damping ratio.
+    Zeta,
+    /// Coulomb friction.
+    Alpha,
+    /// Excitation by the pivot.
+    Beta,
+    /// Omega/omega of that excitation.
+    FrequencyRatio,
+    /// Mass of the pendulum.
+    Mass,
+    /// Radius of its sphere.
+    Radius,
+    /// Length of the pendulum.
+    Length,
+    /// Elastic modulus of the barrier.
+    Modulus,
+    /// Acceleration of gravity.
+    Gravity,
+}
+
+/// Name, group and unit of a parameter.
+type Row = (&'static str, &'static str, &'static str);
+
+impl Parameter {
+    /// Every parameter, in the order of the documentation.
+    pub const ALL: [Self; 16] = [
+        Self::Amplitude,
+        Self::Start,
+        Self::Speed,
+        Self::Barrier,
+        Self::Gamma,
+        Self::Mu,
+        Self::Lambda,
+        Self::Zeta,
+        Self::Alpha,
+        Self::Beta,
+        Self::FrequencyRatio,
+        Self::Mass,
+        Self::Radius,
+        Self::Length,
+        Self::Modulus,
+        Self::Gravity,
+    ];
+
+    const fn row(self) -> Row {
+        match self {
+            Self::Amplitude => ("amplitude", "pendulum", "rad"),
+            Self::Start => ("start", "pendulum", "rad"),
+            Self::Speed => ("speed", "pendulum", ""),
+            Self::Barrier => ("barrier", "pendulum", "rad"),
+            Self::Gamma => ("gamma", "contact", ""),
+            Self::Mu => ("mu", "contact", ""),
+            Self::Lambda => ("lambda", "contact", "s/m"),
+            Self::Zeta => ("zeta", "damping", ""),
+            Self::Alpha => ("alpha", "damping", ""),
+            Self::Beta => ("beta", "excitation", ""),
+            Self::FrequencyRatio => ("frequency_ratio", "excitation", ""),
+            Self::Mass => ("mass", "design", "kg"),
+            Self::Radius => ("radius", "design", "m"),
+            Self::Length => ("length", "design", "m"),
+            Self::Modulus => ("modulus", "design", "Pa"),
+            Self::Gravity => ("gravity", "design", "m/s^2"),
+        }
+    }
+
+    /// `zeta`
+    pub const fn name(self) -> &'static str {
+        self.row().0
+    }
+
+    /// What it belongs to, `damping`: the section of a problem file.
+    pub const fn group(self) -> &'static str {
+        self.row().1
+    }
+
+    /// Its SI unit, or rad; empty where it is dimensionless.
+    pub const fn unit(self) -> &'static str {
+        self.row().2
+    }
+}
+
+/// Group and name, as a problem file has them: `[damping] zeta`.
+impl fmt::Display for Parameter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "[{}] {}", self.group(), self.name())
+    }
+}
+
+/// A name that is no parameter.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error(
+    "there is no parameter `{name}` to sweep: choose one of {}",
+    Parameter::ALL.map(Parameter::name).join(", ")
+)]
+pub struct UnknownParameter {
+    /// What was asked for.
+    pub name: String,
+    /// What was meant, perhaps.
+    pub nearest: Option<&'static str>,
+}
+
+impl UnknownParameter {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        self.nearest.map(|name| format!("did you mean `{name}`?"))
+    }
+}
+
+impl FromStr for Parameter {
+    type Err = UnknownParameter;
+
+    /// By its name alone: `zeta`.
+    fn from_str(name: &str) -> Result<Self, UnknownParameter> {
+        let known = Self::ALL.into_iter().find(|parameter| parameter.name() == name);
+        known.ok_or_else(|| UnknownParameter {
+            name: name.to_owned(),
+            nearest: nearest(name, Self::ALL.map(Self::name)),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_read_back() {
+        for parameter in Parameter::ALL {
+            assert_eq!(parameter.name().parse(), Ok(parameter));
+        }
+        let error = "zetta".parse::<Parameter>().unwrap_err();
+        assert_eq!(error.help().as_deref(), Some("did you mean `zeta`?"));
+        assert_eq!(Parameter::FrequencyRatio.to_string(), "[excitation] frequency_ratio");
+    }
+}

@@ -1,0 +1,198 @@
+//! The document: what a problem file may hold, section by section, and the defaults of what it leaves out.
+
+use serde::Deserialize;
+
+use crate::impact::hertz::Design;
+use crate::impact::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
+
+/// A problem file as it was written.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Problem {
+    /// The equation of motion, for formulas.
+    pub equation: Option<String>,
+    /// The name of a method.
+    pub method: Option<String>,
+    /// The order of the expansion; for an impact, that of the frequency law of the approach.
+    pub order: Option<Order>,
+    /// The name of the small parameter.
+    pub small: Option<String>,
+    /// The amplitude convention: `initial` or `first-harmonic`.
+    pub amplitude: Option<String>,
+    /// The equilibrium to swing about: `"x = 1"`.
+    pub about: Option<String>,
+    /// Values for `--at`: numbers, or text such as "pi/3".
+    pub values: toml::Table,
+    /// The swing.
+    pub pendulum: Pendulum,
+    /// The barrier.
+    pub contact: Contact,
+    /// Damping of the swing.
+    pub damping: Damping,
+    /// Motion of the pivot.
+    pub excitation: Excitation,
+    /// Mass, radius, length, modulus, gravity.
+    pub design: DesignSection,
+    /// Duration and accuracy of integrations.
+    pub run: Run,
+    /// The keys that are given, as [`KEYS`] names them: what is absent has its default.
+    #[serde(skip)]
+    pub given: Vec<String>,
+}
+
+/// A whole number, or the two degrees of a Pade approximant: `order = 4`, `order = [2, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(untagged, expecting = "expected a whole number, or two: [numerator, denominator]")]
+pub enum Order {
+    /// The highest power kept, or what the method counts.
+    Power(u32),
+    /// Degrees of numerator and denominator.
+    Degrees([u32; 2]),
+}
+
+/// `[pendulum]`: released from rest at `x = -amplitude`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Pendulum {
+    /// A, rad.
+    pub amplitude: f64,
+    /// x_c, rad, or `[left, right]`.
+    pub barrier: Barrier,
+    /// x(0), rad, where it is not -amplitude.
+    pub start: Option<f64>,
+    /// x'(0), where it is not 0.
+    pub speed: Option<f64>,
+}
+
+/// One barrier on the right, or one on either side.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a number, or two: [left, right]")]
+pub enum Barrier {
+    /// The position of the right one.
+    Right(f64),
+    /// The positions of both.
+    Both([f64; 2]),
+}
+
+/// `[contact]`
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Contact {
+    /// Dimensionless stiffness; from `[design]` by equation (8) where it is not given.
+    pub gamma: Option<f64>,
+    /// Dimensionless contact damping of equation (7).
+    pub mu: Option<f64>,
+    /// Contact damping of Hunt and Crossley, s/m.
+    pub lambda: Option<f64>,
+    /// The rule by which a line replaces the elastic force.
+    pub linearisation: Option<String>,
+}
+
+/// `[damping]`
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Damping {
+    /// Viscous damping ratio.
+    pub zeta: f64,
+    /// Coulomb friction.
+    pub alpha: f64,
+    /// `exact` or `arctangent`.
+    pub friction: Option<String>,
+}
+
+/// `[excitation]`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Excitation {
+    /// beta = (A_e/L)(Omega/omega)^2.
+    pub beta: f64,
+    /// Omega/omega.
+    pub frequency_ratio: f64,
+}
+
+/// `[design]`, SI units; the defaults are the paper's Table 5.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DesignSection {
+    /// kg
+    pub mass: f64,
+    /// m
+    pub radius: f64,
+    /// m
+    pub length: f64,
+    /// Pa
+    pub modulus: f64,
+    /// m/s^2
+    pub gravity: f64,
+}
+
+/// `[run]`
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Run {
+    /// Dimensionless time.
+    pub duration: f64,
+    /// Error allowed in one step.
+    pub integrator_tolerance: f64,
+    /// Steps after which an integration gives up.
+    pub step_limit: u32,
+}
+
+impl Default for Pendulum {
+    fn default() -> Self {
+        Self {
+            amplitude: DEFAULT_AMPLITUDE,
+            barrier: Barrier::Right(DEFAULT_BARRIER),
+            start: None,
+            speed: None,
+        }
+    }
+}
+
+impl From<DesignSection> for Design {
+    fn from(section: DesignSection) -> Self {
+        let DesignSection {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        } = section;
+        Self {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        }
+    }
+}
+
+impl Default for DesignSection {
+    fn default() -> Self {
+        let Design {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        } = Design::default();
+        Self {
+            mass,
+            radius,
+            length,
+            modulus,
+            gravity,
+        }
+    }
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self {
+            duration: 50.0,
+            integrator_tolerance: 1e-10,
+            step_limit: 250_000,
+        }
+    }
+}

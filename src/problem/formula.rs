@@ -1,0 +1,116 @@
+//! What `derive` and `compare` read of a problem file: an equation, and how and where to solve it.
+
+use thiserror::Error;
+
+use super::{Order, Problem, ProblemError, Reader, UnreadKey};
+use crate::expr::parse_expression;
+use crate::symbol::Symbol;
+use crate::values::Values;
+
+/// An equation of motion and the choices that a file makes for it, as they are written; what it leaves out is `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Formula<'a> {
+    /// The equation.
+    pub equation: &'a str,
+    /// The equilibrium to swing about, `x = 1`.
+    pub about: Option<&'a str>,
+    /// The small parameter.
+    pub small: Option<&'a str>,
+    /// The name of the method.
+    pub method: Option<&'a str>,
+    /// The order, or the degrees of an approximant.
+    pub order: Option<Order>,
+    /// The name of the amplitude convention.
+    pub amplitude: Option<&'a str>,
+}
+
+/// Why a file gives no formula.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum FormulaError {
+    /// A key that belongs to another command.
+    #[error(transparent)]
+    Unread(#[from] UnreadKey),
+    /// No equation.
+    #[error("the file has no `equation`")]
+    NoEquation,
+}
+
+impl FormulaError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::NoEquation => Some("equation = \"x'' + sin(x) = 0\"".to_owned()),
+            Self::Unread(_) => None,
+        }
+    }
+}
+
+impl Problem {
+    /// The equation of the file and its choices, for one of the commands that derive formulas.
+    ///
+    /// # Errors
+    /// A key that this command would ignore; no equation.
+    ///
+    /// ```
+    /// use lindstedt::problem::{Problem, Reader};
+    ///
+    /// let file: Problem = "equation = \"x'' + x + eps*x^3 = 0\"\nsmall = \"eps\"".parse()?;
+    /// assert_eq!(file.formula(Reader::Derive)?.small, Some("eps"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn formula(&self, reader: Reader) -> Result<Formula<'_>, FormulaError> {
+        self.check_keys(reader)?;
+        Ok(Formula {
+            equation: self.equation.as_deref().ok_or(FormulaError::NoEquation)?,
+            about: self.about.as_deref(),
+            small: self.small.as_deref(),
+            method: self.method.as_deref(),
+            order: self.order,
+            amplitude: self.amplitude.as_deref(),
+        })
+    }
+
+    /// `[values]` as exact numbers: `1.5` is 3/2.
+    ///
+    /// # Errors
+    /// A value that is neither a number nor an expression without symbols.
+    pub fn exact_values(&self) -> Result<Values, ProblemError> {
+        let mut values = Values::default();
+        for (name, value) in &self.values {
+            let text = match value {
+                toml::Value::String(text) => text.clone(),
+                toml::Value::Integer(number) => number.to_string(),
+                // The shortest decimal that reads back to the same float is what was typed.
+                toml::Value::Float(number) if number.is_finite() => number.to_string(),
+                _ => return Err(ProblemError::Value(name.clone())),
+            };
+            let error = |error| ProblemError::Expression {
+                name: name.clone(),
+                error: Box::new(error),
+            };
+            values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
+        }
+        Ok(values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_exact() {
+        let problem: Problem = "[values]\nA = 0.323\nB = \"pi/3\"\nC = 2".parse().unwrap();
+        let values = problem.exact_values().unwrap();
+        let texts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
+        assert!(
+            "[values]\nA = \"k\""
+                .parse::<Problem>()
+                .unwrap()
+                .exact_values()
+                .is_err()
+        );
+    }
+}

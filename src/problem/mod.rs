@@ -1,0 +1,153 @@
+//! Problem files: one document, in TOML, and what each command reads in it.
+//!
+//! In: the text of a file: every key optional, the paper's value the default, an unknown key an error. Angles in radians,
+//! `[design]` in SI units, the rest dimensionless as in the paper's equation (7), time in units of 1/omega, omega^2 = g/L.
+//! Out: a [`Problem`], and from it, with the keys that a command would ignore refused by name:
+//!
+//! - [`Problem::formula`], what `derive` and `compare` read;
+//! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
+//! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept.
+
+mod document;
+mod formula;
+mod impact;
+mod keys;
+mod mistakes;
+mod simulate;
+
+use std::str::FromStr;
+
+use crate::expr::ParseError;
+use crate::impact::UnknownRule;
+use crate::impact::hertz::{Design, NotPositive};
+use crate::values::ValueError;
+
+pub use document::{Barrier, Contact, Damping, DesignSection, Excitation, Order, Pendulum, Problem, Run};
+pub use formula::{Formula, FormulaError};
+pub use impact::ImpactFileError;
+pub use keys::{KEYS, Reader, UnreadKey};
+pub use simulate::{Simulate, SimulateError};
+
+/// The largest file that is read, in bytes.
+pub const LARGEST_FILE: usize = 1 << 20;
+
+/// Why a file is no problem.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// Not TOML, or a key or value that does not belong there; the text shows the line.
+    #[error("{message}")]
+    Toml {
+        /// The message with the line and a caret.
+        message: String,
+        /// The nearest known key.
+        help: Option<String>,
+    },
+    /// Too long.
+    #[error("the text is longer than the {LARGEST_FILE} bytes that a problem may have")]
+    TooLarge,
+    /// A value of `[values]` is neither a number nor an expression.
+    #[error("the value of `{0}` in [values] should be a number, or text such as \"pi/3\"")]
+    Value(String),
+    /// A value that does not parse.
+    #[error("the value of `{name}` in [values]: {error}")]
+    Expression {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        error: Box<ParseError>,
+    },
+    /// A value that is no number.
+    #[error(transparent)]
+    NoValue(#[from] ValueError),
+    /// A design that has no stiffness.
+    #[error("[design]: {0}")]
+    Design(#[from] NotPositive),
+    /// An unknown rule.
+    #[error("[contact]: {0}")]
+    Rule(#[from] UnknownRule),
+}
+
+impl ProblemError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Toml { help, .. } => help.clone(),
+            _ => None,
+        }
+    }
+}
+
+impl FromStr for Problem {
+    type Err = ProblemError;
+
+    fn from_str(text: &str) -> Result<Self, ProblemError> {
+        if text.len() > LARGEST_FILE {
+            return Err(ProblemError::TooLarge);
+        }
+        let text = text.trim_start_matches('\u{feff}');
+        let problem: Self = toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))?;
+        let given = toml::from_str(text).map_or_else(|_| Vec::new(), |file| keys::given(&file));
+        Ok(Self { given, ..problem })
+    }
+}
+
+impl Problem {
+    /// The dimensionless stiffness of the contact, and where it comes from.
+    ///
+    /// # Errors
+    /// A design with a quantity that is not positive.
+    fn stiffness(&self) -> Result<(f64, &'static str), NotPositive> {
+        match self.contact.gamma {
+            Some(gamma) => Ok((gamma, self.stiffness_source())),
+            None => Ok((Design::from(self.design).stiffness()?, self.stiffness_source())),
+        }
+    }
+
+    /// Where the stiffness of the contact comes from.
+    fn stiffness_source(&self) -> &'static str {
+        if self.contact.gamma.is_none() {
+            return match self.design == DesignSection::default() {
+                true => "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma",
+                false => "equation (8) with the given design and l = L",
+            };
+        }
+        let without_say: &[&str] = match self.contact.lambda {
+            None => &["mass", "radius", "modulus", "length", "gravity"],
+            // mu = gamma*lambda*sqrt(g*L)
+            Some(_) => &["mass", "radius", "modulus"],
+        };
+        match without_say.iter().any(|key| self.gives(&format!("[design] {key}"))) {
+            true => "given: [design] has no say in it",
+            false => "given",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_the_papers() {
+        let problem: Problem = "".parse().unwrap();
+        assert_eq!(
+            problem.pendulum,
+            Pendulum {
+                amplitude: 1.5,
+                barrier: Barrier::Right(0.323),
+                start: None,
+                speed: None,
+            }
+        );
+        let (gamma, source) = problem.stiffness().unwrap();
+        assert!((gamma / 3.0407e7 - 1.0).abs() < 1e-4, "{gamma} by {source}");
+    }
+
+    #[test]
+    fn unknown_keys_name_the_nearest_known_one() {
+        let error = "[pendulum]\nbariers = 0.3".parse::<Problem>().unwrap_err();
+        assert_eq!(error.help().as_deref(), Some("did you mean `barrier`?"));
+        assert!(error.to_string().contains("line 2"), "{error}");
+    }
+}

@@ -1,0 +1,277 @@
+//! What `simulate` reads of a problem file: a case of equation (7), and how closely to follow it.
+
+use thiserror::Error;
+
+use super::{Barrier, Problem, ProblemError, Reader, UnreadKey};
+use crate::impact::{Case, CaseError, ContactDamping, Friction, Parameter, Settings};
+
+/// What a problem file says of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulate {
+    /// The pendulum, its barrier, its start.
+    pub case: Case,
+    /// Duration and accuracy.
+    pub settings: Settings,
+    /// Where gamma comes from.
+    pub gamma_source: &'static str,
+    /// Where mu comes from.
+    pub mu_source: &'static str,
+}
+
+/// Why a problem file is no motion.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimulateError {
+    /// The file itself.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// The numbers of the pendulum and its barrier.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// An equation of its own.
+    #[error("simulate follows the paper's equation (7): leave out `equation`, or use `lindstedt derive`")]
+    Equation,
+    /// A key that another one leaves nothing to say.
+    #[error("`{key}` changes nothing where `{other}` is given: leave one of them out")]
+    NoEffect {
+        /// The key.
+        key: Parameter,
+        /// The other one.
+        other: Parameter,
+    },
+    /// A key that says something only beside another one.
+    #[error("`{key}` changes nothing without `{other}`: give that too, or leave it out")]
+    Alone {
+        /// The key.
+        key: &'static str,
+        /// The other one.
+        other: Parameter,
+    },
+    /// A key that belongs to another command.
+    #[error(transparent)]
+    Unread(#[from] UnreadKey),
+    /// Two dampings of the contact.
+    #[error("[contact] has both mu and lambda: mu = gamma*lambda*sqrt(g*L), give one of them")]
+    TwoDampings,
+    /// An unknown law of friction.
+    #[error("[damping] friction `{0}` is neither \"exact\" nor \"arctangent\"")]
+    Friction(String),
+    /// A tolerance that cannot be kept.
+    #[error("[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
+    Tolerance(f64),
+    /// A limit that nothing or too much fits into: every step of a motion is kept.
+    #[error("[run] step_limit must be a whole number from 1 to {MOST_STEPS}, not {0}")]
+    StepLimit(u32),
+    /// A duration that is none.
+    #[error("[run] duration must be a positive number, not {0}")]
+    Duration(f64),
+}
+
+impl SimulateError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Problem(error) => error.help(),
+            _ => None,
+        }
+    }
+}
+
+/// The most steps a run may be given: some gigabytes of power series.
+pub const MOST_STEPS: u32 = 10_000_000;
+
+impl TryFrom<&Problem> for Simulate {
+    type Error = SimulateError;
+
+    /// ```
+    /// use lindstedt::impact::{Integrator, simulate};
+    /// use lindstedt::problem::{Problem, Simulate};
+    ///
+    /// let file: Problem = "[damping]\nzeta = 0.02\n[run]\nduration = 10".parse()?;
+    /// let Simulate { case, settings, .. } = Simulate::try_from(&file)?;
+    /// let (model, start) = case.motion()?;
+    /// let motion = simulate(&model, start, Integrator::Taylor, &settings)?;
+    /// assert_eq!(motion.impacts.len(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn try_from(problem: &Problem) -> Result<Self, SimulateError> {
+        let asked = problem.simulate(&[])?;
+        // A case of its own must make a motion; where parameters are swept, their values are still to come.
+        asked.case.motion()?;
+        Ok(asked)
+    }
+}
+
+impl Problem {
+    /// What this file says of motions whose `swept` parameters get other values later, as if it gave them too.
+    ///
+    /// # Errors
+    /// [`SimulateError`] names the section and the key. Whether the numbers make a motion is seen by [`Case::motion`].
+    pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, SimulateError> {
+        let gives = |parameter: Parameter| {
+            swept.contains(&parameter)
+                || match parameter {
+                    Parameter::Gamma => self.contact.gamma.is_some(),
+                    Parameter::Mu => self.contact.mu.is_some(),
+                    Parameter::Lambda => self.contact.lambda.is_some(),
+                    _ => self.gives(&parameter.to_string()),
+                }
+        };
+        self.check_swept(swept, gives)?;
+        if self.equation.is_some() {
+            return Err(SimulateError::Equation);
+        }
+        self.check_keys(Reader::Simulate)?;
+        if gives(Parameter::Mu) && gives(Parameter::Lambda) {
+            return Err(SimulateError::TwoDampings);
+        }
+        let case = self.case()?;
+        let settings = self.settings()?;
+        self.check_pairs(gives)?;
+        Ok(Simulate {
+            case,
+            settings,
+            gamma_source: self.stiffness_source(),
+            mu_source: match (self.contact.mu, self.contact.lambda) {
+                (Some(_), _) => "given",
+                (None, Some(_)) => "gamma*lambda*sqrt(g*L)",
+                (None, None) => "default",
+            },
+        })
+    }
+
+    /// The numbers of the pendulum and its barrier, as they are given.
+    fn case(&self) -> Result<Case, SimulateError> {
+        let (left, right) = match self.pendulum.barrier {
+            Barrier::Right(right) => (None, Some(right)),
+            Barrier::Both([left, right]) => (Some(left), Some(right)),
+        };
+        let friction = match self.damping.friction.as_deref() {
+            None | Some("exact") => Friction::Exact,
+            Some("arctangent") => Friction::Arctangent,
+            Some(other) => return Err(SimulateError::Friction(other.to_owned())),
+        };
+        Ok(Case {
+            amplitude: self.pendulum.amplitude,
+            start: self.pendulum.start,
+            speed: self.pendulum.speed.unwrap_or(0.0),
+            left,
+            right,
+            gamma: self.contact.gamma,
+            contact_damping: match self.contact.lambda {
+                Some(lambda) => ContactDamping::Lambda(lambda),
+                None => ContactDamping::Mu(self.contact.mu.unwrap_or(0.0)),
+            },
+            zeta: self.damping.zeta,
+            alpha: self.damping.alpha,
+            friction,
+            beta: self.excitation.beta,
+            frequency_ratio: self.excitation.frequency_ratio,
+            design: self.design.into(),
+        })
+    }
+
+    /// `[run]`
+    fn settings(&self) -> Result<Settings, SimulateError> {
+        let tolerance = self.run.integrator_tolerance;
+        if !(1e-15..=0.01).contains(&tolerance) {
+            return Err(SimulateError::Tolerance(tolerance));
+        }
+        if !(1..=MOST_STEPS).contains(&self.run.step_limit) {
+            return Err(SimulateError::StepLimit(self.run.step_limit));
+        }
+        let duration = self.run.duration;
+        if !(duration > 0.0 && duration.is_finite()) {
+            return Err(SimulateError::Duration(duration));
+        }
+        Ok(Settings {
+            duration,
+            // The errors of some hundred steps add up, and impacts multiply them.
+            relative_tolerance: (1e-2 * tolerance).max(1e-15),
+            absolute_tolerance: 1e-4 * tolerance,
+            maximum_steps: self.run.step_limit as usize,
+            ..Settings::default()
+        })
+    }
+
+    /// Refuses to sweep what changes nothing because gamma is given, or swept as well.
+    fn check_swept(&self, swept: &[Parameter], gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+        let (gamma, lambda) = (Parameter::Gamma, Parameter::Lambda);
+        let without_say = |parameter: &Parameter| match parameter {
+            Parameter::Mass | Parameter::Radius | Parameter::Modulus => true,
+            // mu = gamma*lambda*sqrt(g*L)
+            Parameter::Length | Parameter::Gravity => !gives(lambda),
+            _ => false,
+        };
+        match swept.iter().copied().find(without_say).filter(|_| gives(gamma)) {
+            Some(key) => Err(SimulateError::NoEffect { key, other: gamma }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a key that another one leaves nothing to say, or that says nothing alone.
+    fn check_pairs(&self, gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+        let (key, other) = (Parameter::Amplitude, Parameter::Start);
+        if gives(key) && gives(other) {
+            return Err(SimulateError::NoEffect { key, other });
+        }
+        if gives(Parameter::FrequencyRatio) && !gives(Parameter::Beta) {
+            return Err(SimulateError::Alone {
+                key: "[excitation] frequency_ratio",
+                other: Parameter::Beta,
+            });
+        }
+        let friction = "[damping] friction";
+        if self.gives(friction) && !gives(Parameter::Alpha) {
+            return Err(SimulateError::Alone {
+                key: friction,
+                other: Parameter::Alpha,
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::Start;
+
+    fn asked(text: &str) -> Result<Simulate, SimulateError> {
+        Simulate::try_from(&text.parse::<Problem>().unwrap())
+    }
+
+    #[test]
+    fn lambda_is_a_material_and_mu_follows_from_it() {
+        let asked = asked("[contact]\ngamma = 1e6\nlambda = 0.1\n[design]\nlength = 0.25\ngravity = 9.0").unwrap();
+        assert!((asked.case.motion().unwrap().0.mu / 1.5e5 - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_release_is_from_rest_unless_the_file_says_otherwise() {
+        let start = |text: &str| asked(text).unwrap().case.motion().unwrap().1;
+        assert_eq!(start(""), Start::default());
+        assert_eq!(
+            start("[pendulum]\nstart = 0.1\nspeed = -2"),
+            Start { x: 0.1, velocity: -2.0 }
+        );
+    }
+
+    #[test]
+    fn what_is_swept_counts_as_given() {
+        let sweep = |text: &str, swept: &[Parameter]| text.parse::<Problem>().unwrap().simulate(swept);
+        assert!(sweep("", &[Parameter::Mass]).is_ok());
+        for (text, swept) in [
+            ("[contact]\ngamma = 1e6", &[Parameter::Mass][..]),
+            ("", &[Parameter::Gamma, Parameter::Length]),
+            ("[pendulum]\nstart = 0.1", &[Parameter::Amplitude]),
+            ("", &[Parameter::FrequencyRatio]),
+            ("[contact]\nmu = 1", &[Parameter::Lambda]),
+        ] {
+            assert!(sweep(text, swept).is_err(), "{text} {swept:?}");
+        }
+        assert!(sweep("[excitation]\nbeta = 0.1", &[Parameter::FrequencyRatio]).is_ok());
+        let lambda = "[contact]\ngamma = 1e6\nlambda = 0.1";
+        assert!(sweep(lambda, &[Parameter::Length]).is_ok());
+    }
+}

@@ -17,17 +17,17 @@ use super::Coordinate;
 use crate::impact::linearisation::{greatest_depth, work};
 use crate::impact::phases::ThreePhases;
 use crate::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory, integrate};
+use crate::ode::{self, Event, IntegrationError, StopReason, Trajectory, integrate};
 
 /// One impact as it happens, from release to the next turning point.
 #[derive(Debug, Clone)]
 pub struct TrueImpact {
     /// First touch: time, x_c, speed.
-    pub touch: State,
+    pub touch: ode::State,
     /// The deepest point.
-    pub deepest: State,
+    pub deepest: ode::State,
     /// The end of the contact.
-    pub exit: State,
+    pub exit: ode::State,
     /// Greatest depth.
     pub penetration: f64,
     /// Duration of the contact.
@@ -124,13 +124,23 @@ fn way_forward(reason: &StopReason) -> String {
 ///
 /// # Errors
 /// [`TrueImpactError`]: the barrier is not reached, or the run ends early and says why.
+///
+/// ```
+/// use lindstedt::impact::{hertz::elastic_force, true_impact};
+/// use lindstedt::ode::Options;
+///
+/// let truth = true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &Options::with_tolerance(1e-12))?;
+/// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
+/// assert!((truth.touch.v - by_energy).abs() < 1e-10 && truth.energy_drift < 1e-9);
+/// # Ok::<(), lindstedt::impact::TrueImpactError>(())
+/// ```
 pub fn true_impact(
     amplitude: f64,
     barrier: f64,
     stiffness: f64,
     restoring_force: impl Fn(f64) -> f64,
     elastic_force: impl Fn(f64) -> f64,
-    options: &Options,
+    options: &ode::Options,
 ) -> Result<TrueImpact, TrueImpactError> {
     let release = -amplitude;
     if barrier <= release {
@@ -139,14 +149,14 @@ pub fn true_impact(
     let swing = |_: f64, x: f64, _: f64| -restoring_force(x);
     let press = |depth: f64, _: f64| stiffness * elastic_force(depth.max(0.0));
     let approach = approach(swing, [release, barrier], &at_scale(options, amplitude))?;
-    let touch = State {
+    let touch = ode::State {
         x: barrier,
         ..approach.end()
     };
     let energy = 0.5 * touch.v * touch.v;
     // A barrier that is soft for this swing lets it through to the other side.
     let size = greatest_depth(&elastic_force, energy / stiffness).map_or(amplitude, |depth| depth.min(amplitude));
-    let touched = State {
+    let touched = ode::State {
         t: 0.0,
         x: 0.0,
         v: touch.v,
@@ -173,7 +183,7 @@ pub fn true_impact(
     // A graze too shallow for a turning point in doubles: touch, turn and exit are one.
     let deepest = turn.map_or(touched, |found| found.state);
     let exit = contact.end();
-    let seen = |state: State| State {
+    let seen = |state: ode::State| ode::State {
         t: touch.t + state.t,
         x: inside.x(state.x),
         v: state.v,
@@ -183,7 +193,7 @@ pub fn true_impact(
     Ok(TrueImpact {
         touch,
         deepest: seen(deepest),
-        exit: State {
+        exit: ode::State {
             x: barrier,
             ..seen(exit)
         },
@@ -197,8 +207,8 @@ pub fn true_impact(
 }
 
 /// The same, with what may be neglected beside this size.
-fn at_scale(options: &Options, size: f64) -> Options {
-    Options {
+fn at_scale(options: &ode::Options, size: f64) -> ode::Options {
+    ode::Options {
         absolute_tolerance: options
             .absolute_tolerance
             .min(options.relative_tolerance * size)
@@ -211,7 +221,7 @@ fn at_scale(options: &Options, size: f64) -> Options {
 fn approach(
     swing: impl Fn(f64, f64, f64) -> f64,
     [release, barrier]: [f64; 2],
-    options: &Options,
+    options: &ode::Options,
 ) -> Result<Trajectory, TrueImpactError> {
     // Counted from the release: near the top of the swing every digit of the distance to it matters.
     let released = Coordinate {
@@ -219,7 +229,7 @@ fn approach(
         origin: release,
     };
     let way = barrier - release;
-    let start = State { t: 0.0, x: 0.0, v: 0.0 };
+    let start = ode::State { t: 0.0, x: 0.0, v: 0.0 };
     let events = [
         Event::stop(|_: f64, gone: f64, _: f64| gone - way).rising(),
         Event::stop(|_: f64, _: f64, v: f64| v).falling(),
@@ -273,16 +283,25 @@ const TIGHTEST: f64 = 1e-14;
 ///
 /// # Errors
 /// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six digits.
+///
+/// ```
+/// use lindstedt::impact::{assured_impact, hertz::elastic_force};
+/// use lindstedt::ode::Options;
+///
+/// let truth = assured_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &Options::default())?;
+/// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
+/// # Ok::<(), lindstedt::impact::TrueImpactError>(())
+/// ```
 pub fn assured_impact(
     amplitude: f64,
     barrier: f64,
     stiffness: f64,
     restoring_force: impl Fn(f64) -> f64,
     elastic_force: impl Fn(f64) -> f64,
-    options: &Options,
+    options: &ode::Options,
 ) -> Result<TrueImpact, TrueImpactError> {
     let with = |tolerance: f64| {
-        let options = Options {
+        let options = ode::Options {
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
             ..*options
@@ -395,6 +414,7 @@ mod tests {
     use crate::impact::hertz::{Design, elastic_force};
     use crate::impact::linearisation::Rule;
     use crate::impact::phases::{ContactSpeed, Swing, contact_speed, three_phases};
+    use crate::ode::Options;
     use crate::ode::root::find_root;
 
     const FORCE: fn(f64) -> f64 = f64::sin;

@@ -141,7 +141,7 @@ impl Simulation {
                 envelope.dedup();
             }
         }
-        // Held by friction to the end, or calm: it will not be larger any more.
+        // Held by friction to the end, or down to the rest energy: it will not be larger any more.
         let held = self.model.sticks()
             && self.end_velocity == 0.0
             && self.turns.last().is_some_and(|turn| turn.t == self.end_time);

@@ -1,5 +1,8 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
+//! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run alone (`alone`) or from
+//! eight side by side (`lanes`), the same to the last bit. The coefficients of a step come from `series`.
+//!
 //! ```text
 //! step:    (h/r)^(p+1) <= tolerance, 1/r = max |v_n|^(1/n) over the last coefficients of the velocity, n = p-4 ... p
 //! turn:    v = 0, every change of sign in the step; between two of them x only rises or only falls

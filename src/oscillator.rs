@@ -253,6 +253,15 @@ impl OscillatorError {
     }
 }
 
+impl Parts {
+    /// Whether the force is one of the position alone, so that energy is conserved.
+    pub fn of_position_alone(&self) -> bool {
+        [&self.inertia, &self.damping, &self.forcing]
+            .iter()
+            .all(|part| part.is_zero())
+    }
+}
+
 impl Oscillator {
     /// Reads an equation such as `x'' + x + eps*x^3 = 0`.
     ///

@@ -4,10 +4,9 @@
 use lindstedt::exact::Indivisible;
 use lindstedt::exact::Monomial;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring};
-use lindstedt::method::secular::{
-    Amplitude, Detuning, Expansion, ForceTerm, Normalisation, Scheme, SecularError, expand,
-};
+use lindstedt::method::secular::{Amplitude, Detuning, Expansion, ForceTerm, Scheme, SecularError, expand};
 use lindstedt::series::FourierSeries;
+use lindstedt::solution::AmplitudeConvention;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
@@ -128,7 +127,7 @@ fn term<R: Ring>(ring: &R, order: usize, powers: [u32; 2], numerator: i64, denom
     }
 }
 
-fn scheme(normalisation: Normalisation, amplitude: Amplitude, detuning: Detuning) -> Scheme {
+fn scheme(normalisation: AmplitudeConvention, amplitude: Amplitude, detuning: Detuning) -> Scheme {
     Scheme {
         normalisation,
         amplitude,
@@ -137,7 +136,7 @@ fn scheme(normalisation: Normalisation, amplitude: Amplitude, detuning: Detuning
 }
 
 const LINDSTEDT_POINCARE: Scheme = Scheme {
-    normalisation: Normalisation::Initial,
+    normalisation: AmplitudeConvention::Initial,
     amplitude: Amplitude::Free,
     detuning: Detuning::Acceleration,
 };
@@ -229,7 +228,7 @@ fn duffing_to_order_20_modulo_primes() {
 
 #[test]
 fn limit_cycles_and_homotopies_modulo_primes() {
-    let normalisations = [Normalisation::Initial, Normalisation::FirstHarmonic];
+    let normalisations = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic];
     for prime in primes() {
         let ring = Residues { prime };
         for normalisation in normalisations {
@@ -430,7 +429,7 @@ fn intervals_enclose_the_exact_coefficients() {
     let found = expand(&Intervals, &duffing(&Intervals), 6, &LINDSTEDT_POINCARE).expect("periodic");
     assert!(compare(&exact, &found, enclosed) > 50);
     let cycle = scheme(
-        Normalisation::FirstHarmonic,
+        AmplitudeConvention::FirstHarmonic,
         Amplitude::Determined,
         Detuning::Acceleration,
     );
@@ -469,7 +468,7 @@ fn an_interval_around_zero_is_not_zero() {
     assert_eq!(damped([0.1, 0.2]).err(), Some(SecularError::Growth { order: 1 }));
     // An amplitude is determined only where its slope is.
     let cycle = scheme(
-        Normalisation::FirstHarmonic,
+        AmplitudeConvention::FirstHarmonic,
         Amplitude::Determined,
         Detuning::Acceleration,
     );

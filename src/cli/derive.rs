@@ -1,6 +1,7 @@
 //! `lindstedt derive PROBLEM`.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::equilibrium;
 use lindstedt::export::{json, latex, text};
@@ -29,8 +30,8 @@ pub struct Arguments {
     #[arg(long, allow_hyphen_values = true)]
     order: Option<Order>,
     /// What the amplitude measures
-    #[arg(long, value_enum)]
-    amplitude: Option<Convention>,
+    #[arg(long, value_parser = convention())]
+    amplitude: Option<AmplitudeConvention>,
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
@@ -56,10 +57,11 @@ pub struct Arguments {
     pub common: Common,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Convention {
-    Initial,
-    FirstHarmonic,
+/// The names of the conventions, and the convention of each.
+fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
+    let names = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic].map(AmplitudeConvention::name);
+    let unknown = || "no convention of this name".to_owned();
+    PossibleValuesParser::new(names).try_map(move |name| AmplitudeConvention::from_name(&name).ok_or_else(unknown))
 }
 
 /// What stands after `--order`.
@@ -251,8 +253,7 @@ fn options(arguments: &Arguments, formula: &Formula) -> Result<Options, Failure>
         },
     };
     let amplitude = match (arguments.amplitude, formula.amplitude) {
-        (Some(Convention::Initial), _) => Some(AmplitudeConvention::Initial),
-        (Some(Convention::FirstHarmonic), _) => Some(AmplitudeConvention::FirstHarmonic),
+        (Some(convention), _) => Some(convention),
         (None, None) => None,
         (None, Some(name)) => match AmplitudeConvention::from_name(name) {
             Some(convention) => Some(convention),

@@ -1,5 +1,8 @@
 //! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an article, `figure` (feature `plot`)
 //! to look at.
+//!
+//! In come documents of [`report`](crate::report); JSON, pictures and simulations take the results themselves. Out goes text in
+//! one format. What is shown was chosen before: a format chooses only its layout.
 
 #[cfg(feature = "plot")]
 pub mod figure;

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::secular::{Amplitude, Expansion, ForceTerm, Normalisation, Scheme, SecularError, expand, expand_from_root};
+use super::secular::{Amplitude, Expansion, ForceTerm, Scheme, SecularError, expand, expand_from_root};
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -17,6 +17,7 @@ use crate::exact::{Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rati
 use crate::expr::Expr;
 use crate::oscillator::Term;
 use crate::series::FourierSeries;
+use crate::solution::AmplitudeConvention;
 use crate::symbol::{Symbol, fresh_stem};
 
 /// Frequency and motion in units of the linear frequency and the amplitude, as polynomials.
@@ -226,9 +227,9 @@ fn collect<R: Ring>(
 fn conditions(n: usize, scheme: &Scheme) -> Vec<Condition> {
     match (n, scheme.normalisation, scheme.amplitude) {
         (0, ..) => vec![Condition::Position(1), Condition::AtRest],
-        (_, Normalisation::Initial, Amplitude::Free) => vec![Condition::Position(0), Condition::AtRest],
-        (_, Normalisation::Initial, Amplitude::Determined) => vec![Condition::AtRest],
-        (_, Normalisation::FirstHarmonic, Amplitude::Free) => vec![Condition::NoCosine, Condition::NoSine],
-        (_, Normalisation::FirstHarmonic, Amplitude::Determined) => vec![Condition::NoSine],
+        (_, AmplitudeConvention::Initial, Amplitude::Free) => vec![Condition::Position(0), Condition::AtRest],
+        (_, AmplitudeConvention::Initial, Amplitude::Determined) => vec![Condition::AtRest],
+        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Free) => vec![Condition::NoCosine, Condition::NoSine],
+        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Determined) => vec![Condition::NoSine],
     }
 }

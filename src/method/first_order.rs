@@ -27,6 +27,7 @@ use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, Parts, SmallParameter};
 use crate::series::taylor::taylor;
+use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
@@ -42,7 +43,7 @@ pub(super) fn solve(
     small: Symbol,
     order: u32,
 ) -> Result<Option<Solution>, Refusal> {
-    let of_position = parts.damping.is_zero() && parts.inertia.is_zero() && parts.forcing.is_zero();
+    let of_position = parts.of_position_alone();
     // That the rest is linear and restores is for the expansion to say.
     let linear = oscillator.expand(SmallParameter::Parameter(small), 0).is_ok();
     let Some(force) = truncated(oscillator, small).filter(|_| of_position && linear) else {
@@ -62,7 +63,10 @@ pub(super) fn solve(
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;
     set_law(&mut solution, &law)?;
-    solution.validity = vec![Note::FirstOrderOnly { small }, Note::MotionAtLeadingOrder { small }];
+    solution.validity = vec![
+        Note::Cut(Cut::FirstOrderOnly { small }),
+        Note::MotionAtLeadingOrder { small },
+    ];
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation =
         vec![Line::equation(oscillator.coordinate, solution.displacement.clone()).because(format!("at {small}^0"))];

@@ -35,6 +35,7 @@ use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::convolution::{self, Convolutions};
 use crate::series::fourier::{linear_combination, sum_of_products};
+use crate::solution::note::Cut;
 use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
@@ -92,7 +93,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
-    solution.validity.push(Note::Corrections { order, embedding });
+    solution.validity.push(Note::Cut(Cut::Corrections { order, embedding }));
     if polynomial.is_none() {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }
@@ -108,138 +109,203 @@ struct Series {
 }
 
 fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut Solution) -> Result<Series, Refusal> {
-    let amplitude = Symbol::new("A");
-    let constant_series = |value: Polynomial| FourierSeries::constant(POLYNOMIALS, value);
-    let highest_power = force.terms.iter().map(|term| term.position).max().unwrap_or(1);
-    let start = cosine(Polynomial::symbol(amplitude));
-    let mut products = Convolutions::new(POLYNOMIALS);
-    let motion = products.leaf();
-    let powers: Vec<convolution::Node> = force
-        .terms
-        .iter()
-        .map(|term| products.power(motion, term.position))
-        .collect();
-    powers.iter().for_each(|&power| products.require(power, order - 1));
-    let mut squares = Squares::new(order - 1);
-    let mut displacement: Vec<FourierSeries<Polynomials>> = vec![start];
-    let mut accelerations: Vec<FourierSeries<Polynomials>> = Vec::new();
-    let mut frequency: Vec<FourierSeries<Polynomials>> = Vec::new();
-    let hbar = constant_series(hbar);
-    let mut inverse = FourierSeries::zero(POLYNOMIALS);
-    let mut linear = force.linear.clone();
-    let names = solution.names();
-    let [u, w, r] = ["u", "w", "R"].map(|letter| fresh_stem(letter, &names));
-    let numbered = |letter: &str, number: usize| Symbol::new(&format!("{letter}{number}"));
-    let (control, mut start_name) = (convergence_control(solution), numbered(&w, 0));
-    let mut lines = vec![Line::equation(numbered(&u, 0), displacement[0].clone())];
+    let mut expansion = Expansion::new(force, order, hbar, solution);
     for m in 1..=order {
-        within_reach(&products, &displacement, m - 1, highest_power)?;
-        products.push(motion, displacement[m - 1].clone());
-        products.advance(m - 1);
-        accelerations.push(displacement[m - 1].derivative().derivative());
-        let linear_series = constant_series(linear.clone());
-        let mut terms = vec![(1, &linear_series, &displacement[m - 1])];
+        let residual = expansion.residual(m)?;
+        let residual = match m {
+            1 => expansion.first_frequency(residual)?,
+            _ => expansion.correction(m, residual),
+        };
+        if m < order {
+            expansion.next_displacement(m, &residual)?;
+        }
+    }
+    expansion.solution.derivation = expansion.lines;
+    Ok(expansion.series)
+}
+
+/// The series as far as they are known, and what their next order is made of.
+struct Expansion<'a> {
+    force: &'a PerturbedForce,
+    solution: &'a mut Solution,
+    series: Series,
+    /// The second derivatives of the displacement.
+    accelerations: Vec<FourierSeries<Polynomials>>,
+    /// The powers of the displacement that stand in the force.
+    products: Convolutions<Polynomials>,
+    motion: convolution::Node,
+    powers: Vec<convolution::Node>,
+    squares: Squares,
+    hbar: FourierSeries<Polynomials>,
+    /// `1/w_0`.
+    inverse: FourierSeries<Polynomials>,
+    /// The linear stiffness, with `w_0` in place of what cancels.
+    linear: Polynomial,
+    lines: Vec<Line>,
+    /// The letters of displacements, frequencies and residuals.
+    letters: [String; 3],
+    /// The name of `w_0`.
+    first_frequency_name: Symbol,
+}
+
+fn constant_series(value: Polynomial) -> FourierSeries<Polynomials> {
+    FourierSeries::constant(POLYNOMIALS, value)
+}
+
+fn numbered(letter: &str, number: usize) -> Symbol {
+    Symbol::new(&format!("{letter}{number}"))
+}
+
+impl<'a> Expansion<'a> {
+    fn new(force: &'a PerturbedForce, order: usize, hbar: Polynomial, solution: &'a mut Solution) -> Self {
+        let start = cosine(Polynomial::symbol(Symbol::new("A")));
+        let mut products = Convolutions::new(POLYNOMIALS);
+        let motion = products.leaf();
+        let terms = force.terms.iter();
+        let powers: Vec<convolution::Node> = terms.map(|term| products.power(motion, term.position)).collect();
+        powers.iter().for_each(|&power| products.require(power, order - 1));
+        let names = solution.names();
+        let letters = ["u", "w", "R"].map(|letter| fresh_stem(letter, &names));
+        Self {
+            force,
+            products,
+            motion,
+            powers,
+            squares: Squares::new(order - 1),
+            accelerations: vec![],
+            hbar: constant_series(hbar),
+            inverse: FourierSeries::zero(POLYNOMIALS),
+            linear: force.linear.clone(),
+            lines: vec![Line::equation(numbered(&letters[0], 0), start.clone())],
+            series: Series {
+                frequency: vec![],
+                displacement: vec![start],
+            },
+            first_frequency_name: numbered(&letters[1], 0),
+            letters,
+            solution,
+        }
+    }
+
+    /// `R_m` without the frequency that it fixes.
+    fn residual(&mut self, m: usize) -> Result<FourierSeries<Polynomials>, Refusal> {
+        let force = self.force;
+        let highest_power = force.terms.iter().map(|term| term.position).max().unwrap_or(1);
+        let displacement = &self.series.displacement;
+        within_reach(&self.products, displacement, m - 1, highest_power)?;
+        self.products.push(self.motion, displacement[m - 1].clone());
+        self.products.advance(m - 1);
+        self.accelerations.push(displacement[m - 1].derivative().derivative());
+        let linear = constant_series(self.linear.clone());
+        let mut terms = vec![(1, &linear, &displacement[m - 1])];
         let coefficients = force.terms.iter().map(|term| constant_series(term.coefficient.clone()));
         let coefficients: Vec<_> = coefficients.collect();
-        let known = powers.iter().map(|&power| products.order(power, m - 1));
-        terms.extend(
-            coefficients
-                .iter()
-                .zip(known)
-                .filter_map(|(c, power)| Some((1, c, power?))),
+        let known = self.powers.iter().map(|&power| self.products.order(power, m - 1));
+        let powers = coefficients.iter().zip(known);
+        terms.extend(powers.filter_map(|(c, power)| Some((1, c, power?))));
+        let residual = sum_of_products(&POLYNOMIALS, &terms);
+        Ok(match m {
+            1 => residual,
+            _ => residual.sum(&self.squares.inertia_without_last(&self.accelerations, m - 1)),
+        })
+    }
+
+    /// `w_0^2 A = c_1`, and `R_1` with it.
+    fn first_frequency(&mut self, residual: FourierSeries<Polynomials>) -> Result<FourierSeries<Polynomials>, Refusal> {
+        let by_amplitude = Monomial::power_of(Symbol::new("A"), -1);
+        let squared = residual.cosine(1).constant_term().times_monomial(&by_amplitude);
+        let first = linear_frequency(&squared, self.solution);
+        // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by term.
+        self.linear = squared.clone();
+        self.linear.negate();
+        self.linear.accumulate(&self.force.linear);
+        self.linear.accumulate(&first.product(&first));
+        self.inverse = first.inverse().map_or_else(
+            || FourierSeries::zero(POLYNOMIALS),
+            |(unit, integer)| constant_series(unit).divided_by(i64::try_from(&integer).unwrap_or(1)),
         );
-        let mut right_side = sum_of_products(&POLYNOMIALS, &terms);
-        if m == 1 {
-            // w_0^2 A = c_1
-            let squared = right_side
-                .cosine(1)
-                .constant_term()
-                .times_monomial(&Monomial::power_of(amplitude, -1));
-            let first = linear_frequency(&squared, solution);
-            // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by term.
-            linear = squared.clone();
-            linear.negate();
-            linear.accumulate(&force.linear);
-            linear.accumulate(&first.product(&first));
-            inverse = first.inverse().map_or_else(
-                || FourierSeries::zero(POLYNOMIALS),
-                |(unit, integer)| {
-                    FourierSeries::constant(POLYNOMIALS, unit).divided_by(i64::try_from(&integer).unwrap_or(1))
-                },
-            );
-            let name = first.single_term().filter(|(_, number)| number.is_one());
-            let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
-            let name = name.filter(|name| solution.definitions.iter().any(|entry| entry.symbol == *name));
-            let name = name.unwrap_or(start_name);
-            start_name = name;
-            let inertia = |square: Polynomial| displacement[0].times(-1).product(&constant_series(square));
-            let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
-            lines.extend(secular_lines(
-                numbered(&r, m),
-                &right_side.sum(&unknown),
-                Expr::from(name).integer_power(2)?,
-                &squared,
-            ));
-            right_side = right_side.sum(&inertia(first.product(&first)));
-            squares.push(0, constant_series(first.clone()));
-            frequency.push(constant_series(first));
-        } else {
-            right_side = right_side.sum(&squares.inertia_without_last(&accelerations, m - 1));
-            // -2 w_0 w_(m-1) A + r = 0
-            let by_amplitude = constant_series(Polynomial::term(Monomial::power_of(amplitude, -1), Rational::one()));
-            let next = right_side
-                .cosine(1)
-                .product(&inverse)
-                .product(&by_amplitude)
-                .divided_by(2);
-            let name = numbered(&w, m - 1);
-            let unknown = frequency[0]
-                .product(&displacement[0])
-                .product(&constant_series(Polynomial::symbol(name)))
-                .times(-2);
-            lines.extend(secular_lines(
-                numbered(&r, m),
-                &right_side.sum(&unknown),
-                name.into(),
-                &next.constant_term(),
-            ));
-            squares.push(m - 1, next.clone());
-            frequency.push(next);
+        let defined = |name: &Symbol| self.solution.definitions.iter().any(|entry| entry.symbol == *name);
+        let name = first.single_term().filter(|(_, number)| number.is_one());
+        let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
+        if let Some(name) = name.filter(defined) {
+            self.first_frequency_name = name;
         }
-        if m == order {
-            break;
-        }
+        let name = self.first_frequency_name;
+        let start = self.series.displacement[0].times(-1);
+        let inertia = |square: Polynomial| start.product(&constant_series(square));
+        let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
+        self.lines.extend(secular_lines(
+            numbered(&self.letters[2], 1),
+            &residual.sum(&unknown),
+            Expr::from(name).integer_power(2)?,
+            &squared,
+        ));
+        let residual = residual.sum(&inertia(first.product(&first)));
+        self.push_frequency(constant_series(first));
+        Ok(residual)
+    }
+
+    /// `-2 w_0 w_(m-1) A + r = 0`, where `r` is the first harmonic of `R_m`.
+    fn correction(&mut self, m: usize, residual: FourierSeries<Polynomials>) -> FourierSeries<Polynomials> {
+        let by_amplitude = Polynomial::term(Monomial::power_of(Symbol::new("A"), -1), Rational::one());
+        let by_amplitude = constant_series(by_amplitude);
+        let first_harmonic = residual.cosine(1).product(&self.inverse);
+        let next = first_harmonic.product(&by_amplitude).divided_by(2);
+        let name = numbered(&self.letters[1], m - 1);
+        let unknown = self.series.frequency[0]
+            .product(&self.series.displacement[0])
+            .product(&constant_series(Polynomial::symbol(name)))
+            .times(-2);
+        self.lines.extend(secular_lines(
+            numbered(&self.letters[2], m),
+            &residual.sum(&unknown),
+            name.into(),
+            &next.constant_term(),
+        ));
+        self.push_frequency(next);
+        residual
+    }
+
+    fn push_frequency(&mut self, next: FourierSeries<Polynomials>) {
+        self.squares.push(self.series.frequency.len(), next.clone());
+        self.series.frequency.push(next);
+    }
+
+    /// `u_m''+ u_m = u_(m-1)'' + u_(m-1) + hbar R_m/w_0^2`, `u_m(0) = u_m'(0) = 0`.
+    fn next_displacement(&mut self, m: usize, residual: &FourierSeries<Polynomials>) -> Result<(), Refusal> {
         // What is left of the first harmonic has been removed by w_(m-1).
-        let (particular, _) = right_side.solve_oscillator();
-        let scaled = particular.product(&hbar).product(&inverse).product(&inverse);
+        let (particular, _) = residual.solve_oscillator();
+        let scaled = particular
+            .product(&self.hbar)
+            .product(&self.inverse)
+            .product(&self.inverse);
         let mut next = scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(POLYNOMIALS, 1)));
         if m > 1 {
-            next = next.sum(&displacement[m - 1]);
+            next = next.sum(&self.series.displacement[m - 1]);
         }
         let longest = next.harmonics().iter().map(|entry| entry.1.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }
-        let (name, before, residual) = (numbered(&u, m), numbered(&u, m - 1), numbered(&r, m));
+        let [u, _, r] = &self.letters;
+        let (name, before, residual) = (numbered(u, m), numbered(u, m - 1), numbered(r, m));
+        let (control, first_frequency) = (convergence_control(self.solution), self.first_frequency_name);
         let driven = next.sum(&next.derivative().derivative());
         let left = Formula::Oscillator {
             of: name,
             square: Expr::one(),
         };
-        lines.push(Line::equal([left, driven.into()]).because(match m {
-            1 => format!("{name}'' + {name} = {control}*{residual}/{start_name}^2"),
-            _ => format!("{name}'' + {name} = {before}'' + {before} + {control}*{residual}/{start_name}^2"),
+        let change = format!("{control}*{residual}/{first_frequency}^2");
+        self.lines.push(Line::equal([left, driven.into()]).because(match m {
+            1 => format!("{name}'' + {name} = {change}"),
+            _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
         }));
         let start = |derivatives| Formula::AtZero { of: name, derivatives };
-        lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
-        lines.push(Line::equation(name, next.clone()));
-        displacement.push(next);
+        self.lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
+        self.lines.push(Line::equation(name, next.clone()));
+        self.series.displacement.push(next);
+        Ok(())
     }
-    solution.derivation = lines;
-    Ok(Series {
-        frequency,
-        displacement,
-    })
 }
 
 /// `R_m` with the unknown frequency in it, and the condition that fixes that.

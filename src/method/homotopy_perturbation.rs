@@ -27,7 +27,7 @@ use num_traits::{One, Zero};
 use super::expansion::expand_exactly;
 use super::inertia::VariableMass;
 use super::one_term::conservative_force;
-use super::secular::{Amplitude, Detuning, Normalisation, Scheme};
+use super::secular::{Amplitude, Detuning, Scheme};
 use super::{Options, Refusal, Unsuited};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
@@ -35,6 +35,7 @@ use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, SmallParameter, Term};
+use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Root, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -83,7 +84,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     };
     let terms: Vec<Term> = force.terms.iter().map(term).collect();
     let scheme = Scheme {
-        normalisation: Normalisation::Initial,
+        normalisation: AmplitudeConvention::Initial,
         amplitude: Amplitude::Free,
         detuning: Detuning::Displacement,
     };
@@ -110,11 +111,11 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         Ok(SmallParameter::Parameter(name)) => name,
         _ => amplitude,
     };
-    let mut validity = vec![Note::TruncatedRelation {
+    let mut validity = vec![Note::Cut(Cut::TruncatedRelation {
         bookkeeping: fresh("p", &oscillator.names()),
         order,
         linear_frequency: oscillator.linear_frequency_name(&force.linear),
-    }];
+    })];
     if oscillator.polynomial_degree()?.is_none() {
         validity.push(Note::TaylorPolynomial { degree });
     }

@@ -33,6 +33,7 @@ use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
+use crate::solution::note::Cut;
 use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh_stem};
 
@@ -162,10 +163,10 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     };
     solution.displacement = motion;
     solution.derivation = lines;
-    solution.validity.push(Note::Passes {
+    solution.validity.push(Note::Cut(Cut::Passes {
         passes,
         linear_frequency: solution.linear_frequency_name(),
-    });
+    }));
     Ok(solution)
 }
 

@@ -30,7 +30,7 @@ use num_traits::{One, Zero};
 use super::expansion::expand_exactly;
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
-use super::secular::{Amplitude, Detuning, Normalisation, Scheme, SecularError, bounded};
+use super::secular::{Amplitude, Detuning, Scheme, SecularError, bounded};
 use super::{Options, Refusal, Refuser, Unsuited, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
@@ -38,6 +38,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
+use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -141,12 +142,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     definitions.extend(of_cycle.clone());
     let positive: Vec<Definition> = definition.into_iter().chain(of_cycle).collect();
     definitions.extend(bookkeeping.clone());
-    let normalisation = match convention {
-        AmplitudeConvention::Initial => Normalisation::Initial,
-        AmplitudeConvention::FirstHarmonic => Normalisation::FirstHarmonic,
-    };
     let scheme = Scheme {
-        normalisation,
+        normalisation: convention,
         amplitude,
         detuning: Detuning::Acceleration,
     };
@@ -199,11 +196,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         cycles: cycles.iter().map(|cycle| cycle.to_leading(delta, small)).collect(),
         small_with: small_with.clone(),
     });
-    let mut validity = vec![Note::Truncated {
+    let mut validity = vec![Note::Cut(Cut::Truncated {
         small: std::iter::once(small).chain(small_with.iter().copied()).collect(),
         order,
         marks: bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
-    }];
+    })];
     if let (Some(cycle), Some(limit_cycle)) = (cycle, &limit_cycle) {
         let own = &limit_cycle.cycles[limit_cycle.number - 1];
         validity.push(Note::Stability(own.clone()));

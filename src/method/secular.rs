@@ -19,6 +19,7 @@ use crate::exact::Ring;
 use crate::exact::ring::Indivisible;
 use crate::series::convolution::{Convolutions, Node};
 use crate::series::fourier::{FourierSeries, sum_of_products};
+use crate::solution::AmplitudeConvention;
 
 /// One term `delta^order * coefficient * y^position * y'^velocity` of the force beside the linear `y`.
 #[derive(Clone, Debug)]
@@ -32,15 +33,6 @@ pub struct ForceTerm<R: Ring> {
     pub velocity: u32,
     /// A constant series.
     pub coefficient: FourierSeries<R>,
-}
-
-/// What pins down the homogeneous solution at each order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Normalisation {
-    /// `y(0) = 1`, `y'(0) = 0`: the amplitude is the initial displacement.
-    Initial,
-    /// The first harmonic of `y` is `cos tau` exactly.
-    FirstHarmonic,
 }
 
 /// Whether the amplitude is free (conservative) or determined by the equation (self-excited).
@@ -64,8 +56,8 @@ pub enum Detuning {
 /// The choices that tell one method from another.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {
-    /// What pins down the homogeneous solutions.
-    pub normalisation: Normalisation,
+    /// What pins down the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first harmonic of `y` is `cos tau` exactly.
+    pub normalisation: AmplitudeConvention,
     /// Free or determined.
     pub amplitude: Amplitude,
     /// Where the frequency is expanded.
@@ -395,7 +387,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
 
     /// Adds the homogeneous solution that the amplitude convention asks for.
     fn normalised(&self, particular: FourierSeries<R>) -> FourierSeries<R> {
-        if self.scheme.normalisation == Normalisation::FirstHarmonic {
+        if self.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
             return particular;
         }
         let sine = particular.derivative().at_zero();
@@ -462,7 +454,7 @@ mod tests {
 
     fn scheme(amplitude: Amplitude) -> Scheme {
         Scheme {
-            normalisation: Normalisation::Initial,
+            normalisation: AmplitudeConvention::Initial,
             amplitude,
             detuning: Detuning::Acceleration,
         }

@@ -20,47 +20,12 @@ pub enum Note {
     SlopeAtHalf,
     /// The part of the force that a motion of one term leaves out.
     EvenPartLeftOut(Expr),
-    /// An expansion cut after an order.
-    Truncated {
-        /// What is small, together.
-        small: Vec<Symbol>,
-        /// The highest power kept.
-        order: u32,
-        /// The value of a small parameter that marks terms of an equation without one.
-        marks: Option<Expr>,
-    },
-    /// The first order of a force that is no polynomial.
-    FirstOrderOnly {
-        /// The small parameter.
-        small: Symbol,
-    },
-    /// The motion of that order is left at its leading term.
+    /// How an expansion was cut.
+    Cut(Cut),
+    /// The motion is left at its leading term.
     MotionAtLeadingOrder {
         /// The small parameter.
         small: Symbol,
-    },
-    /// A relation cut after a power of a bookkeeping parameter.
-    TruncatedRelation {
-        /// The bookkeeping parameter.
-        bookkeeping: Symbol,
-        /// The highest power kept.
-        order: u32,
-        /// The linear frequency, where the root starts.
-        linear_frequency: Symbol,
-    },
-    /// A relation after so many passes of an iteration.
-    Passes {
-        /// How many.
-        passes: u32,
-        /// The linear frequency, where the root starts.
-        linear_frequency: Symbol,
-    },
-    /// The first frequency and its corrections.
-    Corrections {
-        /// One more than the number of corrections.
-        order: u32,
-        /// The embedding parameter.
-        embedding: Symbol,
     },
     /// The parameter that controls the convergence is open.
     ConvergenceControl(Symbol),
@@ -145,6 +110,48 @@ pub enum Note {
     Stated(String),
 }
 
+/// How an expansion was cut.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cut {
+    /// After a power of what is small.
+    Truncated {
+        /// What is small, together.
+        small: Vec<Symbol>,
+        /// The highest power kept.
+        order: u32,
+        /// The value of a small parameter that marks terms of an equation without one.
+        marks: Option<Expr>,
+    },
+    /// The first order of a force that is no polynomial.
+    FirstOrderOnly {
+        /// The small parameter.
+        small: Symbol,
+    },
+    /// A relation, after a power of a bookkeeping parameter.
+    TruncatedRelation {
+        /// The bookkeeping parameter.
+        bookkeeping: Symbol,
+        /// The highest power kept.
+        order: u32,
+        /// The linear frequency, where the root starts.
+        linear_frequency: Symbol,
+    },
+    /// A relation after so many passes of an iteration.
+    Passes {
+        /// How many.
+        passes: u32,
+        /// The linear frequency, where the root starts.
+        linear_frequency: Symbol,
+    },
+    /// After so many corrections of the first frequency.
+    Corrections {
+        /// One more than the number of corrections.
+        order: u32,
+        /// The embedding parameter.
+        embedding: Symbol,
+    },
+}
+
 /// What a first step is exact for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstStep {
@@ -222,17 +229,7 @@ pub enum Position {
 impl fmt::Display for Note {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::FirstStep(step) => {
-                let (terms, linear) = match step {
-                    FirstStep::TermOfForce => ("one term", "force"),
-                    FirstStep::TermOfEquation => ("one term", "equation"),
-                    FirstStep::Harmonic => ("one harmonic", "force"),
-                };
-                write!(
-                    formatter,
-                    "{terms}: exact for a linear {linear}, the first step beyond it otherwise"
-                )
-            }
+            Self::FirstStep(step) => step.fmt(formatter),
             Self::Collocated(instant) => {
                 let at = match instant {
                     Instant::EighthOfPeriod => "theta = pi/4",
@@ -250,55 +247,28 @@ impl fmt::Display for Note {
                 formatter,
                 "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
             ),
-            Self::Truncated { small, order, marks } => truncated(formatter, small, *order, marks.as_ref()),
-            Self::FirstOrderOnly { small } => write!(
-                formatter,
-                "truncated after {small}^1, the highest order for a force that is no polynomial; an expansion for small {small}"
-            ),
+            Self::Cut(cut) => cut.fmt(formatter),
             Self::MotionAtLeadingOrder { small } => write!(
                 formatter,
                 "the motion is A*cos(theta): its part of the size of {small}, drift and harmonics, is left out"
             ),
-            Self::TruncatedRelation {
-                bookkeeping,
-                order,
-                linear_frequency,
-            } => {
-                write!(formatter, "truncated after {bookkeeping}^{order}; ")?;
-                root(formatter, *linear_frequency)
-            }
-            Self::Passes {
-                passes,
-                linear_frequency,
-            } => {
-                write!(formatter, "after {passes} passes; ")?;
-                root(formatter, *linear_frequency)
-            }
-            Self::Corrections { order: 1, embedding } => write!(
-                formatter,
-                "order 1: the first frequency alone, the terms without {embedding}"
-            ),
-            Self::Corrections { order, embedding } => {
-                let highest = order - 1;
-                let corrections = match highest {
-                    1 => "one correction".to_owned(),
-                    count => format!("{count} corrections"),
-                };
-                write!(
-                    formatter,
-                    "order {order}: the first frequency and {corrections}, truncated after {embedding}^{highest}"
-                )
-            }
             Self::ConvergenceControl(hbar) => write!(
                 formatter,
                 "{hbar} controls the convergence; numbers are given with the one of least squared residual"
             ),
             Self::TaylorPolynomial { degree } => {
-                write!(formatter, "the force entered as its Taylor polynomial of degree {degree}")
+                write!(
+                    formatter,
+                    "the force entered as its Taylor polynomial of degree {degree}"
+                )
             }
             Self::MotionCutAfter { harmonic } => write!(formatter, "the motion is cut after its harmonic {harmonic}"),
             Self::Balanced { harmonics, by_numbers } => {
-                let how = if *by_numbers { "; solved by numbers at an amplitude" } else { "" };
+                let how = if *by_numbers {
+                    "; solved by numbers at an amplitude"
+                } else {
+                    ""
+                };
                 write!(
                     formatter,
                     "harmonics {} balanced, those above left out{how}",
@@ -331,13 +301,7 @@ impl fmt::Display for Note {
             Self::MotionOfSeries => {
                 formatter.write_str("the motion is that of Lindstedt-Poincare to its first correction")
             }
-            Self::Exact(by) => formatter.write_str(match by {
-                ExactBy::ClosedForm => "exact wherever the motion is periodic",
-                ExactBy::EnergyQuadrature => "exact wherever the motion is periodic, by quadrature of the energy",
-                ExactBy::Quadrature => {
-                    "exact wherever the motion is periodic, by quadrature: no elliptic or Gamma function is known to give it"
-                }
-            }),
+            Self::Exact(by) => by.fmt(formatter),
             Self::Stability(cycle) => write!(formatter, "the limit cycle {}", cycle.stability()),
             Self::RoundedAmplitude {
                 amplitude,
@@ -370,6 +334,48 @@ impl fmt::Display for Note {
     }
 }
 
+impl fmt::Display for Cut {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Truncated { small, order, marks } => truncated(formatter, small, *order, marks.as_ref()),
+            Self::FirstOrderOnly { small } => write!(
+                formatter,
+                "truncated after {small}^1, the highest order for a force that is no polynomial; an expansion for small {small}"
+            ),
+            Self::TruncatedRelation {
+                bookkeeping,
+                order,
+                linear_frequency,
+            } => {
+                write!(formatter, "truncated after {bookkeeping}^{order}; ")?;
+                root(formatter, *linear_frequency)
+            }
+            Self::Passes {
+                passes,
+                linear_frequency,
+            } => {
+                write!(formatter, "after {passes} passes; ")?;
+                root(formatter, *linear_frequency)
+            }
+            Self::Corrections { order: 1, embedding } => write!(
+                formatter,
+                "order 1: the first frequency alone, the terms without {embedding}"
+            ),
+            Self::Corrections { order, embedding } => {
+                let highest = order - 1;
+                let corrections = match highest {
+                    1 => "one correction".to_owned(),
+                    count => format!("{count} corrections"),
+                };
+                write!(
+                    formatter,
+                    "order {order}: the first frequency and {corrections}, truncated after {embedding}^{highest}"
+                )
+            }
+        }
+    }
+}
+
 fn truncated(formatter: &mut fmt::Formatter<'_>, small: &[Symbol], order: u32, marks: Option<&Expr>) -> fmt::Result {
     let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
     let names = names.join(" and ");
@@ -394,6 +400,31 @@ fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Symbol) -> fmt::Re
         formatter,
         "the frequency is the root that continues {linear_frequency}^2 from A = 0"
     )
+}
+
+impl fmt::Display for FirstStep {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (terms, linear) = match self {
+            Self::TermOfForce => ("one term", "force"),
+            Self::TermOfEquation => ("one term", "equation"),
+            Self::Harmonic => ("one harmonic", "force"),
+        };
+        write!(
+            formatter,
+            "{terms}: exact for a linear {linear}, the first step beyond it otherwise"
+        )
+    }
+}
+
+impl fmt::Display for ExactBy {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("exact wherever the motion is periodic")?;
+        formatter.write_str(match self {
+            Self::ClosedForm => "",
+            Self::EnergyQuadrature => ", by quadrature of the energy",
+            Self::Quadrature => ", by quadrature: no elliptic or Gamma function is known to give it",
+        })
+    }
 }
 
 fn bounds(formatter: &mut fmt::Formatter<'_>, at_rest: &Expr, at_turning: &Expr, range: &BoundsHold) -> fmt::Result {

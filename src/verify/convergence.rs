@@ -20,11 +20,11 @@ use super::validity::Range;
 use crate::decimal::significant;
 use crate::exact::Doubles;
 use crate::expr::Expr;
-use crate::method::secular::{Amplitude, Detuning, ForceTerm, Normalisation, Scheme, expand};
+use crate::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::recurrence::numeric_taylor;
-use crate::solution::Solution;
+use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 
 /// Coefficients of the series from which its radius of convergence is estimated.
@@ -212,7 +212,7 @@ fn in_a_parameter(
         })
         .collect();
     let scheme = Scheme {
-        normalisation: Normalisation::Initial,
+        normalisation: AmplitudeConvention::Initial,
         amplitude: Amplitude::Free,
         detuning: Detuning::Acceleration,
     };

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use strsim::osa_distance;
+
 use super::error::{ParseError, shortened};
 use super::lexer::{Kind, Token};
 use super::{Parser, RESERVED_NAMES};
@@ -299,26 +301,7 @@ fn similar_function(name: &str) -> Option<&'static str> {
         .chain(["sqrt"])
         .filter(|known| known.len() > 1);
     let closest = names
-        .map(|known| (edits(&folded, known), known))
+        .map(|known| (osa_distance(&folded, known), known))
         .min_by_key(|(distance, _)| *distance)?;
     (closest.0 <= 1).then_some(closest.1)
-}
-
-/// The number of letters to insert, delete, replace or swap with their neighbour.
-fn edits(from: &str, to: &str) -> usize {
-    let (from, to) = (from.as_bytes(), to.as_bytes());
-    let mut before: Vec<usize> = Vec::new();
-    let mut above: Vec<usize> = (0..=to.len()).collect();
-    for (i, a) in from.iter().enumerate() {
-        let mut row = vec![i + 1];
-        for (j, b) in to.iter().enumerate() {
-            let mut best = (above[j] + usize::from(a != b)).min(above[j + 1] + 1).min(row[j] + 1);
-            if i > 0 && j > 0 && from[i - 1] == *b && to[j - 1] == *a {
-                best = best.min(before[j - 1] + 1);
-            }
-            row.push(best);
-        }
-        before = std::mem::replace(&mut above, row);
-    }
-    above[to.len()]
 }

@@ -35,7 +35,7 @@ pub struct Problem {
     pub design: DesignSection,
     /// Duration and accuracy of integrations.
     pub run: Run,
-    /// The keys that are given, as [`KEYS`] names them: what is absent has its default.
+    /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
     #[serde(skip)]
     pub given: Vec<String>,
 }

@@ -8,6 +8,9 @@ use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::Method;
 
+// A name that is nearly one of these, or nearly one of the user's own.
+pub use crate::spelling::nearest;
+
 /// A classical oscillator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {

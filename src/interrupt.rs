@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 ///
 /// ```
 /// use std::sync::atomic::{AtomicBool, Ordering};
-/// use lindstedt::interrupt::Interrupt;
+/// use lindstedt::Interrupt;
 ///
 /// static STOP: AtomicBool = AtomicBool::new(false);
 /// let interrupt = Interrupt::by(&STOP);

@@ -23,20 +23,14 @@
 //!
 //! | module | what it holds |
 //! | --- | --- |
-//! | [`interrupt`] | a request to stop, which long work looks at |
-//! | [`ode`], [`spelling`], [`symbol`] | Runge-Kutta, quadrature, roots; near misses of names; names |
-//! | [`exact`], [`period`], [`return_map`] | fractions, polynomials, the coefficient ring; the true period; limit cycles in truth |
-//! | [`decimal`] | numbers as people write them |
-//! | [`expr`] | the expression tree, its parser, printer, calculus and evaluation |
-//! | [`values`] | exact values of symbols |
+//! | [`numeric`] | true motions in numbers alone: Runge-Kutta, quadrature, roots; true periods; limit cycles in truth |
+//! | [`exact`] | fractions, polynomials, the coefficient ring |
+//! | [`expr`] | the expression tree, its parser, printer, calculus and evaluation; names that are free |
 //! | [`series`] | Taylor, Fourier, running convolutions |
 //! | [`system`] | first-order systems of any size by Taylor series and by Runge-Kutta, with events |
-//! | [`derivation`] | how an answer was reached, line by line |
-//! | [`solution`] | what a method returns |
+//! | [`solution`] | what a method returns: law, motion, notes, and how they were reached, line by line |
 //! | [`oscillator`] | what a method is given |
-//! | [`conservative`] | forces of the position alone: potential and projections in closed form, value near rest |
-//! | [`equilibrium`] | where the motion swings about |
-//! | [`method`] | one file each, one row in the table |
+//! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
 //! | [`verify`] | the true motion and the verdict |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
 //! | [`problem`] | problem files |
@@ -56,35 +50,33 @@
 
 #![warn(missing_docs)]
 
-pub mod interrupt;
+mod interrupt;
 
-pub mod ode;
-pub mod spelling;
-pub mod symbol;
+pub mod numeric;
+mod spelling;
+mod symbol;
 
 pub mod exact;
-pub mod period;
-pub mod return_map;
 
-pub mod decimal;
+mod decimal;
 
 pub mod expr;
 
-pub mod values;
+mod values;
 
 pub mod series;
 
 pub mod system;
 
-pub mod derivation;
+mod derivation;
 
 pub mod solution;
 
 pub mod oscillator;
 
-pub mod conservative;
+mod conservative;
 
-pub mod equilibrium;
+mod equilibrium;
 
 pub mod method;
 
@@ -101,12 +93,13 @@ pub mod report;
 
 pub mod export;
 
+pub use interrupt::Interrupt;
 pub use method::motion::{Motion, NoMotion};
 pub use method::{Options, solve};
 pub use oscillator::Oscillator;
 pub use solution::{Method, Solution};
 pub use symbol::Symbol;
-pub use values::Values;
+pub use values::{ValueError, Values};
 pub use verify::{Verdict, judge};
 
 #[cfg(doctest)]

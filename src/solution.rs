@@ -26,8 +26,9 @@ pub use method::{Counts, Method};
 pub use note::Note;
 pub use sum::Sum;
 
+pub use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, Step};
+
 use crate::decimal::{rounded_fraction, significant_fraction};
-use crate::derivation::{Line, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Rational;
 use crate::exact::scaled::Scaled;

@@ -61,7 +61,7 @@ impl Symbol {
 /// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
 ///
 /// ```
-/// use lindstedt::symbol::{Symbol, fresh};
+/// use lindstedt::{Symbol, expr::fresh};
 /// assert_eq!(fresh("hbar", &[]).name(), "hbar");
 /// assert_eq!(fresh("hbar", &["hbar".into(), "hbar_".into()]).name(), "hbar__");
 /// ```
@@ -76,7 +76,7 @@ pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
 /// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken` continues with digits.
 ///
 /// ```
-/// use lindstedt::symbol::fresh_stem;
+/// use lindstedt::expr::fresh_stem;
 /// assert_eq!(fresh_stem("W", &["k".into()]), "W");
 /// assert_eq!(fresh_stem("W", &["W2".into()]), "W_");
 /// ```

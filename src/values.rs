@@ -5,7 +5,7 @@
 //!
 //! let at: Values = "A = 3/2, eps = 1".parse()?;
 //! assert_eq!(at.get("A".into()), Some(1.5));
-//! # Ok::<(), lindstedt::values::ValueError>(())
+//! # Ok::<(), lindstedt::ValueError>(())
 //! ```
 
 use std::collections::BTreeMap;

@@ -8,7 +8,7 @@ use lindstedt::impact::hertz::{self, Design, elastic_force};
 use lindstedt::impact::{self, Setup};
 use lindstedt::impact::{ContactSpeed, Form, Swing, ThreePhases, three_phases};
 use lindstedt::impact::{TrueImpact, deviation, true_impact};
-use lindstedt::ode::Options;
+use lindstedt::numeric::ode::Options;
 use proptest::prelude::*;
 
 const SINE: fn(f64) -> f64 = f64::sin;

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 use lindstedt::Values;
-use lindstedt::equilibrium::with_numbers_where_needed;
 use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::method::numbers::{evaluate, frequency_squared_of};
+use lindstedt::method::with_numbers_where_needed;
 use lindstedt::method::{Options, Refusal, solve};
+use lindstedt::numeric::period::{PeriodError, swing};
 use lindstedt::oscillator::OscillatorError;
-use lindstedt::period::{PeriodError, swing};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::verify::{VerificationError, judge};
 use lindstedt::{Oscillator, Symbol};

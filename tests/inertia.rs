@@ -3,7 +3,7 @@
 
 use lindstedt::Values;
 use lindstedt::method::{Options, solve};
-use lindstedt::ode::quadrature::integrate_smooth;
+use lindstedt::numeric::ode::quadrature::integrate_smooth;
 use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::{Verification, judge};
 use lindstedt::{Oscillator, Solution, Symbol};

@@ -155,13 +155,13 @@ fn the_unit_of_time_and_length_does_not_matter() {
         );
         let deviation = found.max_deviation.unwrap() / reference.max_deviation.unwrap();
         assert!((deviation - 1.0).abs() < 1e-6, "{equation}: {deviation}");
-        let edge = lindstedt::decimal::significant(std::f64::consts::PI * length, 6);
+        let edge = lindstedt::export::significant(std::f64::consts::PI * length, 6);
         assert!(
             texts(&found).contains(&format!("periodic for |A| < {edge}: the separatrix")),
             "{}",
             texts(&found)
         );
-        let radius = lindstedt::decimal::significant(std::f64::consts::PI * length, 3);
+        let radius = lindstedt::export::significant(std::f64::consts::PI * length, 3);
         assert!(
             texts(&found).contains(&format!("|A| < about {radius}")),
             "{}",
@@ -247,11 +247,11 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
     }
 }
 
-fn exact_frequency(oscillator: &Oscillator, amplitude: f64) -> Result<f64, lindstedt::period::PeriodError> {
+fn exact_frequency(oscillator: &Oscillator, amplitude: f64) -> Result<f64, lindstedt::numeric::period::PeriodError> {
     let force = lindstedt::expr::CompiledFunction::new(&oscillator.force, &["x".into()]).unwrap();
     let force = |x: f64| force.call(&[x]);
-    let force = lindstedt::period::Force::smooth(&force);
-    Ok(std::f64::consts::TAU / lindstedt::period::conservative_period(&force, 0.0, amplitude)?)
+    let force = lindstedt::numeric::period::Force::smooth(&force);
+    Ok(std::f64::consts::TAU / lindstedt::numeric::period::conservative_period(&force, 0.0, amplitude)?)
 }
 
 #[test]

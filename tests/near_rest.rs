@@ -133,7 +133,7 @@ fn the_edge_of_the_well_does_not_depend_on_the_amplitude_asked_for() {
     for power in [1, 4, 7, 9] {
         let judged = judge(&oscillator, &solution, &at(10.0_f64.powi(-power)), 0.01).unwrap();
         let text = &judged.ranges[0].text;
-        let end = format!("< A < {}", lindstedt::decimal::significant(high, 6));
+        let end = format!("< A < {}", lindstedt::export::significant(high, 6));
         assert!(text.contains(&end), "1e-{power}: {text}, not {end}");
     }
     let oscillator = Oscillator::parse("x'' + exp(x) - 1 = 0").unwrap();

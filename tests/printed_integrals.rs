@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-use lindstedt::derivation::{Formula, Line};
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
+use lindstedt::solution::{Formula, Line};
 use lindstedt::{Oscillator, Solution, Symbol};
 
 type Numbers = BTreeMap<Symbol, f64>;

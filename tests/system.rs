@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use lindstedt::Symbol;
 use lindstedt::expr::{Expr, parse_expression};
-use lindstedt::ode::{self, Point, integrate_first_order};
+use lindstedt::numeric::ode::{self, Point, integrate_first_order};
 use lindstedt::series::RecurrenceError;
 use lindstedt::system::{End, Event, Integrator, Options, Path, System, SystemError};
 

@@ -3,14 +3,13 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
-use lindstedt::equilibrium;
+use lindstedt::catalog::nearest;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal};
 use lindstedt::problem::{self, Formula, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Method, Solution};
-use lindstedt::spelling::nearest;
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Oscillator, Symbol};
 
@@ -233,7 +232,7 @@ pub(super) fn with_known_equilibrium(
         return Ok((oscillator, None));
     };
     let (known, rest) = given.split(&oscillator.parameters);
-    let numerical = equilibrium::with_numbers_where_needed(&oscillator, &known)
+    let numerical = method::with_numbers_where_needed(&oscillator, &known)
         .map_err(|error| Failure::advised(&error, error.help()))?;
     Ok(match numerical {
         Some(numerical) => (numerical, Some(rest)),

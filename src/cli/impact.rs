@@ -53,7 +53,7 @@ fn picture(_: &Impact) -> Result<String, Failure> {
 
 #[cfg(feature = "plot")]
 fn picture(impact: &Impact) -> Result<String, Failure> {
-    use lindstedt::decimal::decimal;
+    use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
     use lindstedt::impact::SampledMotion;
 

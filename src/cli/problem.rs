@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use lindstedt::catalog;
+use lindstedt::catalog::nearest;
 use lindstedt::problem::{Problem, ProblemError};
-use lindstedt::spelling::nearest;
 
 use super::files::is_standard;
 use super::{Failure, read};

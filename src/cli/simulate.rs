@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use lindstedt::Interrupt;
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
 use lindstedt::impact::sweep::{Axis, AxisError, MOST_MOTIONS, Summary, grid_values, sweep, sweep_on};
 use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, simulate};
-use lindstedt::interrupt::Interrupt;
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
 

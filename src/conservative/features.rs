@@ -21,7 +21,7 @@ use num_traits::{Signed, ToPrimitive};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::ode::root::find_root;
+use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
 
 /// A place where a force may turn fast.

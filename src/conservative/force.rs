@@ -15,7 +15,7 @@ use num_traits::Zero;
 use super::features::Features;
 use crate::exact::Rational;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 

@@ -1,8 +1,8 @@
 //! The true motion of a force about its equilibrium, released at rest: turning point, period and harmonics by quadrature of
-//! the energy ([`crate::period`]), in distances from the equilibrium, so that nothing is lost near rest.
+//! the energy ([`crate::numeric::period`]), in distances from the equilibrium, so that nothing is lost near rest.
 
 use super::force::Force;
-use crate::period::{self, PeriodError};
+use crate::numeric::period::{self, PeriodError};
 
 impl Force {
     /// The distance from the equilibrium of the other turning point of a motion released at the distance `start`.

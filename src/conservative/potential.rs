@@ -20,7 +20,7 @@ use crate::symbol::Symbol;
 /// An antiderivative of a force in `coordinate`; `None` where a term has no closed form here.
 ///
 /// ```
-/// use lindstedt::{conservative::potential, expr::Expr};
+/// use lindstedt::{method::potential, expr::Expr};
 /// let force: Expr = "sin(x) + eps*x^3".parse().unwrap();
 /// assert_eq!(potential(&force, "x".into()).unwrap().to_string(), "eps*x^4/4 - cos(x)");
 /// ```
@@ -255,7 +255,7 @@ fn quadratic_power(base: &Expr, power: &Rational, exponent: u32, coordinate: Sym
 mod tests {
     use super::*;
     use crate::expr::CompiledFunction;
-    use crate::ode::quadrature::integrate_smooth;
+    use crate::numeric::ode::quadrature::integrate_smooth;
 
     #[test]
     fn differences_of_the_potential_are_the_work_of_the_force() {

@@ -28,7 +28,7 @@ const HIGHEST_POWER: usize = 24;
 /// closed form here.
 ///
 /// ```
-/// use lindstedt::{conservative::cosine_coefficient, expr::Expr};
+/// use lindstedt::{method::cosine_coefficient, expr::Expr};
 /// let force: Expr = "sin(x)".parse().unwrap();
 /// let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();
 /// assert_eq!(first.to_string(), "2*J1(A)");
@@ -362,7 +362,7 @@ fn quotient_coefficient(below: &Expr, exponent: usize, coordinate: Symbol, ampli
 mod tests {
     use super::*;
     use crate::expr::CompiledFunction;
-    use crate::ode::quadrature::integrate_smooth;
+    use crate::numeric::ode::quadrature::integrate_smooth;
     use std::collections::BTreeMap;
     use std::f64::consts::PI;
 

@@ -7,7 +7,7 @@
 //! A polynomial changes its sign at most once between two neighbouring zeros of its derivative, so its zeros follow one
 //! derivative after the other. Any other force is walked along a grid of equal ratios, outwards from zero.
 
-use crate::ode::root::{find_minimum, find_root};
+use crate::numeric::ode::root::{find_minimum, find_root};
 
 /// A zero of the force at which it changes its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,3 +12,5 @@ pub mod latex;
 pub mod simulation;
 pub(crate) mod steps;
 pub mod text;
+
+pub use crate::decimal::{decimal, significant};

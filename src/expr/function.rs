@@ -539,7 +539,7 @@ mod tests {
     /// nothing with the library.
     #[test]
     fn special_functions_are_their_integrals() {
-        use crate::ode::quadrature::integrate_smooth;
+        use crate::numeric::ode::quadrature::integrate_smooth;
         use std::f64::consts::PI;
         let integral = |f: &dyn Fn(f64) -> f64, to: f64| integrate_smooth(f, 0.0, to, 1e-14).unwrap().0;
         for u in [0.1, 0.7, 1.5, 3.0, 7.0] {

@@ -61,6 +61,8 @@ pub use print::Fraction;
 pub use rounding::Rounded;
 pub use typed::Typed;
 
+pub use crate::symbol::{fresh, fresh_stem};
+
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but a number.
 pub const LARGEST_EXPONENT: u32 = 10_000;
 

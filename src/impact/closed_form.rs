@@ -17,7 +17,7 @@ use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
 use super::phases::{ContactSpeed, Form, PhasesError, Swing, ThreePhases, three_phases};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
 use crate::method::{self, Refusal};
-use crate::ode::Options;
+use crate::numeric::ode::Options;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::Solution;
 use crate::symbol::Symbol;

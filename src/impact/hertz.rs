@@ -25,7 +25,7 @@
 
 use thiserror::Error;
 
-use crate::ode::quadrature::nodes_and_weights;
+use crate::numeric::ode::quadrature::nodes_and_weights;
 
 /// A quantity outside its domain.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -169,7 +169,7 @@ pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, NotPos
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ode::{Event, Options, State, integrate};
+    use crate::numeric::ode::{Event, Options, State, integrate};
 
     #[test]
     fn the_duration_factor_is_a_ratio_of_gamma_functions() {

@@ -23,8 +23,8 @@ use std::str::FromStr;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use crate::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
-use crate::ode::root::{RootError, find_root};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
+use crate::numeric::ode::root::{RootError, find_root};
 
 /// How the line is chosen. The names are those of problem files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

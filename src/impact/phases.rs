@@ -29,7 +29,7 @@ use thiserror::Error;
 
 use super::linearisation::{self, Line, LinearisationError, Rule};
 use crate::decimal::significant;
-use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 
 /// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the barrier.
 #[derive(Clone, Copy)]
@@ -510,7 +510,7 @@ fn signed_term(value: f64, digits: usize) -> String {
 mod tests {
     use super::*;
     use crate::impact::hertz::{Design, elastic_force};
-    use crate::ode::{Event, Options, State, integrate};
+    use crate::numeric::ode::{Event, Options, State, integrate};
     use proptest::prelude::*;
 
     const FORCE: fn(f64) -> f64 = f64::sin;

@@ -10,7 +10,7 @@
 //! on which the slope stays further from zero than the first bound on p'' holds at most one; any other is halved. So no
 //! root is missed, however close two of them lie, down to the rounding of the polynomial itself.
 
-use crate::ode::root::find_root;
+use crate::numeric::ode::root::find_root;
 
 /// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series never has more.
 #[derive(Debug, Clone, Copy)]

@@ -18,7 +18,7 @@ use thiserror::Error;
 use super::model::{Model, ModelError, Start};
 use super::simulation::{Integrator, Settings, Simulation, size};
 use super::{judge, taylor};
-use crate::ode::IntegrationError;
+use crate::numeric::ode::IntegrationError;
 
 /// Why a simulation cannot begin.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]

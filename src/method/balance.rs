@@ -26,8 +26,8 @@ use nalgebra::{DMatrix, DVector};
 use crate::conservative::force::Force;
 use crate::decimal::significant;
 use crate::exact::Doubles;
-use crate::ode::quadrature::nodes_and_weights;
-use crate::ode::root::find_root;
+use crate::numeric::ode::quadrature::nodes_and_weights;
+use crate::numeric::ode::root::find_root;
 use crate::series::FourierSeries;
 
 /// A balance solved by numbers.

@@ -37,9 +37,9 @@ use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
-use crate::ode::quadrature::integrate_smooth;
+use crate::numeric::ode::quadrature::integrate_smooth;
+use crate::numeric::period;
 use crate::oscillator::Oscillator;
-use crate::period;
 use crate::series::FourierSeries;
 use crate::solution::{
     AmplitudeConvention, Law, Method, Note, Solution, System,

@@ -37,7 +37,7 @@ use crate::decimal::decimal;
 use crate::derivation::{Formula, Line};
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, Function, Node};
-use crate::ode::root::find_root;
+use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
 use crate::solution::{Method, Note, Solution, note::BoundsHold};

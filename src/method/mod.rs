@@ -36,6 +36,9 @@ pub(crate) mod variational_iteration;
 
 pub use harmonic_balance::MOST_HARMONICS;
 
+pub use crate::conservative::{Force, cosine_coefficient, is_odd, is_smooth, potential};
+pub use crate::equilibrium::with_numbers_where_needed;
+
 use std::collections::BTreeMap;
 use std::fmt;
 

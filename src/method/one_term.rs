@@ -22,7 +22,7 @@ use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{CompiledFunction, Expr, ExprError};
-use crate::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep};

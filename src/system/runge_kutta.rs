@@ -13,7 +13,7 @@ use std::cell::RefCell;
 
 use super::{End, Event, Occurrence, Options, Path, System, SystemError, taylor};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
-use crate::ode::{self, Action, Point, StopReason, Trajectory, integrate_first_order};
+use crate::numeric::ode::{self, Action, Point, StopReason, Trajectory, integrate_first_order};
 use crate::symbol::{Symbol, fresh_stem};
 
 /// No step can be held to less: an estimate of its error is rounding below that.

@@ -11,7 +11,7 @@ use super::validity::Range;
 use crate::conservative::force::Force;
 use crate::decimal::significant;
 use crate::method::numbers::force_of;
-use crate::ode::root::find_root;
+use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;

@@ -14,7 +14,7 @@ use crate::conservative::features::Features;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::expr::Expr;
-use crate::ode::root::find_root;
+use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;

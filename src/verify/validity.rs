@@ -11,7 +11,7 @@ use crate::decimal::significant;
 use crate::method::numbers::{force_of, frequency_squared_of};
 use crate::method::one_term::coefficient_by_quadrature;
 use crate::method::table::{Entry, Sees};
-use crate::ode::root::find_root;
+use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;

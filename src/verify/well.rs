@@ -11,8 +11,8 @@
 
 use crate::conservative::force::Force;
 use crate::decimal::significant;
-use crate::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::ode::root::find_root;
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::root::find_root;
 
 /// Where a well ends on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]

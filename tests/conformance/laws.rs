@@ -4,7 +4,7 @@ use lindstedt::Oscillator;
 use lindstedt::Values;
 use lindstedt::expr::Expr;
 use lindstedt::method::Options;
-use lindstedt::period::{Force, conservative_period};
+use lindstedt::numeric::period::{Force, conservative_period};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::verify::comparison::compare;
 
@@ -107,7 +107,7 @@ fn barriers_by_arcs() {
     for amplitude in [0.3, 0.41, 0.9, 2.0] {
         let arc = f64::acos(f64::min(1.0, edge / amplitude));
         let integrand = |theta: f64| (amplitude * theta.cos() - edge).powi(2) * theta.cos();
-        let integral = lindstedt::ode::quadrature::integrate_smooth(integrand, 0.0, arc.max(1e-300), 1e-13)
+        let integral = lindstedt::numeric::ode::quadrature::integrate_smooth(integrand, 0.0, arc.max(1e-300), 1e-13)
             .unwrap()
             .0;
         let expected = 1.0 + 4.0 * k * integral / (std::f64::consts::PI * amplitude);
@@ -125,7 +125,7 @@ fn barriers_by_arcs() {
     let arc = f64::acos(edge / 2.0);
     // theta = arc (1 - u^2) takes the root out of the end.
     let smooth = |u: f64| 2.0 * arc * u * integrand(arc * (1.0 - u * u));
-    let integral = lindstedt::ode::quadrature::integrate_smooth(smooth, 0.0, 1.0, 1e-13)
+    let integral = lindstedt::numeric::ode::quadrature::integrate_smooth(smooth, 0.0, 1.0, 1e-13)
         .unwrap()
         .0;
     let expected = 1.0 + 4.0 * k * integral / (std::f64::consts::PI * 2.0);

@@ -116,7 +116,7 @@ fn limit_cycles_attract_or_repel_as_said() {
                 -oscillator.force.evaluate(&values).unwrap()
             };
             let drift = |start: f64| {
-                lindstedt::period::swing(&acceleration, 0.0, start, 20.0)
+                lindstedt::numeric::period::swing(&acceleration, 0.0, start, 20.0)
                     .unwrap()
                     .end()
                     .x

@@ -15,8 +15,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use lindstedt::Values;
-use lindstedt::conservative::Force;
 use lindstedt::expr::Expr;
+use lindstedt::method::Force;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
 use lindstedt::verify::judge;

@@ -1,7 +1,7 @@
 //! The contact: restitution, no pull, and motions that lean on a barrier.
 
 use lindstedt::impact::{Integrator, Model, Start, Stop};
-use lindstedt::ode::root::find_root;
+use lindstedt::numeric::ode::root::find_root;
 
 use super::{REST, run, taylor};
 

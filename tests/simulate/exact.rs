@@ -1,8 +1,8 @@
 //! Conservative motions against elliptic functions and quadrature, down to grazing contacts.
 
 use lindstedt::impact::{Model, Start, Stop};
-use lindstedt::ode::quadrature::integrate_smooth;
-use lindstedt::ode::root::find_root;
+use lindstedt::numeric::ode::quadrature::integrate_smooth;
+use lindstedt::numeric::ode::root::find_root;
 
 use super::{REST, taylor};
 

@@ -1,7 +1,7 @@
 //! Rest times by their definition, from samples of the motion and from the action.
 
 use lindstedt::impact::{Integrator, Model, NoRest, Settings, Start, Stop, simulate};
-use lindstedt::ode::root::find_root;
+use lindstedt::numeric::ode::root::find_root;
 
 use super::{REST, run, taylor};
 

@@ -14,7 +14,7 @@
 use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::simulation::{Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled};
-use crate::ode::{self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases};
+use crate::numeric::ode::{self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases};
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]

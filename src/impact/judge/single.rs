@@ -16,8 +16,8 @@ use thiserror::Error;
 use super::Coordinate;
 use crate::impact::linearisation::{greatest_depth, work};
 use crate::impact::phases::ThreePhases;
-use crate::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::ode::{self, Event, IntegrationError, StopReason, Trajectory, integrate};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::{self, Event, IntegrationError, StopReason, Trajectory, integrate};
 
 /// One impact as it happens, from release to the next turning point.
 #[derive(Debug, Clone)]
@@ -127,7 +127,7 @@ fn way_forward(reason: &StopReason) -> String {
 ///
 /// ```
 /// use lindstedt::impact::{hertz::elastic_force, true_impact};
-/// use lindstedt::ode::Options;
+/// use lindstedt::numeric::ode::Options;
 ///
 /// let truth = true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &Options::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
@@ -286,7 +286,7 @@ const TIGHTEST: f64 = 1e-14;
 ///
 /// ```
 /// use lindstedt::impact::{assured_impact, hertz::elastic_force};
-/// use lindstedt::ode::Options;
+/// use lindstedt::numeric::ode::Options;
 ///
 /// let truth = assured_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &Options::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
@@ -414,8 +414,8 @@ mod tests {
     use crate::impact::hertz::{Design, elastic_force};
     use crate::impact::linearisation::Rule;
     use crate::impact::phases::{ContactSpeed, Swing, contact_speed, three_phases};
-    use crate::ode::Options;
-    use crate::ode::root::find_root;
+    use crate::numeric::ode::Options;
+    use crate::numeric::ode::root::find_root;
 
     const FORCE: fn(f64) -> f64 = f64::sin;
 

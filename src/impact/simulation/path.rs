@@ -5,8 +5,8 @@
 
 use crate::impact::model::Side;
 use crate::impact::polynomial::{crossing_of, value};
-use crate::ode::Trajectory;
-use crate::ode::quadrature::nodes_and_weights;
+use crate::numeric::ode::Trajectory;
+use crate::numeric::ode::quadrature::nodes_and_weights;
 
 /// What the pendulum is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

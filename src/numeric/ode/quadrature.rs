@@ -10,10 +10,10 @@
 //! `dx / sqrt(2 (V(A) - V(x)))` smooth.
 //!
 //! ```
-//! use lindstedt::ode::quadrature::integrate_smooth;
+//! use lindstedt::numeric::ode::quadrature::integrate_smooth;
 //! let (area, _) = integrate_smooth(f64::sin, 0.0, std::f64::consts::PI, 1e-13)?;
 //! assert!((area - 2.0).abs() < 1e-14);
-//! # Ok::<(), lindstedt::ode::quadrature::QuadratureError>(())
+//! # Ok::<(), lindstedt::numeric::ode::quadrature::QuadratureError>(())
 //! ```
 
 use std::num::NonZeroUsize;

@@ -8,10 +8,10 @@
 //! phi)^2 < 1 - xi`. It never leaves the bracket and never needs more than a few times the steps of bisection.
 //!
 //! ```
-//! use lindstedt::ode::root::find_root;
+//! use lindstedt::numeric::ode::root::find_root;
 //! let cosine = find_root(|x| x.cos() - x, 0.0, 1.0)?;
 //! assert!((cosine.cos() - cosine).abs() < 1e-15);
-//! # Ok::<(), lindstedt::ode::root::RootError>(())
+//! # Ok::<(), lindstedt::numeric::ode::root::RootError>(())
 //! ```
 
 use thiserror::Error;

@@ -13,7 +13,7 @@
 //! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima.
 //!
 //! ```
-//! use lindstedt::ode::{Event, Options, State, integrate};
+//! use lindstedt::numeric::ode::{Event, Options, State, integrate};
 //!
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.
 //! let pendulum = |_t: f64, x: f64, _v: f64| -x.sin();
@@ -24,7 +24,7 @@
 //! let period = std::f64::consts::TAU / 0.860_608_346_679_613;
 //! assert!((path.end().t - 0.25 * period).abs() < 1e-9);
 //! assert!(path.at(1.0).is_some_and(|(x, v)| x > 0.0 && v < 0.0));
-//! # Ok::<(), lindstedt::ode::IntegrationError>(())
+//! # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 //! ```
 //!
 //! The method is Verner's most efficient 9(8) pair with its own 8th-order interpolant (J. H. Verner, *Numer.

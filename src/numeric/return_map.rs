@@ -13,8 +13,8 @@
 //! strongly it does either. Relaxation oscillations, slow but for their jumps, are stiff: an implicit method follows them where
 //! Runge-Kutta would need too many steps. Lengths are measured in an amplitude and times in the linear frequency: units do not matter.
 
-use crate::ode::root::find_root;
-use crate::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
 
 /// Tolerance per step.
 const STEP_TOLERANCE: f64 = 1e-13;
@@ -122,7 +122,7 @@ impl LimitCycle {
 /// None within a factor of sixty.
 ///
 /// ```
-/// use lindstedt::return_map::{Equation, nearest_limit_cycle};
+/// use lindstedt::numeric::return_map::{Equation, nearest_limit_cycle};
 ///
 /// // Van der Pol with mu = 1: the period of the cycle is 6.6632868593.
 /// let equation = Equation {

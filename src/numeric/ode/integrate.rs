@@ -183,7 +183,7 @@ pub fn integrate_phases(
 /// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
 ///
 /// ```
-/// use lindstedt::ode::{Action, Event, Options, Point, integrate_first_order};
+/// use lindstedt::numeric::ode::{Action, Event, Options, Point, integrate_first_order};
 ///
 /// // Euler's equations of a body that turns freely: energy and angular momentum are kept.
 /// let spin = |_t: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[2] * w[0], -w[0] * w[1]];
@@ -193,7 +193,7 @@ pub fn integrate_phases(
 /// let energy = |w: [f64; 3]| 2.0 * w[0] * w[0] + 2.0 * w[1] * w[1] + 2.0 * w[2] * w[2];
 /// assert!(path.samples(100).all(|point| (energy(point.y) - energy(start.y)).abs() < 1e-10));
 /// assert!(!path.occurrences().is_empty());
-/// # Ok::<(), lindstedt::ode::IntegrationError>(())
+/// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 /// ```
 ///
 /// # Errors

@@ -14,9 +14,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
-use crate::ode::root::{RootError, find_root};
-use crate::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
+use crate::numeric::ode::root::{RootError, find_root};
+use crate::numeric::ode::{Event, IntegrationError, Options, State, StopReason, Trajectory, integrate};
 
 /// Relative tolerance of the quadratures.
 const TOLERANCE: f64 = 1e-14;

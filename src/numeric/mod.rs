@@ -1,0 +1,12 @@
+//! True motions in numbers: nothing here knows where an equation came from, so what is judged shares nothing with its judge.
+//!
+//! In come forces as closures, starts and tolerances; out go motions, periods and limit cycles, or the reason why there is none.
+//! Units are those of the closures. [`ode`] uses neither of the others, and they do not use each other:
+//!
+//! - [`ode`]: Runge-Kutta with dense output and events, quadrature, roots.
+//! - [`period`]: the true period and motion of a force of the position alone, from its energy.
+//! - [`return_map`]: true limit cycles, from one turning point to the next.
+
+pub mod ode;
+pub mod period;
+pub mod return_map;

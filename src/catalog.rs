@@ -239,6 +239,14 @@ pub fn find(name: &str) -> Option<&'static Entry> {
 }
 
 /// Every method at its default order on an entry: `Ok` where it applies, the refusal where it does not.
+///
+/// ```
+/// use lindstedt::catalog::{find, methods};
+///
+/// let van_der_pol = find("van-der-pol").expect("an entry");
+/// let answers = methods(van_der_pol);
+/// assert!(answers.iter().any(|(_, answer)| answer.is_ok()) && answers.iter().any(|(_, answer)| answer.is_err()));
+/// ```
 pub fn methods(entry: &Entry) -> Vec<(Method, Result<(), Refusal>)> {
     let attempt = |method| {
         let options = Options {

@@ -7,6 +7,12 @@ use crate::exact::scaled::Scaled;
 use crate::exact::{Integer, Rational};
 
 /// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
+///
+/// ```
+/// use lindstedt::export::decimal;
+///
+/// assert_eq!([decimal(0.8606080), decimal(3.0407e7)], ["0.860608", "3.0407e7"]);
+/// ```
 pub fn decimal(value: f64) -> String {
     significant(value, 6)
 }

@@ -122,6 +122,16 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
 ///
 /// # Errors
 /// With these numbers `x = 0`, or the equilibrium asked for, is not stable, or there is none.
+///
+/// ```
+/// use lindstedt::{Oscillator, Values, method::with_numbers_where_needed};
+///
+/// let loaded = Oscillator::parse("x'' + x^3 - g = 0")?;
+/// let (numbers, _) = "g = 8".parse::<Values>()?.split(&["g".into()]);
+/// let at_numbers = with_numbers_where_needed(&loaded, &numbers)?.ok_or("a closed form in g")?;
+/// assert_eq!(at_numbers.equation().to_string(), "x'' - 8 + x^3 = 0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn with_numbers_where_needed(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, Expr>,

@@ -3,6 +3,12 @@
 use strsim::levenshtein;
 
 /// The name among `known` that needs the fewest changes to become `typed`, where at most a third of it changes.
+///
+/// ```
+/// use lindstedt::catalog::nearest;
+///
+/// assert_eq!(nearest("pendulm", ["duffing", "pendulum"]), Some("pendulum"));
+/// ```
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let allowed = |name: &str| typed.chars().count().max(name.chars().count()).div_ceil(3);
     known

@@ -61,7 +61,7 @@ impl Symbol {
 /// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
 ///
 /// ```
-/// use lindstedt::{Symbol, expr::fresh};
+/// use lindstedt::expr::fresh;
 /// assert_eq!(fresh("hbar", &[]).name(), "hbar");
 /// assert_eq!(fresh("hbar", &["hbar".into(), "hbar_".into()]).name(), "hbar__");
 /// ```

@@ -26,6 +26,14 @@ use crate::symbol::Symbol;
 
 /// Whether a force has no corners: neither `abs`, `sgn`, `max`, `min` or `H`, nor a root of something linear in the coordinate.
 /// Quadrature converges fast then, and only then.
+///
+/// ```
+/// use lindstedt::{expr::Expr, method::is_smooth};
+///
+/// let [wave, wall]: [Expr; 2] = ["sin(x)".parse()?, "abs(x)".parse()?];
+/// assert!(is_smooth(&wave, "x".into()) && !is_smooth(&wall, "x".into()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     use crate::expr::Node;

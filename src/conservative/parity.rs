@@ -20,6 +20,14 @@ use crate::symbol::Symbol;
 ///
 /// # Errors
 /// A force that cannot be written out.
+///
+/// ```
+/// use lindstedt::{expr::Expr, method::is_odd};
+///
+/// let [odd, neither]: [Expr; 2] = ["x + x^3".parse()?, "x + x^2".parse()?];
+/// assert!(is_odd(&odd, "x".into())? && !is_odd(&neither, "x".into())?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn is_odd(force: &Expr, coordinate: Symbol) -> Result<bool, ExprError> {
     Ok(twice_even_part(force, coordinate)?.is_zero())
 }

@@ -158,6 +158,21 @@ pub struct ImpactFigure<'a> {
 ///
 /// # Errors
 /// As [`figure`].
+///
+/// ```
+/// use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// let [truth, _, energy] = impact.paths(200);
+/// let motions = [("Runge-Kutta", CurveStyle::RUNGE_KUTTA, &truth), ("closed form", CurveStyle::FORMULA, &energy)].map(
+///     |(label, style, path)| ImpactMotion { label, style, samples: &path.samples, contact: &path.contact },
+/// );
+/// let right_barrier = Some(impact.setup.barrier);
+/// let svg = impact_figure(&ImpactFigure { left_barrier: None, right_barrier, motions: &motions, caption: "One impact." })?;
+/// assert!(svg.starts_with("<svg") && svg.contains("closed form"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     let motions = data.motions.iter();
     let phase: Vec<_> = motions.clone().map(|motion| phase_points(motion.samples)).collect();
@@ -206,6 +221,26 @@ pub struct MotionFigure<'a> {
 ///
 /// # Errors
 /// [`FigureError::DifferentTimes`] where the two were not sampled at the same times; otherwise as [`figure`].
+///
+/// ```
+/// use lindstedt::export::figure::{MotionFigure, motion_figure};
+/// use lindstedt::{Options, Oscillator, solve, verify::motions};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options::default())?;
+/// let sampled = motions(&pendulum, &solution, &"A = 1".parse()?)?.ok_or("no real frequency")?;
+/// let svg = motion_figure(&MotionFigure {
+///     coordinate: "x",
+///     displacement_unit: "rad",
+///     time_unit: "",
+///     formula_label: &solution.title(),
+///     formula: &sampled.formula,
+///     truth: &sampled.truth,
+///     caption: "A pendulum released at 1 rad.",
+/// })?;
+/// assert!(svg.starts_with("<svg") && svg.contains("(rad)"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let (formula, truth, name) = (data.formula, data.truth, data.coordinate);
     let same = formula.iter().zip(truth).take_while(|(f, t)| f.0 == t.0).count();
@@ -243,6 +278,18 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
 ///
 /// # Errors
 /// As [`figure`].
+///
+/// ```
+/// use lindstedt::export::figure::backbone_figure;
+/// use lindstedt::{Oscillator, verify::comparison::{backbones, compare}};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// let (truth, curves) = backbones(&pendulum, &table)?;
+/// let svg = backbone_figure(&truth, &curves, Some(1.0), "The pendulum.")?;
+/// assert!(svg.starts_with("<svg") && svg.contains("The pendulum."));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn backbone_figure(
     truth: &Backbone,
     curves: &[Backbone],

@@ -53,11 +53,22 @@ fn scientific_text(text: &str) -> String {
 }
 
 /// An equation, `left = right`.
+///
+/// ```
+/// use lindstedt::{export::latex, expr::parse_equation};
+///
+/// assert_eq!(latex::equation(&parse_equation("x'' + x^3/2 = 0")?), r"\ddot{x} + \frac{x^{3}}{2} = 0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn equation(equation: &Equation) -> String {
     format!("{} = {}", expression(&equation.left), expression(&equation.right))
 }
 
 /// An equation, `left = right`, or an expression, as it was typed.
+///
+/// ```
+/// assert_eq!(lindstedt::export::latex::typed("omega0^2*x"), r"\omega_{0}^{2} x");
+/// ```
 pub fn typed(text: &str) -> String {
     let side = |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
     match text.split_once('=') {
@@ -67,22 +78,59 @@ pub fn typed(text: &str) -> String {
 }
 
 /// The derived formula, and the verdict where it was judged, to be pasted into an article.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let article = lindstedt::export::latex::solution(&solution, None);
+/// assert!(article.contains(r"\begin{align*}") && article.contains(r"\omega^{2}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
     // The tolerance of the verdict stays outside of an article.
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
 }
 
 /// The story of an impact: equation, law, three phases by either speed of contact, and the numbers beside Runge-Kutta.
+///
+/// ```
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// assert!(lindstedt::export::latex::impact(&impact, 0.01).contains(r"\begin{align*}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     document(&report::impact(impact, tolerance))
 }
 
 /// Every method in one table; those that do not apply stand in comments below it.
+///
+/// ```
+/// use lindstedt::{Oscillator, verify::comparison::compare};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// assert!(lindstedt::export::latex::comparison(&table).contains(r"\begin{tabular}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn comparison(comparison: &Comparison) -> String {
     document(&report::comparison(comparison))
 }
 
 /// A document as LaTeX: comments, the equations in one `align*`, and each table where it stands.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// assert_eq!(lindstedt::export::latex::document(&document), lindstedt::export::latex::solution(&solution, None));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn document(document: &Document) -> String {
     let mut page = Page::default();
     for block in document.sections.iter().flatten() {

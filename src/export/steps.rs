@@ -35,6 +35,15 @@ fn indexed(letter: &str, order: u32) -> String {
 }
 
 /// The derivation as text: the orders of an expansion, or the lines of any other method; empty where there is nothing to show.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// assert!(lindstedt::export::text::steps(&solution).starts_with("Derivation\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn text(solution: &Solution) -> String {
     if solution.steps.is_empty() && solution.derivation.is_empty() {
         return String::new();
@@ -155,6 +164,15 @@ fn condition_as_text(condition: Condition, y: &str) -> String {
 }
 
 /// The derivation as LaTeX.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// assert!(lindstedt::export::latex::steps(&solution).contains(r"\omega^{2}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn latex(solution: &Solution) -> String {
     if solution.steps.is_empty() && solution.derivation.is_empty() {
         return String::new();

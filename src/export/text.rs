@@ -17,6 +17,10 @@ use crate::verify::Verification;
 use crate::verify::comparison::Comparison;
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
+///
+/// ```
+/// assert_eq!(lindstedt::export::text::percent(-0.0149), "-1.49 %");
+/// ```
 pub fn percent(error: f64) -> String {
     if error.abs() < 1e-9 {
         return "< 1e-7 %".to_owned();
@@ -34,22 +38,60 @@ fn size_in_percent(size: f64) -> String {
 }
 
 /// The derived formula, and the verdict where it was judged.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let text = lindstedt::export::text::solution(&solution, None, 0.01);
+/// assert!(text.contains(&solution.formula()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> String {
     document(&report::solution(solution, verification, tolerance), usize::MAX)
 }
 
 /// Every method in one table, and below it those that do not apply, in lines of at most `width` characters where words allow
 /// it. Formulas stand at the end of their rows where all of them fit there, and below the table where not.
+///
+/// ```
+/// use lindstedt::{Oscillator, verify::comparison::compare};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// let text = lindstedt::export::text::comparison(&table, 80);
+/// assert!(text.contains("Lindstedt-Poincare"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn comparison(comparison: &Comparison, width: usize) -> String {
     document(&report::comparison(comparison), width)
 }
 
 /// The whole story of an impact.
+///
+/// ```
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// assert!(lindstedt::export::text::impact(&impact, 0.01).contains("penetration"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     document(&report::impact(impact, tolerance), usize::MAX)
 }
 
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// assert!(lindstedt::export::text::document(&document, 80).contains(&solution.formula()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn document(document: &Document, width: usize) -> String {
     let page = Page {
         width,

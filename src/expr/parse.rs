@@ -75,6 +75,13 @@ impl fmt::Display for Equation {
 ///
 /// # Errors
 /// See [`ParseError`].
+///
+/// ```
+/// use lindstedt::expr::parse_expression;
+///
+/// assert_eq!(parse_expression("x + x + 1/2*2")?.to_string(), "1 + 2*x");
+/// # Ok::<(), lindstedt::expr::ParseError>(())
+/// ```
 pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
     let mut parser = Parser::new(text, true)?;
     let expr = parser.sum()?;
@@ -93,6 +100,14 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 ///
 /// # Errors
 /// See [`ParseError`]; also for [`RESERVED_NAMES`], and for primes on more than one letter.
+///
+/// ```
+/// use lindstedt::expr::parse_equation;
+///
+/// assert_eq!(parse_equation("y'' + sin(y) = 0")?.coordinate, "y".into());
+/// assert!(parse_equation("x'' + 2 x = 0)").is_err());
+/// # Ok::<(), lindstedt::expr::ParseError>(())
+/// ```
 pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
     let mut parser = Parser::new(text, false)?;
     let coordinate = parser.coordinate()?;

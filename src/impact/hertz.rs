@@ -140,6 +140,14 @@ pub(super) fn greatest_depth(stiffness: f64, speed: f64) -> f64 {
 ///
 /// # Errors
 /// As [`penetration`].
+///
+/// ```
+/// use lindstedt::impact::hertz::{duration, penetration};
+///
+/// assert!((penetration(1.25e6, 1.0)? - 1e-6_f64.powf(0.4)).abs() < 1e-12); // rad
+/// assert!(duration(1.25e6, 1.0)? > 2.0 * penetration(1.25e6, 1.0)?); // in units of 1/omega
+/// # Ok::<(), lindstedt::impact::hertz::NotPositive>(())
+/// ```
 pub fn duration(stiffness: f64, speed: f64) -> Result<f64, NotPositive> {
     Ok(duration_factor() * penetration(stiffness, speed)? / speed)
 }

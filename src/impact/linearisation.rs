@@ -134,6 +134,14 @@ pub enum LinearisationError {
 ///
 /// # Errors
 /// [`LinearisationError`]: a depth that is not positive, a force that is not finite or does not push back.
+///
+/// ```
+/// use lindstedt::impact::{Rule, fit, hertz::elastic_force};
+///
+/// let line = fit(Rule::EqualPeak, elastic_force, 0.25)?;
+/// assert!((line.slope - 0.5).abs() < 1e-12 && line.at_touch == 0.0);
+/// # Ok::<(), lindstedt::impact::LinearisationError>(())
+/// ```
 pub fn fit(rule: Rule, elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Result<Line, LinearisationError> {
     if !(deepest.is_finite() && deepest > 0.0) {
         return Err(LinearisationError::Depth(deepest));

@@ -216,6 +216,24 @@ pub enum PhasesError {
 /// # Errors
 /// [`PhasesError`], each with what to change: a barrier out of reach, no stiffness, an amplitude beyond the
 /// frequency law or outside the well.
+///
+/// ```
+/// use lindstedt::impact::{ContactSpeed, Rule, Swing, hertz::elastic_force, three_phases};
+///
+/// let swing = Swing {
+///     amplitude: 1.5,
+///     barrier: 0.323,
+///     stiffness: 1e6,
+///     frequency_squared: 1.0 - 1.5 * 1.5 / 8.0,
+///     linear_stiffness: 1.0,
+///     restoring_force: &f64::sin,
+///     elastic_force: &elastic_force,
+///     rule: Rule::LeastSquares,
+/// };
+/// let motion = three_phases(&swing, ContactSpeed::Energy)?;
+/// assert!(motion.duration < 0.02 * motion.period);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, PhasesError> {
     let &Swing {
         amplitude,

@@ -124,6 +124,16 @@ impl NoNumbers {
 ///
 /// # Errors
 /// [`NoNumbers`], in words for a user.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, method::numbers::evaluate, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options { order: Some(1), ..Options::default() })?;
+/// let numbers = evaluate(&duffing, &solution, &[("A".into(), 1.0), ("eps".into(), 0.1)].into())?;
+/// assert!((numbers.frequency_squared - 1.075).abs() < 1e-14); // 1 + 3*A^2*eps/4
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn evaluate(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -169,6 +179,16 @@ pub fn evaluate(
 ///
 /// # Errors
 /// As [`evaluate`].
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, method::numbers::frequency_squared_of, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// let square = frequency_squared_of(&pendulum, &solution, &[("A".into(), 1.0)].into())?;
+/// assert!((square - 0.875).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn frequency_squared_of(
     oscillator: &Oscillator,
     solution: &Solution,

@@ -231,6 +231,12 @@ impl Entry {
 }
 
 /// The names of the methods that take a choice, in words: `lindstedt-poincare and pade`.
+///
+/// ```
+/// use lindstedt::method::table::{Choice, that_take};
+///
+/// assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
+/// ```
 pub fn that_take(choice: Choice) -> String {
     let names: Vec<&str> = METHODS
         .iter()

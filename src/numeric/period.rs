@@ -167,6 +167,14 @@ impl<'a> Force<'a> {
 ///
 /// # Errors
 /// See [`PeriodError`].
+///
+/// ```
+/// use lindstedt::numeric::period::{Force, conservative_period};
+///
+/// let period = conservative_period(&Force::smooth(&f64::sin), 0.0, 1.5)?; // a pendulum, rad
+/// assert!((std::f64::consts::TAU / period - 0.860_608_346_679_613).abs() < 1e-12);
+/// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
+/// ```
 pub fn conservative_period(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
     period_between(force, start, turning_point(force, equilibrium, start)?)
 }
@@ -309,6 +317,15 @@ impl<'a> Rates<'a> {
 ///
 /// # Errors
 /// See [`PeriodError`].
+///
+/// ```
+/// use lindstedt::numeric::period::{Force, weighted_motion};
+///
+/// // (1 + x^2)*x'' + x*x'^2 + x = 0 has the energy (1 + x^2) x'^2/2 + x^2/2.
+/// let (period, cosines) = weighted_motion(&Force::smooth(&|x| x), &|x| (1.0 + x * x).sqrt(), 0.0, 0.1)?;
+/// assert!(period > std::f64::consts::TAU && (cosines.iter().sum::<f64>() - 0.1).abs() < 1e-9);
+/// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
+/// ```
 pub fn weighted_motion(
     force: &Force,
     weight: &dyn Fn(f64) -> f64,
@@ -540,6 +557,15 @@ fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 ///
 /// # Errors
 /// See [`PeriodError`].
+///
+/// ```
+/// use lindstedt::numeric::period::{Force, turning_point};
+///
+/// let end = turning_point(&Force::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;
+/// let energy = |x: f64| x * x / 2.0 + x.powi(3) / 6.0;
+/// assert!(end < -0.5 && (energy(end) - energy(0.5)).abs() < 1e-12);
+/// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
+/// ```
 pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
@@ -682,6 +708,14 @@ impl Swing {
 ///
 /// # Errors
 /// See [`PeriodError`].
+///
+/// ```
+/// use lindstedt::numeric::period::swing;
+///
+/// let swing = swing(&|_t, x, _v| -f64::sin(x), 0.0, 1.5, 20.0)?;
+/// assert!((std::f64::consts::TAU / swing.period() - 0.860_608_346_679_613).abs() < 1e-9);
+/// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
+/// ```
 pub fn swing(
     acceleration: &dyn Fn(f64, f64, f64) -> f64,
     equilibrium: f64,

@@ -5,6 +5,16 @@ use crate::verify::comparison::{Comparison, Row};
 
 /// The document of a comparison: the truth, the table, why some rows have no frequency, who does not apply, where the true
 /// motion is periodic.
+///
+/// ```
+/// use lindstedt::{Oscillator, verify::comparison::compare};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// let document = lindstedt::report::comparison(&table);
+/// assert!(!document.sections.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn comparison(comparison: &Comparison) -> Document<'_> {
     let reason = || comparison.reason.as_ref().map(ToString::to_string);
     let truth = Block::Truth {

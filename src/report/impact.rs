@@ -7,6 +7,15 @@ use crate::expr::Expr;
 use crate::impact::{ContactSpeed, Impact, ThreePhases};
 
 /// The document of an impact.
+///
+/// ```
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// let document = lindstedt::report::impact(&impact, 0.01);
+/// assert!(lindstedt::export::text::document(&document, 80).contains("penetration"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let setup = &impact.setup;
     let value = |name: &str, value, source| Block::Value {

@@ -9,6 +9,16 @@ use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
 use crate::verify::Verification;
 
 /// The document of a solution: equation, title, law, limit cycle, motion with definitions, validity, verdict.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// assert!(lindstedt::export::latex::document(&document).contains(r"\omega^{2}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verification>, tolerance: f64) -> Document<'a> {
     let title = Block::Title {
         words: solution.title(),

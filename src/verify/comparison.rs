@@ -232,6 +232,16 @@ pub struct Backbone {
 }
 
 /// omega against the amplitude: the truth, and every method of the table; methods with one and the same curve together.
+///
+/// ```
+/// use lindstedt::{Oscillator, verify::comparison::{backbones, compare}};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// let (truth, curves) = backbones(&pendulum, &table)?;
+/// assert!(!truth.points.is_empty() && !curves.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn backbones(
     oscillator: &Oscillator,
     comparison: &Comparison,

@@ -239,6 +239,12 @@ fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: S
 }
 
 /// The nearest singularity of a power series, from its coefficients; `None` where they show no regular pattern.
+///
+/// ```
+/// let geometric: Vec<f64> = (0..30).map(|n| 0.5_f64.powi(n)).collect(); // 1/(1 - x/2)
+/// let pole = lindstedt::verify::nearest_singularity(&geometric).expect("a pole");
+/// assert!((pole.radius - 2.0).abs() < 1e-6 && pole.angle.abs() < 1e-6);
+/// ```
 pub fn nearest_singularity(coefficients: &[f64]) -> Option<Singularity> {
     let earlier = coefficients.len().checked_sub(3)?;
     let (last, before) = (estimate(coefficients)?, estimate(&coefficients[..earlier])?);

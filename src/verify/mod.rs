@@ -167,6 +167,16 @@ impl VerificationError {
 }
 
 /// The symbols that need a value before `solution` can be judged.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let names = lindstedt::verify::needed_values(&solution);
+/// assert!(names.contains(&"A".into()) && names.contains(&"eps".into()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     let mut needed = solution.parameters.clone();
     // A law such as omega^2 = 1 for x'' + x + x^2 = 0 is free of A where the true motion is not.
@@ -288,6 +298,17 @@ pub struct Motions {
 ///
 /// # Errors
 /// As for [`judge`].
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve, verify::motions};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options::default())?;
+/// let sampled = motions(&pendulum, &solution, &"A = 1/10".parse()?)?.ok_or("no real frequency")?;
+/// let pairs = sampled.formula.iter().zip(&sampled.truth);
+/// assert!(pairs.map(|(formula, truth)| (formula.1 - truth.1).abs()).all(|difference| difference < 1e-5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn motions(
     oscillator: &Oscillator,
     solution: &Solution,

@@ -49,6 +49,11 @@ pub struct Applicability {
 }
 
 /// The document of kind `catalog`.
+///
+/// ```
+/// let document = lindstedt::export::json::catalog();
+/// assert!(document.entries.iter().any(|entry| entry.name == "pendulum"));
+/// ```
 pub fn catalog() -> CatalogDocument {
     CatalogDocument {
         schema: Kind::Catalog.schema().to_owned(),

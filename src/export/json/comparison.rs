@@ -115,6 +115,16 @@ pub struct Reach {
 }
 
 /// The document of kind `comparison`.
+///
+/// ```
+/// use lindstedt::{Oscillator, verify::comparison::compare};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
+/// let document = lindstedt::export::json::comparison(&table);
+/// assert_eq!((document.equation.as_str(), document.tolerance), ("x'' + sin(x) = 0", 0.01));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
     let applying = comparison.rows.iter().map(applying);
     ComparisonDocument {

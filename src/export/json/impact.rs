@@ -219,6 +219,15 @@ pub struct Line {
 }
 
 /// The document of kind `impact`.
+///
+/// ```
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// let document = lindstedt::export::json::impact(&impact, 0.01);
+/// assert_eq!((document.phases.len(), document.frequency), (3, impact.frequency()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
     let setup = &impact.setup;
     let [time_to_contact, speed, penetration, duration, period] = impact.quantities().map(quantity);

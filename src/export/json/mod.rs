@@ -69,6 +69,17 @@ fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
 ///
 /// # Errors
 /// What the writer says.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let mut text = Vec::new();
+/// lindstedt::export::json::write(&lindstedt::export::json::solution(&solution, None), &mut text)?;
+/// assert!(text.starts_with(b"{\n") && text.ends_with(b"}\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write(document: &impl Serialize, to: &mut dyn io::Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *to, document)?;
     writeln!(to)
@@ -78,6 +89,16 @@ pub fn write(document: &impl Serialize, to: &mut dyn io::Write) -> io::Result<()
 ///
 /// # Errors
 /// A key that is missing or holds something else.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let document = serde_json::to_value(lindstedt::export::json::solution(&solution, None))?;
+/// assert_eq!(lindstedt::export::json::read_solution(&document)?.formula(), solution.formula());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
     SolutionDocument::deserialize(document)?.read()
 }
@@ -86,6 +107,16 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
 ///
 /// # Errors
 /// A key that is missing or holds something else.
+///
+/// ```
+/// use lindstedt::impact::{Setup, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// let document = serde_json::to_value(lindstedt::export::json::impact(&impact, 0.01))?;
+/// let phases = lindstedt::export::json::read_phases(&document)?;
+/// assert_eq!(phases.iter().map(|phase| phase.name).collect::<Vec<_>>(), ["approach", "contact", "return"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
     ImpactDocument::deserialize(document)?.read_phases()
 }

@@ -61,6 +61,14 @@ impl Kind {
     }
 
     /// The JSON Schema, draft 2020-12, of documents of this kind: every key with its meaning, no other key allowed.
+    ///
+    /// ```
+    /// use lindstedt::export::json::Kind;
+    ///
+    /// let kind = Kind::from_name("impact").ok_or("no such kind")?;
+    /// assert_eq!(kind.json_schema()["title"], "lindstedt/impact/1");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn json_schema(self) -> Value {
         let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
         let mut schema = match self {

@@ -194,6 +194,18 @@ pub struct Difference {
 const INTEGRATORS: [Integrator; 2] = [Integrator::Taylor, Integrator::RungeKutta];
 
 /// The document of kind `simulation`.
+///
+/// ```
+/// use lindstedt::export::{json, simulation::Report};
+/// use lindstedt::impact::{Case, Integrator, Settings, simulate};
+///
+/// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
+/// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0] };
+/// let document = json::simulation(&report);
+/// assert_eq!((document.samples.len(), document.impacts.len()), (1, motion.impacts.len()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn simulation(report: &Report) -> SimulationDocument {
     let motion = report.motion;
     let model = &motion.model;

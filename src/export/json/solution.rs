@@ -209,6 +209,16 @@ pub struct Range {
 }
 
 /// The document of kind `solution`; `verification` is null unless the formula was judged.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let document = lindstedt::export::json::solution(&solution, None);
+/// assert_eq!((document.schema.as_str(), document.order), ("lindstedt/solution/1", solution.order));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solution(solution: &Solution, verification: Option<&verify::Verification>) -> SolutionDocument {
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
     let harmonic = |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
@@ -268,6 +278,17 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
 }
 
 /// The verdict on a formula.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, judge, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let judged = judge(&duffing, &solution, &"A = 1, eps = 1/10".parse()?, 0.01)?;
+/// let document = lindstedt::export::json::solution::verification(&judged);
+/// assert_eq!(document.true_frequency, judged.true_frequency);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn verification(verification: &verify::Verification) -> Verification {
     let ranges = verification.ranges.iter();
     Verification {

@@ -75,6 +75,22 @@ impl Serialize for Streamed<'_> {
 ///
 /// # Errors
 /// What the writer says.
+///
+/// ```
+/// use lindstedt::export::{json, simulation::SweepReport};
+/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+///
+/// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let report = SweepReport { axes: &axes, rows: &rows };
+/// let mut text = Vec::new();
+/// json::sweep(&report, &mut text)?;
+/// let document: json::SweepDocument = serde_json::from_slice(&text)?;
+/// assert_eq!(document.rows.len(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     let axes = report.axes.iter().map(|axis| Axis {
         name: axis.name.clone(),

@@ -7,6 +7,13 @@ use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
 /// An expression. Without recursion: `open` holds what is still to be written, the next piece last.
+///
+/// ```
+/// use lindstedt::{export::latex, expr::parse_expression};
+///
+/// assert_eq!(latex::expression(&parse_expression("sqrt(1 + A^2)/2")?), r"\frac{\sqrt{1 + A^{2}}}{2}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn expression(expression: &Expr) -> String {
     let mut text = String::new();
     let mut open = vec![Piece::Expr(expression.clone(), Place::Free)];

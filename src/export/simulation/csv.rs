@@ -9,7 +9,19 @@ use super::{Report, SweepReport};
 const BETWEEN: usize = 3;
 
 /// The trajectory: the steps of the integrator and a few points inside each, so that a contact of a millisecond is as
-/// well drawn as a swing.
+/// well drawn as a swing; where samples are asked for, the state at these alone.
+///
+/// ```
+/// use lindstedt::export::simulation::{Report, csv};
+/// use lindstedt::impact::{Case, Integrator, Settings, simulate};
+///
+/// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
+/// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0] };
+/// let table = csv(&report);
+/// assert!(table.starts_with("t,x,velocity,") && table.lines().count() == 2); // the state at t = 1
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
     let mut text = String::from("t,x,velocity,state,energy\n");
@@ -44,6 +56,21 @@ pub fn simulation(report: &Report) -> String {
 ///
 /// # Errors
 /// What the writer says.
+///
+/// ```
+/// use lindstedt::export::simulation::{SweepReport, sweep_csv};
+/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+///
+/// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let report = SweepReport { axes: &axes, rows: &rows };
+/// let mut table = Vec::new();
+/// sweep_csv(&report, &mut table)?;
+/// assert!(table.starts_with(b"zeta,"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     for axis in report.axes {
         write!(to, "{},", axis.name)?;

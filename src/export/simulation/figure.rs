@@ -39,6 +39,17 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
 ///
 /// # Errors
 /// As [`figure`].
+///
+/// ```
+/// use lindstedt::export::simulation::{Report, figure};
+/// use lindstedt::impact::{Case, Integrator, Settings, simulate};
+///
+/// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
+/// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0] };
+/// assert!(figure::simulation(&report)?.starts_with("<svg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let motion = report.motion;
     let points = points(motion);
@@ -231,6 +242,19 @@ fn range(axis: &Axis) -> String {
 ///
 /// # Errors
 /// As [`figure`].
+///
+/// ```
+/// use lindstedt::export::simulation::{SweepReport, figure};
+/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+///
+/// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let report = SweepReport { axes: &axes, rows: &rows };
+/// assert!(figure::sweep(&report)?.starts_with("<svg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
     match report.axes {
         [one] => {

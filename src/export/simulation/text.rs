@@ -11,6 +11,17 @@ use crate::impact::{Integrator, Model, Simulation};
 const LISTED: usize = 24;
 
 /// One run.
+///
+/// ```
+/// use lindstedt::export::simulation::{Report, text};
+/// use lindstedt::impact::{Case, Integrator, Settings, simulate};
+///
+/// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
+/// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0] };
+/// assert!(text(&report).contains("\nImpacts: "));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
     let mut text = header(report);
@@ -234,6 +245,21 @@ fn energy(text: &mut String, motion: &Simulation) {
 ///
 /// # Errors
 /// What the writer says.
+///
+/// ```
+/// use lindstedt::export::simulation::{SweepReport, sweep_text};
+/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+///
+/// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let report = SweepReport { axes: &axes, rows: &rows };
+/// let mut text = Vec::new();
+/// sweep_text(&report, &mut text)?;
+/// assert!(String::from_utf8(text)?.lines().count() > 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     for axis in report.axes {
         write!(to, "{:>14}", axis.name)?;

@@ -369,6 +369,14 @@ impl TrueImpact {
 }
 
 /// The deviation of the closed form from the true motion.
+///
+/// ```
+/// use lindstedt::impact::{Setup, deviation, solve};
+///
+/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// assert_eq!(deviation(&impact.energy, &impact.truth), impact.energy_deviation);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
     let true_limits = [0.0, truth.touch.t, truth.exit.t, truth.period];
     let true_position = |t: f64| truth.at(t).0;

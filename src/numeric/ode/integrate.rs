@@ -150,6 +150,14 @@ pub enum IntegrationError {
 /// # Errors
 /// [`IntegrationError`] where the run cannot begin. One that ends early is no error: ask
 /// [`Trajectory::stop_reason`].
+///
+/// ```
+/// use lindstedt::numeric::ode::{Options, State, integrate};
+///
+/// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &Options::default())?;
+/// assert!((path.end().x - 3.0_f64.cos()).abs() < 1e-8);
+/// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
+/// ```
 pub fn integrate<'a>(
     acceleration: impl Fn(f64, f64, f64) -> f64 + 'a,
     start: State,
@@ -166,6 +174,21 @@ pub fn integrate<'a>(
 /// # Errors
 /// As [`integrate`], and [`IntegrationError::UnknownPhase`] where `first` or a switch names a phase that is not
 /// there.
+///
+/// ```
+/// use lindstedt::numeric::ode::{Event, Options, Phase, State, integrate_phases};
+///
+/// // Free fall from a height of 1 until a spring of stiffness 100 is met at x = 0.
+/// let met = Event::switch(|_t, x, _v| x, |state| (1, State { x: 0.0, ..state })).falling();
+/// let fall = Phase::new(|_t, _x, _v| -1.0, vec![met]);
+/// let deepest = Event::stop(|_t, _x, v| v).rising();
+/// let spring = Phase::new(|_t, x, _v| -1.0 - 100.0 * x, vec![deepest]);
+/// let start = State { t: 0.0, x: 1.0, v: 0.0 };
+/// let path = integrate_phases(&[fall, spring], 0, start, 10.0, &Options::default())?;
+/// let depth = -path.end().x;
+/// assert!((50.0 * depth * depth - (1.0 + depth)).abs() < 1e-8); // energy of the spring, work of the weight
+/// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
+/// ```
 pub fn integrate_phases(
     phases: &[Phase],
     first: usize,

@@ -106,6 +106,13 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
 /// The point between `a` and `b` where the function is least, by golden section, stopping at once where it is not
 /// positive: what a search for a near miss wants. The function should have one minimum there. Returns the point and
 /// the value; the point is good to about the square root of the rounding error, the value to the rounding error.
+///
+/// ```
+/// use lindstedt::numeric::ode::root::find_minimum;
+///
+/// let (place, least) = find_minimum(|x| (x - 2.0).powi(2) + 1.0, 0.0, 5.0);
+/// assert!((place - 2.0).abs() < 1e-6 && (least - 1.0).abs() < 1e-12);
+/// ```
 pub fn find_minimum(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> (f64, f64) {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut left, mut right) = (a, b);

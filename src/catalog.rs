@@ -1,5 +1,7 @@
 //! Classical oscillators by name, each with its source and, where one is printed, the published law.
 //!
+//! In: a name. Out: an [`Entry`] with an equation to be parsed, and which methods apply to it.
+//!
 //! A published law is only what a derived one is compared with: nothing here is ever used as an answer.
 
 use std::fmt;

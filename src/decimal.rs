@@ -1,4 +1,6 @@
 //! Floating-point numbers as people write them.
+//!
+//! In: a double or a fraction, and how many digits. Out: decimal text, or the fraction that these digits stand for.
 
 use num_traits::{Pow, Signed, Zero};
 

@@ -1,5 +1,7 @@
 //! How an answer came about, as it stands on paper: the orders of an expansion, and lines of words and equations.
 //!
+//! In: what a method did, in its order. Out: [`Step`]s and [`Line`]s for every format to lay out.
+//!
 //! What prints as text prints as LaTeX: both read the same formulas.
 
 use std::fmt;

@@ -1,6 +1,9 @@
 //! Where a motion swings about: the stable equilibrium nearest to `x = 0`, or the one asked for, and the equation seen from
 //! there.
 //!
+//! In comes an [`Oscillator`], with or without an equilibrium asked for; out goes a [`Centred`]: the position, the equation about
+//! it, and what its symbols stand for; or an [`OscillatorError`] that names the stable equilibria there are.
+//!
 //! `f(x_e) = 0`, stable where the lowest term of the force about `x_e` is odd and pulls back; where there is no Taylor
 //! series, where the force changes its sign from negative to positive.
 //!

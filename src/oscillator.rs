@@ -1,5 +1,8 @@
 //! The question: an equation of motion in normal form.
 //!
+//! In comes an equation as text or as [`Equation`]; out goes an [`Oscillator`], its force taken apart by what its terms do, and
+//! expanded about rest. What is no oscillator, or cannot be expanded, is an [`OscillatorError`] that names the term.
+//!
 //! ```text
 //! m(x) x'' + g(x, x', t) = 0   ->   x'' + f(x, x', t) = 0,   f = g / m
 //! f = restoring(x) + inertia(x, x' even) + damping(x, x' odd) + forcing(x, t)
@@ -267,6 +270,14 @@ impl Oscillator {
     ///
     /// # Errors
     /// See [`OscillatorError`].
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    ///
+    /// let van_der_pol = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?;
+    /// assert_eq!((van_der_pol.coordinate, van_der_pol.parts()?.restoring.to_string()), ("x".into(), "x".to_owned()));
+    /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
+    /// ```
     pub fn parse(text: &str) -> Result<Self, OscillatorError> {
         Self::from_equation(&parse_equation(text)?)
     }
@@ -485,6 +496,16 @@ impl Oscillator {
     ///
     /// # Errors
     /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic or no polynomial.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, oscillator::SmallParameter};
+    ///
+    /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+    /// let force = pendulum.expand(SmallParameter::Amplitude, 4)?;
+    /// let powers: Vec<_> = force.terms.iter().map(|term| (term.order, term.position)).collect();
+    /// assert_eq!(powers, [(2, 3), (4, 5)]); // -x^3/6 + x^5/120
+    /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
+    /// ```
     pub fn expand(&self, small: SmallParameter, order: u32) -> Result<PerturbedForce, OscillatorError> {
         let force = self.expand_with_any_stiffness(small, order)?;
         if force.lacks_restoring_force() {

@@ -1,5 +1,8 @@
 //! Arguments -> calls -> printing: the only place that reads or prints. One file per command.
 //!
+//! In: the arguments, a problem file, standard input. Out: a result in the format asked for, a picture, and the exit code. What is
+//! computed and what it says comes from the library; here options are read, and refusals get the names of the options.
+//!
 //! Results go to standard output or the file of `--output`, all else to standard error. Exit codes: 0 done, 1 refused or
 //! failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a partial result, 70 internal error.
 

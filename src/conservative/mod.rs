@@ -7,7 +7,9 @@
 //! c_k(A) = (2/pi) int_0^pi f(A cos theta) cos(k theta) dtheta
 //! ```
 //!
-//! Where a term has no closed form here the answer is `None`, and the methods fall back on quadrature and say so.
+//! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as expressions, or `None` where a term
+//! has no closed form here: the methods fall back on quadrature and say so. With numbers for all symbols out goes a [`Force`], which
+//! has a value, a slope and a period as near to rest as one likes, and knows where it turns fast.
 
 pub(crate) mod features;
 pub(crate) mod force;

@@ -1,5 +1,5 @@
 //! Figures to look at: curves of numbers in, one SVG text out. The drawing is kuva's; here are the checks of the data,
-//! the house style, and two figures ready made, [`impact_figure`] and [`motion_figure`].
+//! the house style, and three figures ready made, [`impact_figure`], [`motion_figure`] and [`backbone_figure`].
 //!
 //! The same numbers give the same bytes. Colours are those of Okabe and Ito, *Color Universal Design* (2008). Curves
 //! are thinned to about 2000 points; an axis whose values agree to 1e-9 shows a constant. A point that is not finite is

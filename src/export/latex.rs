@@ -1,5 +1,8 @@
 //! Documents as LaTeX: equations, tables, and what is said beside them as comments.
 //!
+//! In come a result or its document of [`report`], or an expression alone; out goes text to be pasted into an article. The
+//! numbers are those of the text format.
+//!
 //! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek letters and the named
 //! functions.
 

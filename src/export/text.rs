@@ -1,4 +1,7 @@
 //! Documents as text that reads like a textbook. Formulas print so that they can be typed back in.
+//!
+//! In come a result or its document of [`report`], and a width; out goes text of plain letters, of lines no longer than that
+//! where words allow it. Relative errors stand in percent.
 
 mod comparison;
 mod impact;

@@ -31,27 +31,27 @@ pub struct Case {
     pub amplitude: f64,
     /// x(0), rad, where it is not -A.
     pub start: Option<f64>,
-    /// x'(0), in units of omega.
+    /// x'(0), rad times omega.
     pub speed: f64,
     /// Position of the left barrier, rad.
     pub left: Option<f64>,
     /// Position of the right barrier x_c, rad.
     pub right: Option<f64>,
-    /// Dimensionless stiffness of the contact, where it is not that of the design.
+    /// Dimensionless stiffness gamma of the contact, positive, where it is not that of the design.
     pub gamma: Option<f64>,
     /// Damping of the contact.
     pub contact_damping: ContactDamping,
-    /// Viscous damping ratio.
+    /// Viscous damping ratio zeta, dimensionless, not negative.
     pub zeta: f64,
-    /// Coulomb friction.
+    /// Coulomb friction alpha, dimensionless, not negative.
     pub alpha: f64,
     /// The law of that friction.
     pub friction: Friction,
-    /// Excitation (A_e/L)(Omega/omega)^2 of a moving pivot.
+    /// Excitation beta = (A_e/L)(Omega/omega)^2 of a moving pivot, dimensionless.
     pub beta: f64,
-    /// Omega/omega.
+    /// Omega/omega, dimensionless, not negative.
     pub frequency_ratio: f64,
-    /// Mass, radius, length, modulus, gravity.
+    /// Mass, radius, length, modulus, gravity, in SI units.
     pub design: Design,
 }
 

@@ -36,7 +36,7 @@ pub struct Setup {
     pub amplitude: f64,
     /// Position of the barrier, rad.
     pub barrier: f64,
-    /// Dimensionless stiffness gamma.
+    /// Dimensionless stiffness gamma, positive.
     pub stiffness: f64,
     /// Where gamma comes from, in words.
     pub stiffness_source: String,
@@ -44,9 +44,9 @@ pub struct Setup {
     pub order: u32,
     /// How the line is fitted.
     pub rule: Rule,
-    /// Error per step of Runge-Kutta, relative.
+    /// Error per step of Runge-Kutta, relative; between 1e-15 and 0.1.
     pub integrator_tolerance: f64,
-    /// Steps after which Runge-Kutta gives up.
+    /// Steps after which Runge-Kutta gives up, which is an error.
     pub step_limit: u32,
 }
 
@@ -223,7 +223,7 @@ impl Quantity {
     }
 }
 
-/// A motion over one period, for drawing.
+/// A motion over one period, for drawing: time in units of 1/omega, displacement and depth in rad, velocity in rad times omega.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledMotion {
     /// Time, displacement, velocity; the contact, short as it is, has as many points as either flight.

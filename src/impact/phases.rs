@@ -78,13 +78,13 @@ pub struct ThreePhases {
     pub column: ContactSpeed,
     /// Approach, contact, return.
     pub phases: [Phase; 3],
-    /// Speed v at first touch.
+    /// Speed v at first touch, in the units of x and time of the equation: rad times omega for the pendulum.
     pub speed: f64,
-    /// Greatest depth of the closed form.
+    /// Greatest depth of the closed form, in the unit of x.
     pub penetration: f64,
-    /// Duration of the contact.
+    /// Duration of the contact, in units of 1/omega for the pendulum.
     pub duration: f64,
-    /// Time from release to release.
+    /// Time from release to release, in the same unit.
     pub period: f64,
     /// Speed of contact minus the speed of the cosine at the barrier: the size of the jump of the velocity at the
     /// start and at the end of the contact. Zero for [`ContactSpeed::Paper`].

@@ -131,19 +131,19 @@ pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
 pub struct Summary {
     /// Number of contacts.
     pub impacts: usize,
-    /// When the envelope fell to a tenth of the first swing.
+    /// When the envelope fell to a tenth of the first swing, in units of 1/omega; or why it did not.
     pub rest_time: Result<f64, NoRest>,
     /// The greatest depth in a barrier, rad; 0 without contact.
     pub deepest: f64,
-    /// The greatest speed at a touch; 0 without contact.
+    /// The greatest speed at a touch, rad times omega; 0 without contact.
     pub fastest: f64,
     /// Energy lost in contacts, units of m g L.
     pub energy_lost: f64,
-    /// Time at the end.
+    /// Time at the end, in units of 1/omega.
     pub end_time: f64,
     /// Displacement there, rad.
     pub end_x: f64,
-    /// Velocity there.
+    /// Velocity there, rad times omega.
     pub end_velocity: f64,
     /// Why it ended.
     pub stop: Stop,

@@ -1,4 +1,6 @@
 //! The table of methods: a row each, with what the rest of the program needs to know of it.
+//!
+//! In: a [`Method`]. Out: its [`Entry`]: the function that solves, the options it takes, what it sees of a force.
 
 use super::{
     Options, Refusal, amplitude_frequency, energy_balance, exact, frequency_formula, hamiltonian, harmonic_balance,

@@ -60,7 +60,7 @@ pub struct Pendulum {
     pub barrier: Barrier,
     /// x(0), rad, where it is not -amplitude.
     pub start: Option<f64>,
-    /// x'(0), where it is not 0.
+    /// x'(0), rad times omega, where it is not 0.
     pub speed: Option<f64>,
 }
 
@@ -92,9 +92,9 @@ pub struct Contact {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Damping {
-    /// Viscous damping ratio.
+    /// Viscous damping ratio, dimensionless.
     pub zeta: f64,
-    /// Coulomb friction.
+    /// Coulomb friction alpha of equation (7), dimensionless.
     pub alpha: f64,
     /// `exact` or `arctangent`.
     pub friction: Option<String>,
@@ -104,9 +104,9 @@ pub struct Damping {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Excitation {
-    /// beta = (A_e/L)(Omega/omega)^2.
+    /// beta = (A_e/L)(Omega/omega)^2 of a pivot that moves as A_e sin(Omega t), dimensionless.
     pub beta: f64,
-    /// Omega/omega.
+    /// Omega/omega, dimensionless.
     pub frequency_ratio: f64,
 }
 
@@ -114,15 +114,15 @@ pub struct Excitation {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DesignSection {
-    /// kg
+    /// Mass of the pendulum, kg.
     pub mass: f64,
-    /// m
+    /// Radius of the sphere, m.
     pub radius: f64,
-    /// m
+    /// Length of the pendulum, m.
     pub length: f64,
-    /// Pa
+    /// Elastic modulus of the barrier, Pa.
     pub modulus: f64,
-    /// m/s^2
+    /// Acceleration of gravity, m/s^2.
     pub gravity: f64,
 }
 
@@ -130,9 +130,9 @@ pub struct DesignSection {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Run {
-    /// Dimensionless time.
+    /// Time to follow a motion for, in units of 1/omega.
     pub duration: f64,
-    /// Error allowed in one step.
+    /// Error allowed in one step, relative.
     pub integrator_tolerance: f64,
     /// Steps after which an integration gives up.
     pub step_limit: u32,

@@ -75,6 +75,15 @@ impl Problem {
     ///
     /// # Errors
     /// A value that is neither a number nor an expression without symbols.
+    ///
+    /// ```
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let file: Problem = "equation = \"x'' + x + eps*x^3 = 0\"\n[values]\neps = 0.1".parse()?;
+    /// let (name, value) = file.exact_values()?.iter().map(|(name, value)| (name, value.to_string())).next().ok_or("none")?;
+    /// assert_eq!((name.name(), value.as_str()), ("eps", "1/10"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn exact_values(&self) -> Result<Values, ProblemError> {
         let mut values = Values::default();
         for (name, value) in &self.values {

@@ -107,6 +107,15 @@ impl Problem {
     ///
     /// # Errors
     /// [`SimulateError`] names the section and the key. Whether the numbers make a motion is seen by [`Case::motion`].
+    ///
+    /// ```
+    /// use lindstedt::{impact::Parameter, problem::Problem};
+    ///
+    /// let file: Problem = "[run]\nduration = 10".parse()?;
+    /// let asked = file.simulate(&[Parameter::Barrier])?;
+    /// assert_eq!(asked.settings.duration, 10.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, SimulateError> {
         let gives = |parameter: Parameter| {
             swept.contains(&parameter)

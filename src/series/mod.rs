@@ -1,5 +1,8 @@
 //! Series with exact coefficients: Taylor's of a function ([`taylor()`]), [`FourierSeries`] in `theta = omega t`, and running
 //! [`Convolutions`] of powers, order by order; with floating-point ones by recurrence ([`numeric_taylor`]).
+//!
+//! In come expressions and a point, or series with coefficients in any [`Ring`](crate::exact::Ring); out go series of the order
+//! asked for, or a [`TaylorError`] with the term that has none there. Nothing here knows a method or an equation of motion.
 
 pub(crate) mod convolution;
 pub(crate) mod fourier;

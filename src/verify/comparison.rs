@@ -1,4 +1,7 @@
 //! Every method on one equation, judged against one true motion.
+//!
+//! In: an equation, numbers for its symbols, a tolerance. Out: a [`Comparison`], a row for each method that applies and a reason
+//! for each that does not; from it omega against the amplitude, a [`Backbone`] a method.
 
 use std::collections::BTreeMap;
 
@@ -69,7 +72,7 @@ pub struct Comparison {
     pub true_frequency: Option<f64>,
     /// Why it cannot.
     pub reason: Option<VerificationError>,
-    /// The tolerance of verdicts and ranges.
+    /// The tolerance of verdicts and ranges, relative: 0.01 is 1 %.
     pub tolerance: f64,
     /// The methods that apply, in the order of [`Method::ALL`].
     pub rows: Vec<Row>,

@@ -1,5 +1,9 @@
 //! The judge: a formula against the true motion of the *original* equation.
 //!
+//! In: the equation, the answer of a method, numbers for all symbols, a tolerance. Out: a [`Verification`] with errors relative to
+//! the truth, a [`Verdict`] and the ranges in which the formula holds; in [`comparison`] the same for every method at once. Where
+//! there is no true periodic motion, a [`VerificationError`] says why.
+//!
 //! Nothing here looks at how a formula was derived. The true frequency comes from energy quadrature where energy is
 //! conserved and from the Runge-Kutta return where it is not; the motion from Runge-Kutta with dense output on the
 //! equation as it was typed, sine and all, not on its truncation.
@@ -78,7 +82,7 @@ impl Verdict {
 pub struct Verification {
     /// The values at which it was judged.
     pub at: Values,
-    /// omega by the formula; `None` where there is none.
+    /// omega by the formula, in the unit of time of the equation; `None` where there is none.
     pub frequency: Option<f64>,
     /// Why there is none.
     pub reason: Option<NoNumbers>,
@@ -90,7 +94,7 @@ pub struct Verification {
     pub judged_on: &'static str,
     /// The error of the other law, the series of omega itself, where the formula has both.
     pub error_of_omega: Option<f64>,
-    /// Largest deviation over one true period, over the amplitude.
+    /// Largest deviation over one true period, as a part of the amplitude.
     pub max_deviation: Option<f64>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
@@ -282,7 +286,7 @@ fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, 
     Ok(numbers)
 }
 
-/// Time, displacement and velocity.
+/// Time, displacement and velocity, in the units of the equation.
 pub type Sample = (f64, f64, f64);
 
 /// The motion by the formula and the true one, at the same instants of one true period.

@@ -1,5 +1,9 @@
 //! JSON documents: one type for each kind, by which it is written, read and described.
 //!
+//! In come results: a [`Solution`], a [`Comparison`](crate::verify::comparison::Comparison), an
+//! [`Impact`](crate::impact::Impact), a report of a simulation or a sweep. Out goes a document that `serde_json` prints and
+//! reads back; solutions and phases read back into results. What is no such document is a [`JsonError`], which names the key.
+//!
 //! ```text
 //! number       {"exact": "-1/8", "value": -0.125}
 //! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}

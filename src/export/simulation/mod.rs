@@ -1,5 +1,8 @@
 //! A simulated motion, and a sweep of many: as text, table of comma-separated values, and pictures; as documents they are in
 //! `export::json`.
+//!
+//! In: a [`Report`] of one motion or a [`SweepReport`] of many. Out: text in one format; that of a sweep goes to a writer a line
+//! at a time. Angles are in rad, times in units of 1/omega, energies in units of m g L, as in the motion itself.
 
 mod csv;
 #[cfg(feature = "plot")]

@@ -22,7 +22,7 @@ use crate::numeric::ode::{self, Event, IntegrationError, StopReason, Trajectory,
 /// One impact as it happens, from release to the next turning point.
 #[derive(Debug, Clone)]
 pub struct TrueImpact {
-    /// First touch: time, x_c, speed.
+    /// First touch: time, x_c, speed; here and below in the units of the equation.
     pub touch: ode::State,
     /// The deepest point.
     pub deepest: ode::State,

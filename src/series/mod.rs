@@ -7,6 +7,7 @@
 pub(crate) mod convolution;
 pub(crate) mod fourier;
 pub(crate) mod recurrence;
+pub(crate) mod tape;
 pub(crate) mod taylor;
 pub(crate) mod terms;
 

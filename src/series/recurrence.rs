@@ -1,17 +1,11 @@
-//! Taylor coefficients as floating-point numbers: an expression as a list of recurrences, computed order by order, each part once.
+//! An expression as a list of recurrences for its Taylor coefficients, each part once.
 //!
-//! In: the names of the variables, numbers for every other symbol, expressions. Out: the series of each expression, one order
-//! beyond those of the variables given so far, so that a differential equation can feed its rates back; or, by
-//! [`numeric_taylor`], the series in one variable.
+//! In: the names of the variables, numbers for every other symbol, expressions. Out: a [`Tape`] that computes the series of each
+//! expression, one order beyond those of the variables given so far, so that a differential equation can feed its rates back; or,
+//! by [`numeric_taylor`], the series in one variable.
 //!
 //! References: A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13; E. Hairer, S. P. Norsett,
-//! G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., section I.8. With `u = u_0 + u_1 s + ...`:
-//!
-//! ```text
-//! (u v)_n = sum_k u_k v_(n-k)            p = u^a:   n u_0 p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)
-//! q = u/v:  v_0 q_n = u_n - sum_(k=1..n) v_k q_(n-k)
-//! y with y' = u' g:   n y_n = sum_(k=1..n) k u_k g_(n-k)       exp: g = y;  tan: g = 1 + y^2;  sin: g = cos;  log: u y' = u'
-//! ```
+//! G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., section I.8. The recurrences themselves are in [`super::tape`].
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -22,43 +16,7 @@ use crate::exact::rational::to_f64;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// Operands are places of series.
-#[derive(Clone, Copy, Debug)]
-enum Operation {
-    /// A state, time, or a constant: nothing to compute.
-    Given,
-    Add(usize, usize),
-    Scale(f64, usize),
-    Multiply(usize, usize),
-    Divide(usize, usize),
-    /// A power that is no whole number, of what is not zero; whether it is negative where the base is.
-    Power {
-        base: usize,
-        exponent: f64,
-        first: fn(f64, f64) -> f64,
-    },
-    Log(usize),
-    /// `y' = u' g`, times a sign; begins with the value of a function.
-    Integral {
-        of: usize,
-        rate: usize,
-        sign: f64,
-        first: fn(f64) -> f64,
-    },
-    /// One of two series, by the side of a corner; zero where there is none.
-    Choose {
-        corner: usize,
-        positive: Option<usize>,
-        negative: Option<usize>,
-    },
-}
-
-/// Where an expression has another formula on either side: the sign of a series, and the side that is taken.
-#[derive(Clone, Copy, Debug)]
-struct Corner {
-    argument: usize,
-    side: f64,
-}
+use super::tape::{Corner, Operation, Tape};
 
 /// Why an expression has no recurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -72,21 +30,20 @@ pub enum RecurrenceError {
     Function(&'static str),
 }
 
-/// Expressions in some variables, with the coefficients of all their parts about one point.
+/// A tape in the making.
 ///
 /// A series is named by its place: the variables come first, in their order; [`add`](Self::add) says where the others are.
 #[derive(Clone, Debug)]
 pub struct Recurrences {
+    tape: Tape,
     variables: Vec<Symbol>,
     numbers: BTreeMap<Symbol, f64>,
-    length: usize,
-    operations: Vec<Operation>,
-    /// `length` coefficients for each operation.
-    series: Vec<f64>,
     known: HashMap<Expr, usize>,
+    products: HashMap<(usize, usize), usize>,
+    slopes: HashMap<usize, usize>,
+    outputs: Vec<usize>,
     /// Sine and cosine of a series, or their hyperbolic sisters: who has one has the other.
     waves: HashMap<(usize, bool), [usize; 2]>,
-    corners: Vec<Corner>,
 }
 
 /// The real root of an odd degree: the sign of the base is kept, or lost in an even power.
@@ -99,22 +56,23 @@ fn even(base: f64, exponent: f64) -> f64 {
 }
 
 impl Recurrences {
-    /// Series up to `s^degree` in these variables; `numbers` has the value of every other symbol.
-    pub fn new(variables: &[Symbol], numbers: &BTreeMap<Symbol, f64>, degree: usize) -> Self {
-        let mut recurrences = Self {
-            variables: variables.to_vec(),
-            numbers: numbers.clone(),
-            length: degree + 1,
-            operations: vec![],
-            series: vec![],
-            known: HashMap::new(),
-            waves: HashMap::new(),
-            corners: vec![],
-        };
-        for _ in variables {
-            recurrences.emit(Operation::Given);
+    /// Series up to `s^degree` in these variables, each with the order beyond which it is zero, if it is: 0 for a parameter, 1 for
+    /// time. `numbers` has the value of every other symbol.
+    pub fn new(variables: &[(Symbol, Option<usize>)], numbers: &BTreeMap<Symbol, f64>, degree: usize) -> Self {
+        let mut tape = Tape::new(degree);
+        for (_, degree) in variables {
+            tape.given(*degree);
         }
-        recurrences
+        Self {
+            tape,
+            variables: variables.iter().map(|(name, _)| *name).collect(),
+            numbers: numbers.clone(),
+            known: HashMap::new(),
+            products: HashMap::new(),
+            slopes: HashMap::new(),
+            outputs: vec![],
+            waves: HashMap::new(),
+        }
     }
 
     /// Adds an expression; answers the place of its series.
@@ -122,66 +80,72 @@ impl Recurrences {
     /// # Errors
     /// A symbol without a value, a function without a recurrence.
     pub fn add(&mut self, expression: &Expr) -> Result<usize, RecurrenceError> {
-        expression.fold(|expr, children: &[usize]| self.node(expr, children))
+        let place = expression.fold(|expr, children: &[usize]| self.node(expr, children))?;
+        self.outputs.push(place);
+        Ok(place)
     }
 
-    /// Sets a coefficient, of a variable.
-    pub fn set(&mut self, place: usize, order: usize, value: f64) {
-        self.series[place * self.length + order] = value;
-    }
-
-    /// Computes the coefficients of this order of everything, where those of the variables and all lower ones are known.
-    pub fn compute(&mut self, order: usize) {
-        for place in 0..self.operations.len() {
-            if let Some(coefficient) = self.coefficient(place, order) {
-                self.set(place, order, coefficient);
-            }
-        }
-    }
-
-    /// The series at a place; what has no value is not a finite number.
-    pub fn series(&self, place: usize) -> &[f64] {
-        &self.series[place * self.length..(place + 1) * self.length]
-    }
-
-    /// The series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`), and on which side of zero they are
-    /// taken to be.
-    pub fn corners(&self) -> impl Iterator<Item = (&[f64], f64)> {
-        let argument = |corner: &Corner| (self.series(corner.argument), corner.side);
-        self.corners.iter().map(argument)
-    }
-
-    /// Takes the other side of a corner, by its number in [`corners`](Self::corners).
-    pub fn cross(&mut self, corner: usize) {
-        self.corners[corner].side *= -1.0;
-    }
-
-    /// Takes the side of every corner on which its series lies, or to which it is going; whether one of them is another now.
-    pub fn take_sides(&mut self) -> bool {
-        let mut changed = false;
-        for index in 0..self.corners.len() {
-            let Corner { argument, side } = self.corners[index];
-            let first = self
-                .series(argument)
-                .iter()
-                .find(|value| value.is_finite() && **value != 0.0);
-            if let Some(first) = first.filter(|first| first.signum() != side) {
-                self.corners[index].side = first.signum();
-                changed = true;
-            }
-        }
-        changed
+    /// What computes the series of all that was added.
+    pub fn into_tape(mut self) -> Tape {
+        self.tape.keep_only(&self.outputs);
+        self.tape
     }
 
     fn emit(&mut self, operation: Operation) -> usize {
-        self.operations.push(operation);
-        self.series.resize(self.operations.len() * self.length, 0.0);
-        self.operations.len() - 1
+        self.tape.emit(operation)
     }
 
     fn constant(&mut self, value: f64) -> usize {
-        let place = self.emit(Operation::Given);
-        self.series[place * self.length] = value;
+        let place = self.tape.given(Some(0));
+        self.tape.set(place, 0, value);
+        place
+    }
+
+    fn multiply(&mut self, one: usize, other: usize) -> usize {
+        let key = (one.min(other), one.max(other));
+        if let Some(place) = self.products.get(&key) {
+            return *place;
+        }
+        // The shorter series first, and of two long ones the one computed later: its last coefficient is needed last.
+        let (short, long) = match self.tape.degree(key.0) < self.tape.degree(key.1) {
+            true => key,
+            false => (key.1, key.0),
+        };
+        let place = match self.tape.is_number(short) {
+            true => self.emit(Operation::Sum([(short, long)].into())),
+            false => self.emit(Operation::Multiply(short, long, self.tape.degree(short))),
+        };
+        self.products.insert(key, place);
+        place
+    }
+
+    /// A sum of series, each times a factor.
+    fn weighted(&mut self, terms: &[(f64, usize)]) -> usize {
+        let terms = terms
+            .iter()
+            .map(|(factor, place)| (self.constant(*factor), *place))
+            .collect();
+        self.emit(Operation::Sum(terms))
+    }
+
+    fn scale(&mut self, factor: f64, place: usize) -> usize {
+        self.weighted(&[(factor, place)])
+    }
+
+    fn slope(&mut self, mut of: usize) -> usize {
+        // A number beside it makes no difference.
+        while let Operation::Sum(terms) = self.tape.operation(of) {
+            let mut changing = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
+            match (changing.next(), changing.next()) {
+                (Some((weight, place)), None) if self.tape.is_one(*weight) => of = *place,
+                _ => break,
+            }
+        }
+        if let Some(place) = self.slopes.get(&of) {
+            return *place;
+        }
+        let place = self.emit(Operation::Slope(of));
+        self.slopes.insert(of, place);
         place
     }
 
@@ -193,22 +157,20 @@ impl Recurrences {
             (Node::Number(number), _) => self.constant(to_f64(number)),
             (Node::Pi, _) => self.constant(std::f64::consts::PI),
             (Node::Symbol(symbol), _) => self.symbol(*symbol)?,
-            (Node::Sum(_), [first, rest @ ..]) => rest
-                .iter()
-                .fold(*first, |sum, term| self.emit(Operation::Add(sum, *term))),
+            (Node::Sum(_), _) => self.sum(children),
             (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
             (Node::Power(_, exponent), [base, exponent_place]) => match exponent.as_number() {
                 Some(exponent) => self.power(*base, exponent),
                 None => {
-                    let logarithm = self.emit(Operation::Log(*base));
-                    let product = self.emit(Operation::Multiply(*exponent_place, logarithm));
+                    let logarithm = self.quotient(*base, *base, 1.0, f64::ln);
+                    let product = self.multiply(*exponent_place, logarithm);
                     self.exponential(product)
                 }
             },
             (Node::Function(function, _), [first, ..]) => {
                 self.function(*function, *first, children.get(1).copied().unwrap_or(*first))?
             }
-            (Node::Sum(_) | Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
+            (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
         };
         self.known.insert(expr.clone(), place);
         Ok(place)
@@ -224,24 +186,46 @@ impl Recurrences {
         }
     }
 
+    /// Terms that are a number times a series are taken apart: a sum is one operation.
+    fn sum(&mut self, places: &[usize]) -> usize {
+        let mut terms = Vec::with_capacity(places.len());
+        for place in places {
+            match self.tape.operation(*place) {
+                Operation::Sum(inner) if inner.len() == 1 => terms.extend(inner.iter().copied()),
+                _ => terms.push((self.constant(1.0), *place)),
+            }
+        }
+        // What was computed last is needed last.
+        terms.sort_by_key(|(_, place)| *place);
+        self.emit(Operation::Sum(terms.into()))
+    }
+
     fn product(&mut self, coefficient: &Rational, factors: &[Expr], places: &[usize]) -> usize {
         // A step gates the others: where it is zero they need no value.
         let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
-        let mut product: Option<usize> = None;
-        for (_, place) in factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor)) {
-            product = Some(match product {
-                None => *place,
-                Some(product) => self.emit(Operation::Multiply(product, *place)),
-            });
-        }
+        let open = factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor));
+        // Numbers first and by themselves: what changes may be shared with another product.
+        let (numbers, changing): (Vec<usize>, Vec<usize>) = open
+            .map(|(_, place)| *place)
+            .partition(|place| self.tape.is_number(*place));
+        let mut of = |places: Vec<usize>| {
+            places
+                .into_iter()
+                .reduce(|product, place| self.multiply(product, place))
+        };
+        let parts = [of(numbers), of(changing)];
+        let product = parts
+            .into_iter()
+            .flatten()
+            .reduce(|number, changing| self.multiply(number, changing));
         let coefficient = to_f64(coefficient);
         let mut product = match product {
             None => self.constant(coefficient),
             Some(product) if coefficient == 1.0 => product,
-            Some(product) => self.emit(Operation::Scale(coefficient, product)),
+            Some(product) => self.scale(coefficient, product),
         };
         for (_, place) in factors.iter().zip(places).filter(|(factor, _)| is_gate(factor)) {
-            if let Operation::Choose { corner, .. } = self.operations[*place] {
+            if let Operation::Choose { corner, .. } = *self.tape.operation(*place) {
                 product = self.emit(Operation::Choose {
                     corner,
                     positive: Some(product),
@@ -260,18 +244,18 @@ impl Recurrences {
                 if left % 2 == 1 {
                     result = Some(match result {
                         None => square,
-                        Some(result) => self.emit(Operation::Multiply(result, square)),
+                        Some(result) => self.multiply(result, square),
                     });
                 }
                 left /= 2;
                 if left > 0 {
-                    square = self.emit(Operation::Multiply(square, square));
+                    square = self.multiply(square, square);
                 }
             }
             let one = self.constant(1.0);
             let result = result.unwrap_or(one);
             return match exponent.is_negative() {
-                true => self.emit(Operation::Divide(one, result)),
+                true => self.emit(Operation::Divide(one, result, self.tape.degree(result))),
                 false => result,
             };
         }
@@ -288,14 +272,36 @@ impl Recurrences {
         })
     }
 
-    fn exponential(&mut self, of: usize) -> usize {
-        let rate = self.operations.len();
+    /// `y' = u' g`, where `g` is the place that this many operations come behind `y`.
+    fn integral(&mut self, of: usize, behind: usize, first: fn(f64) -> f64) -> usize {
+        let slope = self.slope(of);
         self.emit(Operation::Integral {
             of,
-            rate,
-            sign: 1.0,
-            first: f64::exp,
+            slope,
+            degree: self.tape.degree(slope),
+            rate: self.tape.size() + behind,
+            first,
         })
+    }
+
+    /// `y' = u'/v`, times a sign.
+    fn quotient(&mut self, of: usize, over: usize, sign: f64, first: fn(f64) -> f64) -> usize {
+        let slope = self.slope(of);
+        let place = self.tape.size();
+        self.emit(Operation::Quotient {
+            of,
+            slope,
+            own: place + 1,
+            over,
+            sign,
+            first,
+        });
+        self.slope(place);
+        place
+    }
+
+    fn exponential(&mut self, of: usize) -> usize {
+        self.integral(of, 0, f64::exp)
     }
 
     /// Sine and cosine, each the rate of the other, or their hyperbolic sisters.
@@ -303,61 +309,56 @@ impl Recurrences {
         if let Some(places) = self.waves.get(&(of, hyperbolic)) {
             return *places;
         }
-        let first: [fn(f64) -> f64; 2] = match hyperbolic {
-            true => [f64::sinh, f64::cosh],
-            false => [f64::sin, f64::cos],
+        let (first, sign): ([fn(f64) -> f64; 2], f64) = match hyperbolic {
+            true => ([f64::sinh, f64::cosh], 1.0),
+            false => ([f64::sin, f64::cos], -1.0),
         };
-        let sign = if hyperbolic { 1.0 } else { -1.0 };
-        let places = [self.operations.len(), self.operations.len() + 1];
-        for (part, sign) in [1.0, sign].into_iter().enumerate() {
-            self.emit(Operation::Integral {
-                of,
-                rate: places[1 - part],
-                sign,
-                first: first[part],
-            });
-        }
+        let slope = self.slope(of);
+        let place = self.emit(Operation::Waves {
+            of,
+            slope,
+            degree: self.tape.degree(slope),
+            sign,
+            first,
+        });
+        let places = [place, self.emit(Operation::SecondWave)];
         self.waves.insert((of, hyperbolic), places);
         places
     }
 
     /// `y' = u' (1 + sign*y^2)`: tangents.
     fn tangent(&mut self, of: usize, sign: f64, first: fn(f64) -> f64) -> usize {
-        let place = self.operations.len();
-        let tangent = self.emit(Operation::Integral {
-            of,
-            rate: place + 3,
-            sign: 1.0,
-            first,
-        });
-        let square = self.emit(Operation::Multiply(tangent, tangent));
-        let scaled = self.emit(Operation::Scale(sign, square));
-        // The number one would come after its first use: its place is the rate's own, begun with it.
-        let one = place + 4;
-        self.emit(Operation::Add(scaled, one));
-        self.constant(1.0);
+        let (one, sign) = (self.constant(1.0), self.constant(sign));
+        let tangent = self.integral(of, 2, first);
+        let square = self.emit(Operation::Multiply(tangent, tangent, usize::MAX));
+        self.emit(Operation::Sum([(one, one), (sign, square)].into()));
         tangent
     }
 
-    /// `y' = u' (1 + sign*u^2)^exponent`: inverse functions.
-    fn inverse(&mut self, of: usize, [square_sign, exponent, sign]: [f64; 3], first: fn(f64) -> f64) -> usize {
-        let square = self.emit(Operation::Multiply(of, of));
-        let scaled = self.emit(Operation::Scale(square_sign, square));
+    /// `1 + sign*u^2`.
+    fn one_and_square(&mut self, of: usize, sign: f64) -> usize {
         let one = self.constant(1.0);
-        let base = self.emit(Operation::Add(one, scaled));
-        let rate = self.emit(Operation::Power {
+        let square = self.multiply(of, of);
+        self.weighted(&[(1.0, one), (sign, square)])
+    }
+
+    /// `y' = +-u'/(1 - u^2)^(1/2)`: inverse sine and cosine.
+    fn inverse_wave(&mut self, of: usize, sign: f64, first: fn(f64) -> f64) -> usize {
+        let base = self.one_and_square(of, -1.0);
+        let root = self.emit(Operation::Power {
             base,
-            exponent,
+            exponent: 0.5,
             first: f64::powf,
         });
-        self.emit(Operation::Integral { of, rate, sign, first })
+        self.quotient(of, root, sign, first)
     }
 
     fn choose(&mut self, argument: usize, positive: Option<usize>, negative: Option<usize>) -> usize {
-        let same = self.corners.iter().position(|corner| corner.argument == argument);
-        let corner = same.unwrap_or(self.corners.len());
+        let corners = &mut self.tape.corners;
+        let same = corners.iter().position(|corner| corner.argument == argument);
+        let corner = same.unwrap_or(corners.len());
         if same.is_none() {
-            self.corners.push(Corner { argument, side: 1.0 });
+            corners.push(Corner { argument, side: 1.0 });
         }
         self.emit(Operation::Choose {
             corner,
@@ -375,12 +376,15 @@ impl Recurrences {
             Function::Tan => self.tangent(u, 1.0, f64::tan),
             Function::Tanh => self.tangent(u, -1.0, f64::tanh),
             Function::Exp => self.exponential(u),
-            Function::Log => self.emit(Operation::Log(u)),
-            Function::Atan => self.inverse(u, [1.0, -1.0, 1.0], f64::atan),
-            Function::Asin => self.inverse(u, [-1.0, -0.5, 1.0], f64::asin),
-            Function::Acos => self.inverse(u, [-1.0, -0.5, -1.0], f64::acos),
+            Function::Log => self.quotient(u, u, 1.0, f64::ln),
+            Function::Atan => {
+                let over = self.one_and_square(u, 1.0);
+                self.quotient(u, over, 1.0, f64::atan)
+            }
+            Function::Asin => self.inverse_wave(u, 1.0, f64::asin),
+            Function::Acos => self.inverse_wave(u, -1.0, f64::acos),
             Function::Absolute => {
-                let minus = self.emit(Operation::Scale(-1.0, u));
+                let minus = self.scale(-1.0, u);
                 self.choose(u, Some(u), Some(minus))
             }
             Function::Sign => {
@@ -392,8 +396,7 @@ impl Recurrences {
                 self.choose(u, Some(one), None)
             }
             Function::Maximum | Function::Minimum => {
-                let minus = self.emit(Operation::Scale(-1.0, v));
-                let difference = self.emit(Operation::Add(u, minus));
+                let difference = self.weighted(&[(1.0, u), (-1.0, v)]);
                 let [larger, smaller] = [Some(u), Some(v)];
                 match function {
                     Function::Maximum => self.choose(difference, larger, smaller),
@@ -403,92 +406,28 @@ impl Recurrences {
             special => return Err(RecurrenceError::Function(special.name())),
         })
     }
-
-    /// The coefficient of order `n`, where it has to be computed.
-    fn coefficient(&self, place: usize, n: usize) -> Option<f64> {
-        let of = |place: usize| self.series(place);
-        let divided = n as f64;
-        Some(match self.operations[place] {
-            Operation::Given => return None,
-            Operation::Add(a, b) => of(a)[n] + of(b)[n],
-            Operation::Scale(factor, a) => factor * of(a)[n],
-            Operation::Multiply(a, b) => {
-                let (a, b) = (&of(a)[..=n], &of(b)[..=n]);
-                a.iter().zip(b.iter().rev()).map(|(a, b)| a * b).sum()
-            }
-            Operation::Divide(a, b) => {
-                let (a, b, q) = (of(a), of(b), of(place));
-                let known: f64 = (1..=n).map(|k| b[k] * q[n - k]).sum();
-                (a[n] - known) / b[0]
-            }
-            Operation::Power { base, exponent, first } => {
-                let (u, p) = (of(base), of(place));
-                match n {
-                    0 => first(u[0], exponent),
-                    _ => {
-                        let term = |k: usize| (exponent * k as f64 - (n - k) as f64) * u[k] * p[n - k];
-                        (1..=n).map(term).sum::<f64>() / (divided * u[0])
-                    }
-                }
-            }
-            Operation::Log(a) => {
-                let (u, l) = (of(a), of(place));
-                match n {
-                    0 => u[0].ln(),
-                    _ => {
-                        let known: f64 = (1..n).map(|k| k as f64 * l[k] * u[n - k]).sum();
-                        (divided * u[n] - known) / (divided * u[0])
-                    }
-                }
-            }
-            Operation::Integral {
-                of: u,
-                rate,
-                sign,
-                first,
-            } => {
-                let (u, g) = (of(u), of(rate));
-                match n {
-                    0 => first(u[0]),
-                    _ => sign * (1..=n).map(|k| k as f64 * u[k] * g[n - k]).sum::<f64>() / divided,
-                }
-            }
-            Operation::Choose {
-                corner,
-                positive,
-                negative,
-            } => {
-                let Corner { argument, side } = self.corners[corner];
-                let chosen = if side > 0.0 { positive } else { negative };
-                match of(argument)[0].is_finite() {
-                    true => chosen.map_or(0.0, |chosen| of(chosen)[n]),
-                    // Without a value it has no side.
-                    false => f64::NAN,
-                }
-            }
-        })
-    }
 }
 
 /// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s` and no other symbol; `None`
 /// where it is not analytic there, contains another symbol, or a coefficient is out of range.
 pub fn numeric_taylor(expr: &Expr, coordinate: Symbol, centre: f64, scale: f64, degree: usize) -> Option<Vec<f64>> {
-    let mut recurrences = Recurrences::new(&[coordinate], &BTreeMap::new(), degree);
+    let mut recurrences = Recurrences::new(&[(coordinate, Some(1))], &BTreeMap::new(), degree);
     let place = recurrences.add(expr).ok()?;
-    recurrences.set(0, 0, centre);
+    let mut tape = recurrences.into_tape();
+    tape.set(0, 0, centre);
     if degree > 0 {
-        recurrences.set(0, 1, scale);
+        tape.set(0, 1, scale);
     }
     // The argument of one corner may depend on the side of another.
-    for _ in 0..=recurrences.corners.len() {
-        (0..=degree).for_each(|order| recurrences.compute(order));
-        if !recurrences.take_sides() {
+    for _ in 0..=tape.corners().count() {
+        (0..=degree).for_each(|order| tape.compute(order));
+        if !tape.take_sides() {
             break;
         }
     }
     // On a corner itself there is no series.
-    let series = recurrences.series(place);
-    let analytic = recurrences.corners().all(|(argument, _)| argument[0] != 0.0);
+    let series = tape.series(place);
+    let analytic = tape.corners().all(|(argument, _)| argument[0] != 0.0);
     (analytic && series.iter().all(|value| value.is_finite())).then(|| series.to_vec())
 }
 
@@ -543,11 +482,11 @@ mod tests {
     #[test]
     fn each_part_is_computed_once() {
         let count = |texts: &[&str]| {
-            let mut recurrences = Recurrences::new(&["x".into()], &BTreeMap::new(), 1);
+            let mut recurrences = Recurrences::new(&[("x".into(), None)], &BTreeMap::new(), 1);
             for text in texts {
                 recurrences.add(&parse_expression(text).expect(text)).expect(text);
             }
-            recurrences.operations.len()
+            recurrences.tape.size()
         };
         assert_eq!(count(&["sin(x)"]), count(&["sin(x)", "cos(x)", "sin(x)"]));
         assert_eq!(count(&["sgn(x)*exp(x^2)", "exp(x^2)"]), count(&["sgn(x)*exp(x^2)"]));

@@ -14,6 +14,7 @@
 use super::polynomial::{first_root, sign_at_start, value};
 use super::{End, Event, Motion, Occurrence, Options, Path, System, SystemError};
 use crate::series::recurrence::{RecurrenceError, Recurrences};
+use crate::series::tape::Tape;
 use crate::symbol::Symbol;
 
 /// One step: the Taylor polynomials of all states about its beginning.
@@ -36,14 +37,15 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
 
 /// The right sides of a system and these events, to be expanded to this order.
 pub(super) fn expansion(system: &System, events: &[Event], order: usize) -> Result<Expansion, RecurrenceError> {
-    let variables: Vec<Symbol> = system.state.iter().copied().chain([system.time]).collect();
+    let states = system.state.iter().map(|state| (*state, None));
+    let variables: Vec<(Symbol, Option<usize>)> = states.chain([(system.time, Some(1))]).collect();
     let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
     let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
     let outputs = outputs
         .map(|output| recurrences.add(output))
         .collect::<Result<_, _>>()?;
     Ok(Expansion {
-        recurrences,
+        tape: recurrences.into_tape(),
         states: system.state.len(),
         order,
         outputs,
@@ -181,7 +183,7 @@ pub(super) fn follow(
 #[derive(Clone, Debug)]
 pub(super) struct Expansion {
     /// Its variables are the states, then time.
-    recurrences: Recurrences,
+    tape: Tape,
     states: usize,
     order: usize,
     /// The places of the rates, then of the events.
@@ -192,10 +194,10 @@ impl Expansion {
     /// Takes the side of every corner on which this point lies, or to which it is going.
     pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
         // The argument of one corner may depend on the side of another.
-        for _ in 0..=self.recurrences.corners().count() {
+        for _ in 0..=self.tape.corners().count() {
             // Parts without a value on a side not taken yet do not matter here.
             let _ = self.expand_once(time, values);
-            if !self.recurrences.take_sides() {
+            if !self.tape.take_sides() {
                 break;
             }
         }
@@ -206,10 +208,10 @@ impl Expansion {
     /// # Errors
     /// The first state whose series has no finite value.
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
-        for _ in 0..=self.recurrences.corners().count() {
+        for _ in 0..=self.tape.corners().count() {
             let result = self.expand_once(time, values);
             // A corner left behind together with another: the motion is beyond it and going on.
-            let left = self.recurrences.corners().position(|(series, side)| {
+            let left = self.tape.corners().position(|(series, side)| {
                 let slope = series.get(1).copied().unwrap_or(0.0);
                 series[0] * side < 0.0 && slope * side < 0.0
             });
@@ -224,19 +226,18 @@ impl Expansion {
     fn expand_once(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
         let size = self.states;
         for (variable, value) in values.iter().chain([&time]).enumerate() {
-            self.recurrences.set(variable, 0, *value);
+            self.tape.set(variable, 0, *value);
         }
         if self.order > 0 {
-            self.recurrences.set(size, 1, 1.0);
+            self.tape.set(size, 1, 1.0);
         }
         for n in 0..=self.order {
-            self.recurrences.compute(n);
+            self.tape.compute(n);
             if n == self.order {
                 break;
             }
             for state in 0..size {
-                let rate = self.recurrences.series(self.outputs[state])[n];
-                self.recurrences.set(state, n + 1, rate / (n + 1) as f64);
+                self.tape.feed(state, self.outputs[state], n, 1.0);
             }
         }
         match (0..size).find(|&state| self.state(state).iter().any(|value| !value.is_finite())) {
@@ -247,22 +248,22 @@ impl Expansion {
 
     /// The series of a state.
     pub(super) fn state(&self, state: usize) -> &[f64] {
-        self.recurrences.series(state)
+        self.tape.series(state)
     }
 
     /// The series of an event.
     pub(super) fn event(&self, event: usize) -> &[f64] {
-        self.recurrences.series(self.outputs[self.states + event])
+        self.tape.series(self.outputs[self.states + event])
     }
 
     /// The longest step within the tolerance of every state, event and argument of a corner.
     pub(super) fn step(&self, tolerance: f64) -> f64 {
         let followed = (0..self.states).map(|state| self.state(state));
         let events = self.outputs.iter().skip(self.states);
-        let events = events.map(|output| self.recurrences.series(*output));
+        let events = events.map(|output| self.tape.series(*output));
         // What a side has no value for is not looked at.
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
-        let corners = self.recurrences.corners().map(|(series, _)| series).filter(finite);
+        let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
         followed
             .chain(events)
             .chain(corners)
@@ -323,13 +324,13 @@ impl Expansion {
             }
             None
         };
-        let found = self.recurrences.corners().enumerate().filter_map(met);
+        let found = self.tape.corners().enumerate().filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
     /// Goes to the other side of a corner.
     pub(super) fn cross(&mut self, corner: usize) {
-        self.recurrences.cross(corner);
+        self.tape.cross(corner);
     }
 }
 

@@ -414,3 +414,124 @@ pub(super) fn contact<const L: usize>(moment: &Moment<L>, order: usize, terms: T
         series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::expr::parse_expression;
+    use crate::series::recurrence::Recurrences;
+    use crate::symbol::Symbol;
+
+    const ORDER: usize = 24;
+
+    /// A moment with every force on, which the terms of a test switch off.
+    fn moment(terms: Terms) -> Moment<1> {
+        let on = |on: bool, value: f64| [if on { value } else { 0.0 }];
+        let angle = 0.4_f64 + 0.3 * 0.3;
+        let (sine, cosine) = (1.3_f64 * 0.7).sin_cos();
+        Moment {
+            place: [0.3],
+            velocity: [0.02],
+            sine: [angle.sin()],
+            cosine: [angle.cos()],
+            drive: [[sine], [cosine]],
+            unit: [0.01],
+            dry: [0.05],
+            arctangent: on(terms.arctangent, 0.11),
+            viscous: [0.2],
+            beta: on(terms.excited, 0.6),
+            eta: [1.3],
+            gamma: [500.0],
+            mu: on(terms.damped_contact, 70.0),
+        }
+    }
+
+    /// The series of a system of equations as written, by the recurrences of their expressions: state by state.
+    fn by_expressions(states: &[(&str, f64)], rates: &[&str], moment: &Moment<1>) -> Vec<Vec<f64>> {
+        let number = |name: &str, value: [f64; 1]| (Symbol::from(name), value[0]);
+        let numbers = BTreeMap::from([
+            number("dry", moment.dry),
+            number("arctangent", moment.arctangent),
+            number("viscous", moment.viscous),
+            number("beta", moment.beta),
+            number("eta", moment.eta),
+            number("gamma", moment.gamma),
+            number("mu", moment.mu),
+            number("x_r", [0.4]),
+            number("k", [STEEPNESS]),
+        ]);
+        let variables: Vec<(Symbol, Option<usize>)> =
+            states.iter().map(|(name, _)| (Symbol::from(*name), None)).collect();
+        let mut recurrences = Recurrences::new(&variables, &numbers, ORDER);
+        let rates: Vec<usize> = rates
+            .iter()
+            .map(|text| recurrences.add(&parse_expression(text).expect(text)).expect(text))
+            .collect();
+        let mut tape = recurrences.into_tape();
+        for (place, (_, value)) in states.iter().enumerate() {
+            tape.set(place, 0, *value);
+        }
+        for order in 0..ORDER {
+            tape.compute(order);
+            for (place, rate) in rates.iter().enumerate() {
+                tape.feed(place, *rate, order, moment.unit[0]);
+            }
+        }
+        (0..states.len()).map(|place| tape.series(place).to_vec()).collect()
+    }
+
+    fn assert_same(own: &Series<1>, other: &[f64], what: &str) {
+        let size = other.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        for (n, (own, other)) in own.iter().zip(other).enumerate() {
+            assert!(
+                (own[0] - other).abs() <= 1e-13 * (other.abs() + 1e-3 * size),
+                "{what}, order {n}: {} and {other}",
+                own[0]
+            );
+        }
+    }
+
+    /// What stands in this file by hand is what follows from the equations of its head as expressions, coefficient by coefficient.
+    #[test]
+    fn the_series_are_those_of_the_expressions() {
+        for bits in 0..8 {
+            let terms = Terms {
+                arctangent: bits & 1 != 0,
+                excited: bits & 2 != 0,
+                damped_contact: bits & 4 != 0,
+            };
+            let mut now = moment(terms);
+            let mut series = Coefficients::<1>::new();
+            contact(&now, ORDER, terms, &mut series);
+            let other = by_expressions(
+                &[("w", 0.3), ("v", 0.02), ("t", 0.7)],
+                &[
+                    "v/2",
+                    "-w*(sin(x_r + w^2) + dry + arctangent*atan(k*v) - beta*sin(eta*t)*cos(x_r + w^2)) - viscous*w*v \
+                     - (gamma + mu*v)*w^4",
+                    "w",
+                ],
+                &now,
+            );
+            assert_same(&series.place, &other[0], "w");
+            assert_same(&series.velocity, &other[1], "v in contact");
+            assert_same(&series.time, &[&[0.0], &other[2][1..]].concat(), "t");
+            let x = 0.4 + 0.3 * 0.3;
+            now.place = [x];
+            flight(&now, ORDER, terms, &mut series);
+            let other = by_expressions(
+                &[("x", x), ("v", 0.02), ("t", 0.7)],
+                &[
+                    "v",
+                    "-viscous*v - sin(x) - dry - arctangent*atan(k*v) + beta*sin(eta*t)*cos(x)",
+                    "1",
+                ],
+                &now,
+            );
+            assert_same(&series.place, &other[0], "x");
+            assert_same(&series.velocity, &other[1], "v in flight");
+        }
+    }
+}

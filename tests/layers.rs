@@ -257,6 +257,28 @@ fn one_order_is_told_everywhere() {
     assert_eq!(drawn, layers);
 }
 
+/// In `numeric` Runge-Kutta stands below the periods and the limit cycles, which do not use each other.
+#[test]
+fn motions_in_numbers_stand_on_runge_kutta_alone() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/numeric");
+    let used = |text: &str| {
+        let names = |name: &&str| text.contains(&format!("{name}::")) || text.contains(&format!("numeric::{name};"));
+        ["ode", "period", "return_map"]
+            .into_iter()
+            .filter(names)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(used("use crate::numeric::return_map;"), ["return_map"]);
+    for file in source_files(&folder) {
+        let names = module_path(file.strip_prefix(&folder).expect("a file in numeric"));
+        let Some(own) = names.first() else { continue };
+        let text = std::fs::read_to_string(&file).expect("a source file");
+        let above = used(&without_comments(without_unit_tests(&text))).into_iter();
+        let above: Vec<&str> = above.filter(|name| *name != "ode" && name != own).collect();
+        assert_eq!(above, Vec::<&str>::new(), "{}", file.display());
+    }
+}
+
 /// The crate of the integers of any length is named where numbers live: elsewhere they are `exact::Integer`.
 #[test]
 fn long_integers_come_from_one_place() {

@@ -117,6 +117,14 @@ pub fn elastic_force(depth: f64) -> f64 {
 ///
 /// # Errors
 /// [`NotPositive`] for a stiffness or a speed that is not a positive number.
+///
+/// ```
+/// use lindstedt::impact::hertz::{penetration, stored_energy};
+///
+/// let deepest = penetration(1e6, 0.5)?; // rad
+/// assert!((stored_energy(1e6, deepest) - 0.125).abs() < 1e-12); // v^2/2
+/// # Ok::<(), lindstedt::impact::hertz::NotPositive>(())
+/// ```
 pub fn penetration(stiffness: f64, speed: f64) -> Result<f64, NotPositive> {
     let (stiffness, speed) = (
         positive("stiffness gamma", stiffness)?,

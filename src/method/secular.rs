@@ -161,6 +161,23 @@ pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Res
 ///
 /// # Errors
 /// See [`SecularError`].
+///
+/// ```
+/// use lindstedt::exact::Doubles;
+/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
+/// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
+///
+/// // x'' + x + delta x^3 = 0
+/// let cubic = ForceTerm { order: 1, position: 3, velocity: 0, coefficient: FourierSeries::constant(Doubles, 1.0) };
+/// let scheme = Scheme {
+///     normalisation: AmplitudeConvention::Initial,
+///     amplitude: Amplitude::Free,
+///     detuning: Detuning::Acceleration,
+/// };
+/// let found = expand(&Doubles, &[cubic], 1, &scheme)?;
+/// assert_eq!(found.frequency_squared[1].mean().0, 0.75); // omega^2 = 1 + 3 delta/4
+/// # Ok::<(), lindstedt::method::secular::SecularError>(())
+/// ```
 pub fn expand<R: Ring>(
     ring: &R,
     force: &[ForceTerm<R>],

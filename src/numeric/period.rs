@@ -729,6 +729,15 @@ pub fn swing(
 ///
 /// # Errors
 /// See [`PeriodError`].
+///
+/// ```
+/// use lindstedt::numeric::period::swing_with_cuts;
+///
+/// // A ball that rolls down two slopes turns at its corner.
+/// let swing = swing_with_cuts(&|_t, x, _v| -x.signum(), &[0.0], 0.0, 0.5, 10.0)?;
+/// assert!((swing.period() - 4.0).abs() < 1e-9); // 4 sqrt(2 A)
+/// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
+/// ```
 pub fn swing_with_cuts(
     acceleration: &dyn Fn(f64, f64, f64) -> f64,
     cuts: &[f64],

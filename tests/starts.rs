@@ -14,7 +14,7 @@ struct Truth {
 }
 
 /// t, x, x'.
-type Moment = (f64, f64, f64);
+type Point = (f64, f64, f64);
 
 /// How deep inside a barrier, and its side as a sign; negative outside.
 fn depth(model: &Model, x: f64) -> (f64, f64) {
@@ -24,7 +24,7 @@ fn depth(model: &Model, x: f64) -> (f64, f64) {
 }
 
 /// All forces of equation (7) but Coulomb's.
-fn force(model: &Model, (t, x, v): Moment) -> f64 {
+fn force(model: &Model, (t, x, v): Point) -> f64 {
     let drive = model.beta * (model.frequency_ratio * t).sin() * x.cos();
     let creeping = match model.friction {
         Friction::Arctangent => model.alpha * 2.0 / std::f64::consts::PI * (100.0 * v).atan(),
@@ -39,8 +39,8 @@ fn force(model: &Model, (t, x, v): Moment) -> f64 {
     drive - x.sin() - 2.0 * model.zeta * v - creeping - contact
 }
 
-fn step(model: &Model, (t, x, v): Moment, dry: f64, h: f64) -> Moment {
-    let slope = |at: Moment| (at.2, force(model, at) - dry);
+fn step(model: &Model, (t, x, v): Point, dry: f64, h: f64) -> Point {
+    let slope = |at: Point| (at.2, force(model, at) - dry);
     let (x1, v1) = slope((t, x, v));
     let (x2, v2) = slope((t + 0.5 * h, x + 0.5 * h * x1, v + 0.5 * h * v1));
     let (x3, v3) = slope((t + 0.5 * h, x + 0.5 * h * x2, v + 0.5 * h * v2));

@@ -146,7 +146,7 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
         looks: 0,
         found,
     };
-    search.look((0.0, first), (h, end), DEEPEST);
+    search.between((0.0, first), (h, end), DEEPEST);
     search.found
 }
 
@@ -170,7 +170,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Looks at the interval between two places with their values.
-    fn look(&mut self, left: (f64, f64), right: (f64, f64), halvings: usize) {
+    fn between(&mut self, left: (f64, f64), right: (f64, f64), halvings: usize) {
         if self.found.is_full() {
             return;
         }
@@ -187,8 +187,8 @@ impl Search<'_> {
         self.looks += 1;
         let narrow = halvings == 0 || self.looks > MOST_LOOKS || radius <= 4.0 * f64::EPSILON * to;
         if !narrow && slope.abs() <= self.curvature * radius {
-            self.look(left, (middle, height), halvings - 1);
-            self.look((middle, height), right, halvings - 1);
+            self.between(left, (middle, height), halvings - 1);
+            self.between((middle, height), right, halvings - 1);
         } else if right.1 == 0.0 {
             self.add(to);
         } else if right.1.signum() != self.sign {

@@ -6,7 +6,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::series::{Coefficients, Ends, HIGHEST_ORDER, Moment, Terms, contact, flight};
+use super::series::{Coefficients, Ends, HIGHEST_ORDER, Inputs, Terms, contact, flight};
 use super::{Equation, Runner};
 
 /// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
@@ -17,7 +17,7 @@ const POOL: usize = 48;
 
 /// The series of one group; always compiled into its caller, so that it gets the widest registers there are.
 struct Expansion<'a> {
-    moment: &'a Moment<LANES>,
+    inputs: &'a Inputs<LANES>,
     order: usize,
     terms: Terms,
     series: &'a mut Coefficients<LANES>,
@@ -30,8 +30,8 @@ impl WithSimd for Expansion<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         match self.equation {
-            Equation::Flight => flight(self.moment, self.order, self.terms, self.series),
-            Equation::Contact => contact(self.moment, self.order, self.terms, self.series),
+            Equation::Flight => flight(self.inputs, self.order, self.terms, self.series),
+            Equation::Contact => contact(self.inputs, self.order, self.terms, self.series),
         }
     }
 }
@@ -62,7 +62,7 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
     // Places of the pool that have no series to come yet.
     let mut fresh: Vec<usize> = Vec::with_capacity(POOL);
     let mut series = Box::new(Coefficients::<LANES>::new());
-    let mut moment = Moment::<LANES>::new();
+    let mut inputs = Inputs::<LANES>::new();
     for (number, runner) in waiting.by_ref().take(POOL) {
         fresh.push(pool.len());
         pool.push((number, runner));
@@ -106,13 +106,13 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
         for lane in 0..LANES {
             // Lanes without a run repeat the last one.
             if let Some((_, runner)) = pool.get(group[lane.min(last)]) {
-                runner.moment(lane, &mut moment);
+                runner.inputs(lane, &mut inputs);
                 terms = terms.or(runner.terms());
                 order = runner.order();
             }
         }
         arch.dispatch(Expansion {
-            moment: &moment,
+            inputs: &inputs,
             order,
             terms,
             series: &mut series,

@@ -14,7 +14,7 @@
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
 //! ```
 //!
-//! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::moment`]) and is given its coefficients
+//! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is given its coefficients
 //! ([`Runner::advance`]); who computes them, for one motion or for several side by side, it does not know. What may end a step
 //! stands in `flight` and `contact`, what dry friction does at a turning point in `friction`, the length of a step in `step`.
 
@@ -31,7 +31,7 @@ use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
 use super::simulation::{Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled};
 pub(super) use lanes::follow;
-use series::{Coefficients, End, HIGHEST_ORDER, LAST, Moment, Terms};
+use series::{Coefficients, End, HIGHEST_ORDER, Inputs, LAST, Terms};
 use step::step_length;
 
 /// The longest step in time, for a motion at rest has no scale of its own.
@@ -113,13 +113,13 @@ enum Event {
 pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulation {
     let mut runner = Runner::new(model, start, settings);
     let mut series = Coefficients::<1>::new();
-    let mut moment = Moment::<1>::new();
+    let mut inputs = Inputs::<1>::new();
     let (order, terms) = (runner.order(), runner.terms());
     while let Some(equation) = runner.wants() {
-        runner.moment(0, &mut moment);
+        runner.inputs(0, &mut inputs);
         match equation {
-            Equation::Flight => series::flight(&moment, order, terms, &mut series),
-            Equation::Contact => series::contact(&moment, order, terms, &mut series),
+            Equation::Flight => series::flight(&inputs, order, terms, &mut series),
+            Equation::Contact => series::contact(&inputs, order, terms, &mut series),
         }
         let length = runner.reach(series.last(order, 0));
         let ends = series.ends(&[length], order);
@@ -262,35 +262,35 @@ impl Runner {
         }
     }
 
-    /// Writes the present moment into one lane.
-    fn moment<const L: usize>(&self, lane: usize, moment: &mut Moment<L>) {
+    /// Writes where it is now into one lane.
+    fn inputs<const L: usize>(&self, lane: usize, inputs: &mut Inputs<L>) {
         let model = &self.model;
         let mirror = match self.regime {
             Regime::Contact(side) => side.sign(),
             _ => 1.0,
         };
         let arctangent = model.friction == Friction::Arctangent;
-        moment.place[lane] = self.place;
-        moment.velocity[lane] = self.velocity;
-        moment.sine[lane] = mirror * self.sine;
-        moment.cosine[lane] = self.cosine;
+        inputs.place[lane] = self.place;
+        inputs.velocity[lane] = self.velocity;
+        inputs.sine[lane] = mirror * self.sine;
+        inputs.cosine[lane] = self.cosine;
         if model.beta != 0.0 {
             let (sine, cosine) = (model.frequency_ratio * self.t).sin_cos();
-            moment.drive[0][lane] = sine;
-            moment.drive[1][lane] = cosine;
+            inputs.drive[0][lane] = sine;
+            inputs.drive[1][lane] = cosine;
         }
-        moment.unit[lane] = self.unit;
-        moment.dry[lane] = if arctangent {
+        inputs.unit[lane] = self.unit;
+        inputs.dry[lane] = if arctangent {
             0.0
         } else {
             model.alpha * mirror * self.direction
         };
-        moment.arctangent[lane] = if arctangent { FRAC_2_PI * model.alpha } else { 0.0 };
-        moment.viscous[lane] = 2.0 * model.zeta;
-        moment.beta[lane] = mirror * model.beta;
-        moment.eta[lane] = model.frequency_ratio;
-        moment.gamma[lane] = model.gamma;
-        moment.mu[lane] = model.mu;
+        inputs.arctangent[lane] = if arctangent { FRAC_2_PI * model.alpha } else { 0.0 };
+        inputs.viscous[lane] = 2.0 * model.zeta;
+        inputs.beta[lane] = mirror * model.beta;
+        inputs.eta[lane] = model.frequency_ratio;
+        inputs.gamma[lane] = model.gamma;
+        inputs.mu[lane] = model.mu;
     }
 
     /// How far the series reaches, in its unit: from the last coefficients of the velocity. The step ends there if

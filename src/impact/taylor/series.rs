@@ -47,9 +47,9 @@ impl Terms {
     }
 }
 
-/// The present moment of `L` motions and their parameters. In contact everything is seen in the mirror of its side.
+/// What the series of `L` motions start from: where they are now, and their parameters. In contact everything is seen in the mirror of its side.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Moment<const L: usize> {
+pub(super) struct Inputs<const L: usize> {
     /// x in flight, w = sqrt(x - x_r) in contact.
     pub(super) place: [f64; L],
     pub(super) velocity: [f64; L],
@@ -70,7 +70,7 @@ pub(super) struct Moment<const L: usize> {
     pub(super) mu: [f64; L],
 }
 
-impl<const L: usize> Moment<L> {
+impl<const L: usize> Inputs<L> {
     pub(super) fn new() -> Self {
         let zero = [0.0; L];
         Self {
@@ -318,41 +318,41 @@ fn arctangent<const L: usize>(angle: &mut Series<L>, squares: &mut Series<L>, ve
 
 /// The series of free motion to this order.
 #[inline(always)]
-pub(super) fn flight<const L: usize>(moment: &Moment<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+pub(super) fn flight<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
     let order = order.min(HIGHEST_ORDER);
-    series.place[0] = moment.place;
-    series.velocity[0] = moment.velocity;
-    series.sine[0] = moment.sine;
-    series.cosine[0] = moment.cosine;
+    series.place[0] = inputs.place;
+    series.velocity[0] = inputs.velocity;
+    series.sine[0] = inputs.sine;
+    series.cosine[0] = inputs.cosine;
     if terms.excited {
         for part in 0..2 {
-            series.drive[part][0] = moment.drive[part];
+            series.drive[part][0] = inputs.drive[part];
         }
     }
     for n in 0..order {
         if n > 0 {
-            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.velocity, &moment.unit, n);
+            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.velocity, &inputs.unit, n);
         }
-        let mut force: [f64; L] = each(|lane| -moment.viscous[lane] * series.velocity[n][lane] - series.sine[n][lane]);
+        let mut force: [f64; L] = each(|lane| -inputs.viscous[lane] * series.velocity[n][lane] - series.sine[n][lane]);
         if n == 0 {
-            force = each(|lane| force[lane] - moment.dry[lane]);
+            force = each(|lane| force[lane] - inputs.dry[lane]);
         }
         if terms.arctangent {
             arctangent(&mut series.angle, &mut series.square, &series.velocity, n);
-            force = each(|lane| force[lane] - moment.arctangent[lane] * series.angle[n][lane]);
+            force = each(|lane| force[lane] - inputs.arctangent[lane] * series.angle[n][lane]);
         }
         if terms.excited {
             if n > 0 {
                 // sin(eta t) and cos(eta t), each the derivative of the other.
                 let [sine, cosine] = [series.drive[0][n - 1], series.drive[1][n - 1]];
-                let factor: [f64; L] = each(|lane| moment.unit[lane] * moment.eta[lane] * INVERSE[n]);
+                let factor: [f64; L] = each(|lane| inputs.unit[lane] * inputs.eta[lane] * INVERSE[n]);
                 series.drive[0][n] = each(|lane| factor[lane] * cosine[lane]);
                 series.drive[1][n] = each(|lane| -factor[lane] * sine[lane]);
             }
             let push = product(&series.drive[0], &series.cosine, n);
-            force = each(|lane| force[lane] + moment.beta[lane] * push[lane]);
+            force = each(|lane| force[lane] + inputs.beta[lane] * push[lane]);
         }
-        let factor: [f64; L] = each(|lane| moment.unit[lane] * INVERSE[n + 1]);
+        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
         series.place[n + 1] = each(|lane| factor[lane] * series.velocity[n][lane]);
         series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
     }
@@ -360,17 +360,17 @@ pub(super) fn flight<const L: usize>(moment: &Moment<L>, order: usize, terms: Te
 
 /// The series of motion in contact to this order, in s.
 #[inline(always)]
-pub(super) fn contact<const L: usize>(moment: &Moment<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
     let order = order.min(HIGHEST_ORDER);
-    series.place[0] = moment.place;
-    series.velocity[0] = moment.velocity;
+    series.place[0] = inputs.place;
+    series.velocity[0] = inputs.velocity;
     series.time[0] = [0.0; L];
-    series.sine[0] = moment.sine;
-    series.cosine[0] = moment.cosine;
-    series.depth[0] = each(|lane| moment.place[lane] * moment.place[lane]);
+    series.sine[0] = inputs.sine;
+    series.cosine[0] = inputs.cosine;
+    series.depth[0] = each(|lane| inputs.place[lane] * inputs.place[lane]);
     if terms.excited {
         for part in 0..2 {
-            series.drive[part][0] = moment.drive[part];
+            series.drive[part][0] = inputs.drive[part];
         }
     }
     for n in 0..order {
@@ -378,37 +378,37 @@ pub(super) fn contact<const L: usize>(moment: &Moment<L>, order: usize, terms: T
         series.rate[n] = product(&series.place, &series.velocity, n);
         if n > 0 {
             let rate = series.rate[n - 1];
-            series.depth[n] = each(|lane| moment.unit[lane] * INVERSE[n] * rate[lane]);
-            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.rate, &moment.unit, n);
+            series.depth[n] = each(|lane| inputs.unit[lane] * INVERSE[n] * rate[lane]);
+            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.rate, &inputs.unit, n);
         }
         series.fourth[n] = square(&series.depth, n);
         let mut slow = series.sine[n];
         if n == 0 {
-            slow = each(|lane| slow[lane] + moment.dry[lane]);
+            slow = each(|lane| slow[lane] + inputs.dry[lane]);
         }
         if terms.arctangent {
             arctangent(&mut series.angle, &mut series.square, &series.velocity, n);
-            slow = each(|lane| slow[lane] + moment.arctangent[lane] * series.angle[n][lane]);
+            slow = each(|lane| slow[lane] + inputs.arctangent[lane] * series.angle[n][lane]);
         }
         if terms.excited {
             if n > 0 {
-                let factor = each(|lane| moment.unit[lane] * moment.eta[lane]);
+                let factor = each(|lane| inputs.unit[lane] * inputs.eta[lane]);
                 let [sine, cosine] = &mut series.drive;
                 sine_and_cosine(sine, cosine, &series.place, &factor, n);
             }
             let push = product(&series.drive[0], &series.cosine, n);
-            slow = each(|lane| slow[lane] - moment.beta[lane] * push[lane]);
+            slow = each(|lane| slow[lane] - inputs.beta[lane] * push[lane]);
         }
         series.slow[n] = slow;
         let carried = product(&series.place, &series.slow, n);
         let mut force: [f64; L] = each(|lane| {
-            -carried[lane] - moment.viscous[lane] * series.rate[n][lane] - moment.gamma[lane] * series.fourth[n][lane]
+            -carried[lane] - inputs.viscous[lane] * series.rate[n][lane] - inputs.gamma[lane] * series.fourth[n][lane]
         });
         if terms.damped_contact {
             let damped = product(&series.velocity, &series.fourth, n);
-            force = each(|lane| force[lane] - moment.mu[lane] * damped[lane]);
+            force = each(|lane| force[lane] - inputs.mu[lane] * damped[lane]);
         }
-        let factor: [f64; L] = each(|lane| moment.unit[lane] * INVERSE[n + 1]);
+        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
         series.time[n + 1] = each(|lane| factor[lane] * series.place[n][lane]);
         series.place[n + 1] = each(|lane| 0.5 * factor[lane] * series.velocity[n][lane]);
         series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
@@ -426,12 +426,12 @@ mod tests {
 
     const ORDER: usize = 24;
 
-    /// A moment with every force on, which the terms of a test switch off.
-    fn moment(terms: Terms) -> Moment<1> {
+    /// A start with every force on, which the terms of a test switch off.
+    fn inputs(terms: Terms) -> Inputs<1> {
         let on = |on: bool, value: f64| [if on { value } else { 0.0 }];
         let angle = 0.4_f64 + 0.3 * 0.3;
         let (sine, cosine) = (1.3_f64 * 0.7).sin_cos();
-        Moment {
+        Inputs {
             place: [0.3],
             velocity: [0.02],
             sine: [angle.sin()],
@@ -449,16 +449,16 @@ mod tests {
     }
 
     /// The series of a system of equations as written, by the recurrences of their expressions: state by state.
-    fn by_expressions(states: &[(&str, f64)], rates: &[&str], moment: &Moment<1>) -> Vec<Vec<f64>> {
+    fn by_expressions(states: &[(&str, f64)], rates: &[&str], inputs: &Inputs<1>) -> Vec<Vec<f64>> {
         let number = |name: &str, value: [f64; 1]| (Symbol::from(name), value[0]);
         let numbers = BTreeMap::from([
-            number("dry", moment.dry),
-            number("arctangent", moment.arctangent),
-            number("viscous", moment.viscous),
-            number("beta", moment.beta),
-            number("eta", moment.eta),
-            number("gamma", moment.gamma),
-            number("mu", moment.mu),
+            number("dry", inputs.dry),
+            number("arctangent", inputs.arctangent),
+            number("viscous", inputs.viscous),
+            number("beta", inputs.beta),
+            number("eta", inputs.eta),
+            number("gamma", inputs.gamma),
+            number("mu", inputs.mu),
             number("x_r", [0.4]),
             number("k", [STEEPNESS]),
         ]);
@@ -476,7 +476,7 @@ mod tests {
         for order in 0..ORDER {
             tape.compute(order);
             for (place, rate) in rates.iter().enumerate() {
-                tape.feed(place, *rate, order, moment.unit[0]);
+                tape.feed(place, *rate, order, inputs.unit[0]);
             }
         }
         (0..states.len()).map(|place| tape.series(place).to_vec()).collect()
@@ -502,7 +502,7 @@ mod tests {
                 excited: bits & 2 != 0,
                 damped_contact: bits & 4 != 0,
             };
-            let mut now = moment(terms);
+            let mut now = inputs(terms);
             let mut series = Coefficients::<1>::new();
             contact(&now, ORDER, terms, &mut series);
             let other = by_expressions(

@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use super::State;
-use super::moment::Moment;
 use super::root::{find_minimum, find_root};
+use super::sample::Sample;
 use super::trajectory::Step;
 
 /// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that counts, and what is to happen
@@ -126,7 +126,7 @@ impl Watch {
     /// A start on the surface is no crossing, reaching zero is one, and leaving it again is none. One exception:
     /// where a phase starts on the surface of a switch and moves through it in the direction that counts, it is left
     /// at once.
-    pub(super) fn crossings<S: Moment>(
+    pub(super) fn crossings<S: Sample>(
         &mut self,
         step: &Step<S>,
         event: &Event<S>,

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::State;
 use super::event::{Action, Event, Watch};
-use super::moment::{Moment, Point, Values};
+use super::sample::{Point, Sample, Values};
 use super::scheme::{Scheme, explicit, implicit};
 use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
 use crate::interrupt::Interrupt;
@@ -56,13 +56,13 @@ impl Options {
 }
 
 /// A smooth right side and the events to look for while it is in force.
-pub struct Phase<'a, S: Moment = State> {
+pub struct Phase<'a, S: Sample = State> {
     rates: Box<Rates<'a, S>>,
     events: Vec<Event<'a, S>>,
 }
 
 /// Writes the rates of the values at a time.
-type Rates<'a, S> = dyn Fn(f64, &<S as Moment>::Values, &mut <S as Moment>::Values) + 'a;
+type Rates<'a, S> = dyn Fn(f64, &<S as Sample>::Values, &mut <S as Sample>::Values) + 'a;
 
 impl<'a> Phase<'a> {
     /// The acceleration g(t, x, v) and the events of this phase.
@@ -245,7 +245,7 @@ type Part<'r, 'a, S> = (&'r Rates<'r, S>, &'r [Event<'a, S>]);
 /// Switches in a row without progress of time (beyond rounding) after which the run is called stalled.
 const MAXIMUM_IDLE_SWITCHES: usize = 16;
 
-fn run<S: Moment>(
+fn run<S: Sample>(
     parts: &[Part<S>],
     first: usize,
     start: S,
@@ -320,7 +320,7 @@ fn run<S: Moment>(
     Ok(trajectory)
 }
 
-fn check(start: &impl Moment, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
+fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
     let start_time = start.time();
     if !(start.is_finite() && end_time.is_finite()) {
         return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
@@ -342,13 +342,13 @@ fn check(start: &impl Moment, end_time: f64, options: &Options) -> Result<(), In
 }
 
 /// The right side, counting its evaluations and remembering whether one of them was not finite.
-struct Counted<'r, S: Moment> {
+struct Counted<'r, S: Sample> {
     rates: &'r Rates<'r, S>,
     evaluations: &'r Cell<usize>,
     non_finite: Cell<bool>,
 }
 
-impl<S: Moment> ODE<f64, S::Values> for Counted<'_, S> {
+impl<S: Sample> ODE<f64, S::Values> for Counted<'_, S> {
     fn diff(&self, t: f64, values: &S::Values, derivative: &mut S::Values) {
         (self.rates)(t, values, derivative);
         self.evaluations.set(self.evaluations.get() + 1);
@@ -359,7 +359,7 @@ impl<S: Moment> ODE<f64, S::Values> for Counted<'_, S> {
 }
 
 /// The part of a run with one right side.
-struct Leg<'r, 'a, S: Moment> {
+struct Leg<'r, 'a, S: Sample> {
     equations: Counted<'r, S>,
     phase: usize,
     events: &'r [Event<'a, S>],
@@ -372,7 +372,7 @@ enum LegEnd<S> {
     Switched(usize, S),
 }
 
-impl<S: Moment> Leg<'_, '_, S> {
+impl<S: Sample> Leg<'_, '_, S> {
     fn run<M: OrdinaryNumericalMethod<f64, S::Values>>(
         &self,
         scheme: &Scheme<M, S::Values>,

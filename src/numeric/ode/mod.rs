@@ -34,15 +34,15 @@
 
 mod event;
 mod integrate;
-mod moment;
 pub mod quadrature;
 pub mod root;
+mod sample;
 mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
 pub use integrate::{IntegrationError, Options, Phase, integrate, integrate_first_order, integrate_phases};
-pub use moment::{Moment, Point, Values};
+pub use sample::{Point, Sample, Values};
 pub use trajectory::{Occurrence, StopReason, Trajectory};
 
 /// A point of the motion: time, displacement, velocity. Also the initial condition.

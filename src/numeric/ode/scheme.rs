@@ -6,7 +6,7 @@ use differential_equations::methods::{Adaptive, ExplicitRungeKutta, ImplicitRung
 use differential_equations::ode::OrdinaryNumericalMethod;
 
 use super::integrate::Options;
-use super::moment::{Moment, Values};
+use super::sample::{Sample, Values};
 
 /// A method: how to begin, and the values at a time within the step just taken.
 pub(super) struct Scheme<M, Y> {
@@ -36,7 +36,7 @@ pub(super) fn explicit<Y: Values>() -> Scheme<impl OrdinaryNumericalMethod<f64, 
 
 /// Radau IIA of order 5 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, section
 /// IV.8), which takes long steps where a motion is slow and stiff.
-pub(super) fn implicit<S: Moment>() -> Scheme<impl OrdinaryNumericalMethod<f64, S::Values>, S::Values> {
+pub(super) fn implicit<S: Sample>() -> Scheme<impl OrdinaryNumericalMethod<f64, S::Values>, S::Values> {
     let fresh = |options: &Options, first_step: f64, longest_step: f64| {
         ImplicitRungeKutta::radau5()
             .rtol(options.relative_tolerance)
@@ -51,7 +51,7 @@ pub(super) fn implicit<S: Moment>() -> Scheme<impl OrdinaryNumericalMethod<f64, 
     }
 }
 
-fn within<S: Moment, M>(method: &mut M, time: f64) -> Option<S::Values>
+fn within<S: Sample, M>(method: &mut M, time: f64) -> Option<S::Values>
 where
     M: OrdinaryNumericalMethod<f64, S::Values> + Interpolation<f64, S::Values>,
 {

@@ -9,7 +9,7 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use super::State;
-use super::moment::Moment;
+use super::sample::Sample;
 
 /// Terms of the Chebyshev series of a step: the interpolant has degree 8 in s, its quotient by s has degree 7.
 pub(super) const TERMS: usize = 8;
@@ -20,7 +20,7 @@ pub(super) static FRACTIONS: LazyLock<[f64; TERMS]> =
 
 /// The numerical solution of x'' = g(t, x, v), or of any first-order equations, on an interval of time, as a function.
 #[derive(Debug, Clone)]
-pub struct Trajectory<S: Moment = State> {
+pub struct Trajectory<S: Sample = State> {
     pub(super) start: S,
     pub(super) end: S,
     pub(super) steps: Vec<Step<S>>,
@@ -118,7 +118,7 @@ impl Trajectory {
     }
 }
 
-impl<S: Moment> Trajectory<S> {
+impl<S: Sample> Trajectory<S> {
     /// The state at time `t`; `None` outside the time covered. Where a switch changed the state, the one after the switch.
     pub fn state_at(&self, t: f64) -> Option<S> {
         if t == self.end.time() {
@@ -203,7 +203,7 @@ impl<S: Moment> Trajectory<S> {
 
 /// One accepted step, or the part of it before an event.
 #[derive(Debug, Clone)]
-pub(super) struct Step<S: Moment> {
+pub(super) struct Step<S: Sample> {
     pub(super) phase: usize,
     pub(super) start: S,
     /// The length of the whole step: the unit of the fraction s.
@@ -212,7 +212,7 @@ pub(super) struct Step<S: Moment> {
     quotient: [S::Values; TERMS],
 }
 
-impl<S: Moment> Step<S> {
+impl<S: Sample> Step<S> {
     /// From the values at [`FRACTIONS`].
     pub(super) fn new(phase: usize, start: S, length: f64, values: [S::Values; TERMS]) -> Self {
         let origin = start.values();

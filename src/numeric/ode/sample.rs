@@ -13,7 +13,7 @@ impl<const N: usize> Values for [f64; N] {}
 impl Values for Vec<f64> {}
 
 /// A point of a motion.
-pub trait Moment: Clone + Debug {
+pub trait Sample: Clone + Debug {
     /// What changes in time.
     type Values: Values;
 
@@ -47,7 +47,7 @@ pub struct Point<Y> {
     pub y: Y,
 }
 
-impl<Y: Values> Moment for Point<Y> {
+impl<Y: Values> Sample for Point<Y> {
     type Values = Y;
 
     fn new(t: f64, values: &Y) -> Self {
@@ -63,7 +63,7 @@ impl<Y: Values> Moment for Point<Y> {
     }
 }
 
-impl Moment for State {
+impl Sample for State {
     type Values = [f64; 2];
 
     fn new(t: f64, &[x, v]: &[f64; 2]) -> Self {

@@ -392,6 +392,11 @@ impl Oscillator {
         }
     }
 
+    /// Whether the force is one of the position alone, so that its energy gives the period; not where it cannot be taken apart.
+    pub fn of_position_alone(&self) -> bool {
+        self.parts().is_ok_and(|parts| parts.of_position_alone())
+    }
+
     /// The terms of the force sorted by kind. A term of several kinds, such as `x'*sin(t)`, counts as forcing.
     ///
     /// # Errors

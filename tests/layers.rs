@@ -293,6 +293,185 @@ fn long_integers_come_from_one_place() {
     assert_eq!(outside, Vec::<PathBuf>::new());
 }
 
+/// The files that make the judge's truth. They know which motion is meant, never how a formula came about.
+const TRUTH: [&str; 6] = [
+    "numeric/period.rs",
+    "numeric/return_map.rs",
+    "verify/amplitude_series.rs",
+    "verify/backbone.rs",
+    "verify/orbit.rs",
+    "verify/well.rs",
+];
+
+/// What those in `verify` may use of it besides each other: the error type that they share with the judge.
+const OF_THE_JUDGE: [&str; 1] = ["VerificationError"];
+
+/// What they may use of `solution`: plain data.
+const OF_AN_ANSWER: [&str; 1] = ["AmplitudeConvention"];
+
+/// The modules of `numeric` that are truth as a whole: the judge alone uses them, so that no answer comes by a detour.
+const TRUE_MODULES: [&str; 2] = ["period", "return_map"];
+
+/// What crosses the wall between the methods and the truth, as messages: `file` is the path of a source in `src/`.
+fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<String> {
+    let names = module_path(Path::new(file));
+    let source = Source {
+        module: names.first().map_or("", String::as_str),
+        depth: names.len(),
+        text,
+    };
+    let makes_truth = TRUTH.contains(&file);
+    let code = without_comments(without_unit_tests(text));
+    // The names behind every `root`, with their lines.
+    let behind = |root: &str| -> Vec<Use> {
+        let places = code.match_indices(root).map(|(place, _)| place);
+        let names = |place: usize| {
+            let line = code[..place].matches('\n').count() + 1;
+            let names = first_names(&code[place + root.len()..]);
+            names.into_iter().map(move |name| (line, name))
+        };
+        places.flat_map(names).collect()
+    };
+    let mut found = Vec::new();
+    let mut refuse = |root: &str, allowed: &dyn Fn(&str) -> bool| {
+        let wrong = behind(root).into_iter().filter(|(_, name)| !allowed(name));
+        found.extend(wrong.map(|(line, name)| format!("{line}: uses `{root}{name}`")));
+    };
+    if source.module != "verify" && !makes_truth {
+        let no_truth = |name: &str| !TRUE_MODULES.contains(&name);
+        refuse("numeric::", &no_truth);
+        if source.module == "numeric" {
+            refuse("super::", &no_truth);
+        }
+    }
+    if makes_truth {
+        let stem = |file: &&str| module_path(Path::new(file)).pop().unwrap_or_default();
+        let truths: Vec<String> = TRUTH.iter().map(stem).collect();
+        let of_verify = |name: &str| OF_THE_JUDGE.contains(&name) || truths.iter().any(|truth| truth == name);
+        refuse("super::", &of_verify);
+        refuse("crate::verify::", &of_verify);
+        refuse("crate::solution::", &|name| OF_AN_ANSWER.contains(&name));
+        let lines: Vec<&str> = code.lines().collect();
+        for (line, name) in uses(&source, handed_on) {
+            let root = format!("crate::{name}::");
+            // By any other path it is not seen what of it is used.
+            let hidden = ["solution", "verify"].contains(&name.as_str()) && !lines[line - 1].contains(&root);
+            if name == "method" || hidden {
+                found.push(format!("{line}: uses `{name}`"));
+            }
+        }
+    }
+    found
+}
+
+/// What is judged and the judge share numbers and the equation, not a way to the answer.
+#[test]
+fn the_judge_and_the_methods_share_no_truth() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let library = std::fs::read_to_string(folder.join("lib.rs")).expect("src/lib.rs");
+    let handed_on = handed_on(&library);
+    let (mut wrong, mut truths) = (Vec::new(), 0);
+    for path in source_files(&folder) {
+        let inside = path.strip_prefix(&folder).expect("a file in src");
+        let file: Vec<_> = inside.iter().map(|part| part.to_string_lossy()).collect();
+        let file = file.join("/");
+        truths += usize::from(TRUTH.contains(&file.as_str()));
+        let text = std::fs::read_to_string(&path).expect("a source file");
+        let crossed = over_the_wall(&file, &text, &handed_on);
+        wrong.extend(crossed.iter().map(|message| format!("src/{file}:{message}")));
+    }
+    assert!(wrong.is_empty(), "the wall is broken:\n{}", wrong.join("\n"));
+    assert_eq!(truths, TRUTH.len(), "a file of the truth is gone");
+}
+
+#[test]
+fn a_hole_in_the_wall_is_seen() {
+    let handed_on = handed_on("pub use method::{Options, solve};\npub use solution::{Method, Solution};\n");
+    for (file, text, expected) in [
+        ("numeric/period.rs", "use crate::method::numbers;", "1: uses `method`"),
+        (
+            "numeric/return_map.rs",
+            "\nlet law = crate::solve(&x);",
+            "2: uses `method`",
+        ),
+        (
+            "verify/orbit.rs",
+            "use super::super::method::one_term;",
+            "1: uses `method`",
+        ),
+        (
+            "verify/orbit.rs",
+            "use super::{VerificationError, formula_frequency};",
+            "1: uses `super::formula_frequency`",
+        ),
+        (
+            "verify/well.rs",
+            "use crate::solution::{AmplitudeConvention, Law};",
+            "1: uses `crate::solution::Law`",
+        ),
+        (
+            "verify/backbone.rs",
+            "use crate::verify::judge;",
+            "1: uses `crate::verify::judge`",
+        ),
+        ("verify/backbone.rs", "use crate::Solution;", "1: uses `solution`"),
+        (
+            "verify/well.rs",
+            "use crate::{solution::Law, symbol};",
+            "1: uses `solution`",
+        ),
+        (
+            "method/exact.rs",
+            "use crate::numeric::period::conservative_period;",
+            "1: uses `numeric::period`",
+        ),
+        (
+            "method/limit_cycle.rs",
+            "\nuse super::super::numeric::{ode, return_map};",
+            "2: uses `numeric::return_map`",
+        ),
+        (
+            "conservative/motion.rs",
+            "use crate::{expr::Expr, numeric::period};",
+            "1: uses `numeric::period`",
+        ),
+    ] {
+        let found = over_the_wall(file, text, &handed_on);
+        assert!(
+            found.iter().any(|message| message == expected),
+            "{file}: {text}: {found:?}"
+        );
+    }
+    for (file, text) in [
+        (
+            "verify/mod.rs",
+            "use crate::method::numbers::evaluate;\nuse crate::numeric::period::PeriodError;",
+        ),
+        (
+            "verify/orbit.rs",
+            "use super::VerificationError;\nuse crate::solution::AmplitudeConvention; // method",
+        ),
+        (
+            "verify/backbone.rs",
+            "use super::orbit::{Meant, Physics};\nuse super::well::Well;",
+        ),
+        (
+            "method/exact.rs",
+            "use super::numbers::evaluate;\nuse crate::numeric::ode::energy::PeriodError;",
+        ),
+        (
+            "numeric/period.rs",
+            "use crate::numeric::ode::root;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n",
+        ),
+    ] {
+        assert_eq!(
+            over_the_wall(file, text, &handed_on),
+            Vec::<String>::new(),
+            "{file}: {text}"
+        );
+    }
+}
+
 #[test]
 fn an_upward_use_is_seen() {
     let handed_on = handed_on("pub use oscillator::Oscillator;\npub mod numeric;\npub use symbol::Symbol;\n");

@@ -1,8 +1,8 @@
-//! The true motion of a force about its equilibrium, released at rest: turning point, period and harmonics by quadrature of
-//! the energy ([`crate::numeric::period`]), in distances from the equilibrium, so that nothing is lost near rest.
+//! Where a motion of a force about its equilibrium, released at rest, turns back ([`crate::numeric::ode::energy`]), in distances from the
+//! equilibrium, so that nothing is lost near rest. What lies between the turning points is integrated by who asks for it.
 
 use super::force::Force;
-use crate::numeric::period::{self, PeriodError};
+use crate::numeric::ode::energy::{self, PeriodError};
 
 impl Force {
     /// The distance from the equilibrium of the other turning point of a motion released at the distance `start`.
@@ -13,36 +13,18 @@ impl Force {
         self.between_turning_points(start, |_, end| Ok(end))
     }
 
-    /// The period of a motion released at the distance `start`.
-    ///
-    /// # Errors
-    /// See [`PeriodError`].
-    pub fn period(&self, start: f64) -> Result<f64, PeriodError> {
-        self.between_turning_points(start, |force, end| period::period_between(force, start, end))
-    }
-
-    /// The period of that motion, and the coefficients of `cos(k theta)` of its position.
-    ///
-    /// # Errors
-    /// See [`PeriodError`].
-    pub fn motion(&self, start: f64) -> Result<(f64, Vec<f64>), PeriodError> {
-        let (period, mut cosine) =
-            self.between_turning_points(start, |force, end| period::motion_between(force, &|_| 1.0, start, end))?;
-        if let Some(mean) = cosine.first_mut() {
-            *mean += self.equilibrium();
-        }
-        Ok((period, cosine))
-    }
-
     /// What `run` makes of the force and the other turning point, where no pole stands in the way: one so weak that rounding
     /// hides its energy would be passed unseen.
-    fn between_turning_points<T>(
+    ///
+    /// # Errors
+    /// See [`PeriodError`]; places are positions.
+    pub(crate) fn between_turning_points<T>(
         &self,
         start: f64,
-        run: impl FnOnce(&period::Force, f64) -> Result<T, PeriodError>,
+        run: impl FnOnce(&energy::Force, f64) -> Result<T, PeriodError>,
     ) -> Result<T, PeriodError> {
         let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
-        let force = period::Force::with_cuts(&value, &cuts);
+        let force = energy::Force::with_cuts(&value, &cuts);
         let no_value = |distance: f64| match self.overflow(distance) {
             Some(term) => PeriodError::Overflow { place: distance, term },
             None => PeriodError::Pole { place: distance },
@@ -51,7 +33,7 @@ impl Force {
         if self.overflow(start).is_some() {
             return Err(no_value(start).moved(self.equilibrium()));
         }
-        let found = match period::turning_point(&force, 0.0, start) {
+        let found = match energy::turning_point(&force, 0.0, start) {
             Ok(end) => match pole(end) {
                 Some(error) => Err(error),
                 None => run(&force, end),

@@ -25,6 +25,7 @@ use nalgebra::{DMatrix, DVector};
 use num_traits::Zero;
 
 use super::energy_balance::positive_amplitude;
+use super::exact_motion::weighted_motion;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
 use super::table::Entry;
@@ -37,8 +38,8 @@ use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
+use crate::numeric::ode::energy;
 use crate::numeric::ode::quadrature::integrate_smooth;
-use crate::numeric::period;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{
@@ -599,8 +600,8 @@ impl Question<'_> {
 
 fn exact_at(question: &Question) -> Option<AtNumbers> {
     let (mass, weighted) = (question.mass, |x| question.weighted(x));
-    let force = period::Force::smooth(&weighted);
-    let (period, cosine) = period::weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
+    let force = energy::Force::smooth(&weighted);
+    let (period, cosine) = weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
     let frequency = std::f64::consts::TAU / period;
     let motion = FourierSeries::from_parts(Doubles, cosine, vec![]);
     Some((frequency * frequency, motion))

@@ -11,6 +11,7 @@ pub(crate) mod amplitude_frequency;
 pub(crate) mod balance;
 pub(crate) mod energy_balance;
 pub(crate) mod exact;
+mod exact_motion;
 pub(crate) mod expansion;
 pub(crate) mod first_order;
 pub(crate) mod frequency_formula;

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::exact_motion::motion_about;
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
@@ -12,11 +13,11 @@ use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::exact::{Doubles, Polynomial};
 use crate::expr::{EvaluationError, Rounded};
+use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_minimum;
-use crate::numeric::period::PeriodError;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Branch, Counts, Solution};
+use crate::solution::{AmplitudeConvention, Branch, Counts, Method, Solution};
 use crate::symbol::Symbol;
 
 /// The relative rounding error above which a closed form is set aside for the integral it stands for.
@@ -274,7 +275,7 @@ fn of_one_term(solution: &Solution) -> bool {
 }
 
 /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
-pub(crate) fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
+fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
     Force::new(
         &oscillator.force,
         oscillator.coordinate,
@@ -409,6 +410,22 @@ fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMa
     };
     let definition = Entry::of(solution.method).definition?;
     definition(&force, size).filter(|law| law.is_finite())
+}
+
+/// The relative error of the integral of a law of one term, as its quadrature estimates it; `None` for other laws.
+pub(crate) fn error_of_integral(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<f64> {
+    let other = [Method::Exact, Method::HarmonicBalance, Method::EnergyBalance].contains(&solution.method);
+    if solution.law.quadrature().is_none() || other {
+        return None;
+    }
+    let amplitude = numbers.get(&solution.amplitude.symbol())?.abs();
+    let force = force_of(oscillator, solution, numbers)?;
+    let (value, change) = one_term::coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
+    Some((change / value).abs().max(1e-15))
 }
 
 /// Whether the equation changes its sign with the coordinate.
@@ -651,7 +668,7 @@ fn exact_motion(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
     let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-    let (period, cosine) = force.motion(amplitude_of(solution, numbers))?;
+    let (period, cosine) = motion_about(&force, amplitude_of(solution, numbers))?;
     let frequency = std::f64::consts::TAU / period;
     Ok((
         frequency * frequency,

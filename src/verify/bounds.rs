@@ -7,10 +7,10 @@
 
 use std::collections::BTreeMap;
 
+use super::force_of;
 use super::validity::Range;
 use crate::conservative::force::Force;
 use crate::decimal::significant;
-use crate::method::numbers::force_of;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};

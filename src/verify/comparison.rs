@@ -5,9 +5,13 @@
 
 use std::collections::BTreeMap;
 
-use super::reach::{Truth, reach};
+use super::backbone::TrueBackbone;
+use super::orbit::TrueMotion;
+use super::reach::reach;
 use super::validity::{self, Reach};
-use super::{TrueMotion, Verdict, VerificationError, checked_numbers, formula_frequency, numbers_or_reason};
+use super::{
+    Verdict, VerificationError, checked_numbers, formula_frequency, largest_deviation, meant, numbers_or_reason,
+};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::numbers::NoNumbers;
@@ -159,12 +163,13 @@ pub fn compare(
         return Err(ComparisonError::NoMethod(refused));
     };
     let numbers = checked_numbers(first, at)?;
-    let (true_motion, reason) = match TrueMotion::of(oscillator, first, &numbers) {
+    let meant = meant(oscillator, first, &numbers);
+    let (true_motion, reason) = match TrueMotion::of(oscillator, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
         Err(error) => return Err(error.into()),
     };
-    let at_amplitude = Truth::new(oscillator, first, &numbers);
+    let at_amplitude = validity::backbone(oscillator, first, &numbers);
     let rows = solutions
         .iter()
         .map(|solution| {
@@ -196,7 +201,7 @@ fn row(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     true_motion: Option<&TrueMotion>,
-    truth: &Truth,
+    truth: &TrueBackbone,
     tolerance: f64,
 ) -> Row {
     let (found, reason) = numbers_or_reason(oscillator, solution, numbers);
@@ -207,7 +212,7 @@ fn row(
     let max_deviation = frequency
         .zip(found.as_ref().and_then(|found| found.motion.as_ref()))
         .zip(true_motion)
-        .and_then(|((frequency, motion), truth)| truth.largest_deviation(frequency, motion));
+        .and_then(|((frequency, motion), truth)| largest_deviation(truth, frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
     Row {
@@ -253,7 +258,7 @@ pub fn backbones(
     let no_method = || ComparisonError::NoMethod(comparison.refused.clone());
     let first = &comparison.rows.first().ok_or_else(no_method)?.solution;
     let numbers = checked_numbers(first, &comparison.at)?;
-    let truth = Truth::new(oscillator, first, &numbers);
+    let truth = validity::backbone(oscillator, first, &numbers);
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
     // To the escape, or to twice the amplitude asked for.
     let last = f64::min(truth.largest_amplitude() * 0.995, 2.0 * asked);

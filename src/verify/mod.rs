@@ -16,9 +16,11 @@
 //! ```
 
 mod amplitude_series;
+mod backbone;
 mod bounds;
 pub mod comparison;
 pub(crate) mod convergence;
+mod orbit;
 mod reach;
 pub(crate) mod validity;
 pub(crate) mod well;
@@ -30,27 +32,23 @@ pub use well::{End, Well};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion, true_frequency};
 use crate::conservative::features::Features;
-use crate::conservative::force::Force as RestForce;
+use crate::conservative::force::Force;
 use crate::decimal::decimal;
 use crate::exact::Doubles;
-use crate::exact::rational::Rational;
-use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
+use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of, half_a_period, symbol_values};
-use crate::numeric::ode::root::find_root;
-use crate::numeric::period::{self, PeriodError, Swing};
-use crate::numeric::return_map::{Equation, LimitCycle, NoLimitCycle, nearest_limit_cycle};
+use crate::numeric::period::PeriodError;
+use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
 /// The error of the frequency below which a formula passes when the user names no tolerance: 1 %.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
-
-/// Points per period on which deviation and residual are taken.
-const SAMPLES: usize = 1024;
 
 /// The formula's verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,15 +214,16 @@ pub fn judge(
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
     let numbers = checked_numbers(solution, at)?;
-    let truth = TrueMotion::of(oscillator, solution, &numbers)?;
+    let meant = meant(oscillator, solution, &numbers);
+    let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error = frequency.map(|frequency| frequency / truth.frequency - 1.0);
     let motion = frequency.zip(found.as_ref().and_then(|found| found.motion.clone()));
     let max_deviation = motion
         .as_ref()
-        .and_then(|(frequency, motion)| truth.largest_deviation(*frequency, motion));
-    let physics = Physics::new(oscillator, solution, &numbers)?;
+        .and_then(|(frequency, motion)| largest_deviation(&truth, *frequency, motion));
+    let physics = Physics::new(oscillator, &meant, &numbers)?;
     let residual = motion
         .as_ref()
         .map(|(frequency, motion)| residual(&physics, *frequency, motion));
@@ -243,8 +242,7 @@ pub fn judge(
         max_deviation,
         residual: residual.filter(|value| value.is_finite()),
         slope: slope(oscillator, solution, &numbers),
-        ranges: truth
-            .about_the_cycle(solution.coordinate())
+        ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
             .chain(remark)
@@ -320,7 +318,8 @@ pub fn motions(
 ) -> Result<Option<Motions>, VerificationError> {
     let symbol = solution.amplitude.symbol();
     let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
-    let truth = TrueMotion::of(oscillator, solution, &numbers)?;
+    let meant = meant(oscillator, solution, &numbers);
+    let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
     let Some((frequency, motion)) = formula_motion(oscillator, solution, &numbers) else {
         return Ok(None);
     };
@@ -402,272 +401,64 @@ fn formula_motion(
     Some((found.frequency_squared.sqrt(), found.motion?))
 }
 
-/// One period of a true motion, from a turning point.
-enum Orbit {
-    Swing(Swing),
-    LimitCycle(LimitCycle),
-}
-
-impl Orbit {
-    fn period(&self) -> f64 {
-        match self {
-            Self::Swing(path) => path.period(),
-            Self::LimitCycle(cycle) => cycle.period(),
+/// Which true motion an answer is meant for.
+fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Meant {
+    let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
+    let near = |cycle: &crate::solution::LimitCycle| {
+        // The amplitude that the formula has where the small parameter vanishes.
+        let amplitude = solution.evaluate(&solution.leading(&cycle.amplitude), &value_of);
+        let amplitude = amplitude.ok().map(f64::abs).filter(|size| size.is_normal());
+        NearCycle {
+            amplitude: amplitude.unwrap_or(1.0),
+            attracts: attraction(solution, numbers)
+                .filter(|value| *value != 0.0)
+                .map(|value| value > 0.0),
         }
-    }
-
-    /// Displacement and velocity, `t` between zero and the period.
-    fn at(&self, t: f64) -> (f64, f64) {
-        match self {
-            Self::Swing(path) => path.at(t).unwrap_or((f64::NAN, f64::NAN)),
-            Self::LimitCycle(cycle) => cycle.at(t),
-        }
-    }
-}
-
-/// The true periodic motion that a formula is meant for.
-struct TrueMotion {
-    frequency: f64,
-    /// `None` where the energy gives the period but Runge-Kutta cannot follow the motion.
-    orbit: Option<Orbit>,
-    /// The instant of the path that is `t = 0` of the formula.
-    shift: f64,
-    amplitude: f64,
-}
-
-impl TrueMotion {
-    fn of(
-        oscillator: &Oscillator,
-        solution: &Solution,
-        numbers: &BTreeMap<Symbol, f64>,
-    ) -> Result<Self, VerificationError> {
-        /// How well the Runge-Kutta return and the energy must agree for the path to be used.
-        const AGREEMENT: f64 = 1e-6;
-        let physics = Physics::new(oscillator, solution, numbers)?;
-        if solution.limit_cycle.is_some() {
-            let cycle = physics.limit_cycle(solution, numbers)?;
-            let frequency = TAU / cycle.period();
-            let orbit = Orbit::LimitCycle(cycle);
-            let equilibrium = physics.rest.equilibrium();
-            return Ok(Self::from_orbit(solution, numbers, orbit, frequency, equilibrium));
-        }
-        let start = physics.start(solution, numbers)?;
-        if physics.by_energy() && solution.amplitude == AmplitudeConvention::Initial {
-            // The energy knows first whether there is an orbit at all, and says why not.
-            let period = physics.rest.period(start)?;
-            let path = physics.swing(start, 2.0 * period).ok();
-            let path = path.filter(|path| (path.period() / period - 1.0).abs() < AGREEMENT);
-            return Ok(Self {
-                frequency: TAU / period,
-                orbit: path.map(Orbit::Swing),
-                shift: 0.0,
-                amplitude: start.abs(),
-            });
-        }
-        let path = physics.swing(start, physics.longest)?;
-        let frequency = match physics.by_energy() {
-            true => TAU / physics.rest.period(start)?,
-            false => TAU / path.period(),
-        };
-        let equilibrium = physics.rest.equilibrium();
-        Ok(Self::from_orbit(
-            solution,
-            numbers,
-            Orbit::Swing(path),
-            frequency,
-            equilibrium,
-        ))
-    }
-
-    fn from_orbit(
-        solution: &Solution,
-        numbers: &BTreeMap<Symbol, f64>,
-        orbit: Orbit,
-        frequency: f64,
-        equilibrium: f64,
-    ) -> Self {
-        let shift = match solution.amplitude {
-            AmplitudeConvention::Initial => 0.0,
-            AmplitudeConvention::FirstHarmonic => {
-                let (cosine, sine) = first_harmonic(&orbit);
-                sine.atan2(cosine) / TAU * orbit.period()
-            }
-        };
-        let amplitude = match (solution.amplitude, &solution.limit_cycle) {
-            (AmplitudeConvention::FirstHarmonic, None) => numbers[&solution.amplitude.symbol()].abs(),
-            _ => (orbit.at(0.0).0 - equilibrium).abs(),
-        };
-        Self {
-            frequency,
-            orbit: Some(orbit),
-            shift,
-            amplitude,
-        }
-    }
-
-    /// Where a true limit cycle lies and what it does to its neighbours.
-    fn about_the_cycle(&self, coordinate: Symbol) -> Option<validity::Range> {
-        let Some(Orbit::LimitCycle(cycle)) = &self.orbit else {
-            return None;
-        };
-        let does = if cycle.attracts() { "attracts" } else { "repels" };
-        Some(validity::Range {
-            text: format!(
-                "the true limit cycle turns at {coordinate} = {} and {does}",
-                decimal(cycle.at(0.0).0)
-            ),
-            outside: false,
-        })
-    }
-
-    fn period(&self) -> f64 {
-        self.orbit.as_ref().map_or(TAU / self.frequency, Orbit::period)
-    }
-
-    /// The true motion at the time `t` of the formula.
-    fn sample(&self, t: f64) -> Sample {
-        let place = (t + self.shift).rem_euclid(self.period());
-        let (x, v) = self
-            .orbit
-            .as_ref()
-            .map_or((f64::NAN, f64::NAN), |orbit| orbit.at(place));
-        (t, x, v)
-    }
-
-    /// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path is not known.
-    fn largest_deviation(&self, frequency: f64, motion: &FourierSeries<Doubles>) -> Option<f64> {
-        self.orbit.as_ref()?;
-        let deviation = |index: usize| {
-            let t = self.period() * index as f64 / SAMPLES as f64;
-            (self.sample(t).1 - motion.evaluate(frequency * t)).abs()
-        };
-        let largest = (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / self.amplitude;
-        largest.is_finite().then_some(largest)
+    };
+    let expected = || formula_frequency(oscillator, solution, numbers);
+    Meant {
+        equilibrium: solution.equilibrium.clone(),
+        convention: solution.amplitude,
+        limit_cycle: solution.limit_cycle.as_ref().map(near),
+        frequency: if oscillator.of_position_alone() {
+            None
+        } else {
+            expected()
+        },
     }
 }
 
-/// The equation with numbers for its parameters, seen from its equilibrium.
-struct Physics {
-    /// The force at rest.
-    rest: RestForce,
-    /// What velocities add to it, as a function of position and velocity; `None` where the period follows from the energy.
-    moving: Option<CompiledFunction>,
-    longest: f64,
+/// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
+    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+    let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
+    Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
 }
 
-impl Physics {
-    fn new(
-        oscillator: &Oscillator,
-        solution: &Solution,
-        numbers: &BTreeMap<Symbol, f64>,
-    ) -> Result<Self, VerificationError> {
-        let parts = oscillator.parts()?;
-        let velocities = [parts.inertia, parts.damping, parts.forcing];
-        let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
-        let (x, v) = (oscillator.coordinate, oscillator.velocity());
-        let (at_rest, moving) = match velocities.iter().all(Expr::is_zero) {
-            true => (oscillator.force.clone(), None),
-            false => {
-                let moving = with_numbers(oscillator, &Expr::sum(velocities), numbers)?;
-                (parts.restoring, Some(CompiledFunction::new(&moving, &[x, v])?))
-            }
-        };
-        solution.equilibrium.evaluate(numbers)?;
-        let rest = RestForce::new(&at_rest, x, &solution.equilibrium, numbers, amplitude);
-        let mut physics = Self {
-            rest: rest.ok_or_else(|| VerificationError::Missing(needed_values(solution)))?,
-            moving,
-            longest: f64::INFINITY,
-        };
-        // A thousand periods of the formula, or of a linear force as strong at the start: a motion that has not turned by
-        // then is not swinging.
-        let by_formula = match physics.by_energy() {
-            true => None,
-            false => formula_frequency(oscillator, solution, numbers),
-        };
-        let slowest = match by_formula {
-            Some(frequency) => frequency,
-            None => {
-                let rate = (physics.force_at(amplitude, 0.0) / amplitude).abs().sqrt();
-                if rate.is_normal() { rate } else { 1.0 }
-            }
-        };
-        physics.longest = 1000.0 * TAU / slowest;
-        Ok(physics)
-    }
+/// Where a true limit cycle lies and what it does to its neighbours.
+fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::Range> {
+    let cycle = truth.limit_cycle()?;
+    let does = if cycle.attracts() { "attracts" } else { "repels" };
+    Some(validity::Range {
+        text: format!(
+            "the true limit cycle turns at {coordinate} = {} and {does}",
+            decimal(cycle.at(0.0).0)
+        ),
+        outside: false,
+    })
+}
 
-    /// Whether the period follows from the energy.
-    fn by_energy(&self) -> bool {
-        self.moving.is_none()
+/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path is not known.
+fn largest_deviation(truth: &TrueMotion, frequency: f64, motion: &FourierSeries<Doubles>) -> Option<f64> {
+    if !truth.has_path() {
+        return None;
     }
-
-    /// The force at a distance from the equilibrium and a velocity.
-    fn force_at(&self, y: f64, v: f64) -> f64 {
-        let position = self.rest.equilibrium() + y;
-        let moving = self.moving.as_ref().map_or(0.0, |moving| moving.call(&[position, v]));
-        self.rest.at(y) + moving
-    }
-
-    /// One swing by Runge-Kutta, in positions.
-    fn swing(&self, start: f64, longest: f64) -> Result<Swing, PeriodError> {
-        let end = match self.by_energy() {
-            true => self.rest.turning_point(start)?,
-            false => -start,
-        };
-        let acceleration = |_: f64, y: f64, v: f64| -self.force_at(y, v);
-        let origin = self.rest.equilibrium();
-        let cuts = self.rest.cuts(start, end);
-        let swing = period::swing_with_cuts(&acceleration, &cuts, 0.0, start, longest)?;
-        Ok(swing.moved(origin))
-    }
-
-    /// The true limit cycle nearest to the amplitude that the formula has where the small parameter vanishes.
-    fn limit_cycle(
-        &self,
-        solution: &Solution,
-        numbers: &BTreeMap<Symbol, f64>,
-    ) -> Result<LimitCycle, VerificationError> {
-        let at_rest = solution
-            .limit_cycle
-            .as_ref()
-            .map(|cycle| solution.leading(&cycle.amplitude));
-        let amplitude = at_rest.and_then(|law| solution.evaluate(&law, &|symbol| numbers.get(&symbol).copied()).ok());
-        let amplitude = amplitude.map(f64::abs).filter(|size| size.is_normal()).unwrap_or(1.0);
-        let equilibrium = self.rest.equilibrium();
-        let step = 1e-3 * amplitude;
-        let slope = (self.rest.at(step) - self.rest.at(-step)) / (2.0 * step);
-        let equation = Equation {
-            acceleration: &|x, v| -self.force_at(x - equilibrium, v),
-            equilibrium,
-            amplitude,
-            frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
-        };
-        // Of cycles close to each other it is the one that attracts as the formula says.
-        let attracts = attraction(solution, numbers)
-            .filter(|value| *value != 0.0)
-            .map(|value| value > 0.0);
-        Ok(nearest_limit_cycle(&equation, attracts)?)
-    }
-
-    /// The distance from the equilibrium to start from: given, or found so that the first harmonic of the
-    /// true motion has the amplitude asked for.
-    fn start(&self, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Result<f64, VerificationError> {
-        let amplitude = numbers[&solution.amplitude.symbol()];
-        if solution.amplitude == AmplitudeConvention::Initial {
-            return Ok(amplitude);
-        }
-        let excess = |start: f64| {
-            let path = self.swing(start, self.longest);
-            path.map_or(f64::NAN, |path| first_harmonic(&Orbit::Swing(path)).0 - amplitude)
-        };
-        let at = |factor: f64| factor * amplitude;
-        for spread in [0.05, 0.2, 0.5] {
-            if let Ok(start) = find_root(excess, at(1.0 - spread), at(1.0 + spread)) {
-                return Ok(start);
-            }
-        }
-        Err(PeriodError::NoReturn(self.longest).into())
-    }
+    let deviation = |index: usize| {
+        let t = truth.period() * index as f64 / SAMPLES as f64;
+        (truth.sample(t).1 - motion.evaluate(frequency * t)).abs()
+    };
+    let largest = (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / truth.amplitude;
+    largest.is_finite().then_some(largest)
 }
 
 /// What is positive where the limit cycle of a formula attracts, negative where it repels, and zero where the amplitude is free.
@@ -678,31 +469,6 @@ fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f6
     // A small parameter that only marks terms is positive.
     numbers.entry(solution.small_parameter).or_insert(1.0);
     own.attracts_where.as_ref()?.evaluate(&numbers).ok()
-}
-
-/// An expression with exact numbers in place of the parameters.
-fn with_numbers(
-    oscillator: &Oscillator,
-    expression: &Expr,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Result<Expr, ExprError> {
-    let exact = |name: &Symbol| Rational::from_float(numbers[name]).map(|value| (*name, Expr::number(value)));
-    let values = oscillator.parameters.iter().filter_map(exact).collect();
-    expression.substitute_all(&values)
-}
-
-/// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to rounding here.
-fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
-    let period = orbit.period();
-    let sample = |k: usize| {
-        let phase = k as f64 / SAMPLES as f64;
-        let x = orbit.at(period * phase).0;
-        (x * (TAU * phase).cos(), x * (TAU * phase).sin())
-    };
-    let sum = (0..SAMPLES)
-        .map(sample)
-        .fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
-    (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
 }
 
 fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) -> f64 {
@@ -731,8 +497,7 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
     };
     // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an error hundreds of times
     // that is measured to less than a per cent.
-    let parts = oscillator.parts().ok()?;
-    let conservative = parts.inertia.is_zero() && parts.damping.is_zero();
+    let conservative = oscillator.of_position_alone();
     let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
     let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
@@ -754,7 +519,7 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
     let error = |halving: i32| {
         let factor = 0.5_f64.powi(halving);
         let (formula, numbers) = formula_at(factor)?;
-        let truth = true_frequency(oscillator, solution, &numbers).ok()?;
+        let truth = true_frequency(oscillator, &meant(oscillator, solution, &numbers), &numbers).ok()?;
         let error = (formula / truth - 1.0).abs();
         // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of the last bits does
         // to it is no error of the formula.
@@ -804,17 +569,4 @@ fn with_small_parameter(
     varied.parameters.push(delta);
     numbers.insert(delta, own.meaning.evaluate(&BTreeMap::new()).ok()?);
     Some((oscillator, varied, numbers))
-}
-
-/// omega of the true motion, without its path where energy alone gives it.
-fn true_frequency(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Result<f64, VerificationError> {
-    let physics = Physics::new(oscillator, solution, numbers)?;
-    if physics.by_energy() && solution.amplitude == AmplitudeConvention::Initial {
-        return Ok(TAU / physics.rest.period(physics.start(solution, numbers)?)?);
-    }
-    TrueMotion::of(oscillator, solution, numbers).map(|truth| truth.frequency)
 }

@@ -4,159 +4,16 @@
 //! where that leaves room for a crossing the stretch is halved. Where the force, or the formula, may turn fast (corners, narrow
 //! bumps, poles) there are points of their own, and the amplitude asked for is always among them.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use super::validity::{is_conservative, well_of};
-use super::well::Well;
-use super::{Physics, formula_frequency};
+use super::backbone::TrueBackbone;
+use super::formula_frequency;
 use crate::conservative::features::Features;
-use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::expr::Expr;
-use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
-
-/// The true frequency as a function of the amplitude, each value computed once.
-pub(super) struct Truth<'a> {
-    solution: &'a Solution,
-    numbers: &'a BTreeMap<Symbol, f64>,
-    physics: Option<Physics>,
-    known: RefCell<BTreeMap<u64, Option<f64>>>,
-    well: Option<Well>,
-    /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
-    places: Vec<f64>,
-    /// How many times the amplitude asked for a motion without escape is looked at.
-    times: f64,
-}
-
-/// How far beyond the amplitude asked for a motion without escape is looked at.
-const FARTHEST: f64 = 100.0;
-
-/// Evaluations of the force that one true frequency may take, and all of them together: some seconds of work. A force that
-/// waves thousands of times along a motion is looked at less far.
-const MOST_FOR_ONE: f64 = 3e7;
-const MOST: u64 = 100_000_000;
-
-impl<'a> Truth<'a> {
-    pub(super) fn new(oscillator: &'a Oscillator, solution: &'a Solution, numbers: &'a BTreeMap<Symbol, f64>) -> Self {
-        let mut truth = Self {
-            solution,
-            numbers,
-            physics: Physics::new(oscillator, solution, numbers).ok(),
-            known: RefCell::default(),
-            well: well_of(oscillator, solution, numbers),
-            places: vec![],
-            times: FARTHEST,
-        };
-        let asked = truth.asked().abs();
-        let _ = truth.frequency(asked);
-        let work = truth.physics.as_ref().map_or(0, |physics| physics.rest.evaluations());
-        truth.times = (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST);
-        let at_origin = solution.equilibrium.is_zero();
-        let symmetric = at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
-        truth.places = truth.reached_places(symmetric).unwrap_or_default();
-        truth
-    }
-
-    /// The amplitude asked for, with its sign.
-    fn asked(&self) -> f64 {
-        let symbol = self.solution.amplitude.symbol();
-        self.numbers.get(&symbol).copied().unwrap_or(1.0)
-    }
-
-    /// The numbers with another size of the amplitude.
-    pub(super) fn numbers_at(&self, size: f64) -> BTreeMap<Symbol, f64> {
-        let mut numbers = self.numbers.clone();
-        numbers.insert(self.solution.amplitude.symbol(), size.copysign(self.asked()));
-        numbers
-    }
-
-    /// The size of the amplitude beyond which no motion released on the side asked for is periodic.
-    pub(super) fn largest_amplitude(&self) -> f64 {
-        let end = self.well.and_then(|well| well.on_side(self.asked()));
-        end.map_or(f64::INFINITY, |end| end.amplitude.abs())
-    }
-
-    /// The end of what is looked at.
-    fn farthest(&self) -> f64 {
-        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
-            .max(self.asked().abs().min(self.largest_amplitude()))
-    }
-
-    /// The true frequency; `None` where the motion is not periodic.
-    pub(super) fn frequency(&self, size: f64) -> Option<f64> {
-        if let Some(known) = self.known.borrow().get(&size.to_bits()) {
-            return *known;
-        }
-        let affordable = |physics: &&Physics| physics.rest.evaluations() < MOST;
-        let found = self.physics.as_ref().filter(affordable).and_then(|physics| {
-            let start = physics.start(self.solution, &self.numbers_at(size)).ok()?;
-            physics
-                .rest
-                .period(start)
-                .ok()
-                .map(|period| std::f64::consts::TAU / period)
-        });
-        self.known.borrow_mut().insert(size.to_bits(), found);
-        found
-    }
-
-    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place. Of the many of a force that
-    /// waves all the way some are enough, for between points the error is followed by halving.
-    fn reached_places(&self, symmetric: bool) -> Option<Vec<f64>> {
-        const MOST: usize = 64;
-        let physics = self.physics.as_ref()?;
-        let (side, farthest) = (self.asked().signum(), self.farthest());
-        let mut sizes: Vec<f64> = Vec::new();
-        for place in physics.rest.cuts(-farthest, farthest) {
-            let distance = side * place;
-            if distance > 0.0 {
-                sizes.push(distance);
-                continue;
-            }
-            // The far turning point: by symmetry, or where the energies are equal.
-            sizes.push(-distance);
-            if symmetric {
-                continue;
-            }
-            let turns = |size: f64| {
-                let end = physics.rest.turning_point(side * size);
-                end.map_or(f64::NAN, |end| side * (place - end))
-            };
-            sizes.extend(find_root(turns, 1e-3 * farthest, 0.999 * farthest).ok());
-        }
-        sizes.sort_by(f64::total_cmp);
-        sizes.dedup();
-        Some(
-            sizes
-                .iter()
-                .copied()
-                .step_by(sizes.len().div_ceil(MOST).max(1))
-                .collect(),
-        )
-    }
-
-    /// Sizes of the amplitude from rest to the end of what is looked at, in order.
-    pub(super) fn amplitudes(&self) -> Vec<f64> {
-        const PER_DECADE: i32 = 4;
-        const LINEAR: usize = 8;
-        let (asked, farthest) = (self.asked().abs(), self.farthest());
-        let mut sizes: Vec<f64> = (-2 * PER_DECADE..=2 * PER_DECADE)
-            .map(|k| asked * 10.0_f64.powf(f64::from(k) / f64::from(PER_DECADE)))
-            .collect();
-        sizes.extend((1..=LINEAR).map(|k| farthest * k as f64 / LINEAR as f64));
-        sizes.extend((1..=LINEAR).map(|k| asked * k as f64 / LINEAR as f64));
-        sizes.extend(&self.places);
-        sizes.push(asked);
-        sizes.retain(|size| *size > 0.0 && *size <= farthest);
-        sizes.sort_by(f64::total_cmp);
-        sizes.dedup_by(|second, first| *second != asked && *first != asked && *second - *first < 1e-9 * *first);
-        sizes
-    }
-}
 
 /// Sizes of the amplitude at which a law may turn fast: the poles and narrow places of its closed form.
 pub(super) fn places_of_law(solution: &Solution, numbers: &BTreeMap<Symbol, f64>, to: f64) -> Vec<f64> {
@@ -228,8 +85,13 @@ impl Reach {
 }
 
 /// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be followed.
-pub(super) fn reach(oscillator: &Oscillator, solution: &Solution, truth: &Truth, tolerance: f64) -> Option<Reach> {
-    if !is_conservative(oscillator) {
+pub(super) fn reach(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    truth: &TrueBackbone,
+    tolerance: f64,
+) -> Option<Reach> {
+    if !oscillator.of_position_alone() {
         return None;
     }
     let mut amplitudes = truth.amplitudes();

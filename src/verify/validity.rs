@@ -3,13 +3,14 @@
 
 use std::collections::BTreeMap;
 
+use super::backbone::TrueBackbone;
 use super::bounds::bounds;
 use super::convergence::convergence;
-use super::reach::{self, Truth};
+use super::reach;
 use super::well::Well;
+use super::{force_of, meant};
 use crate::decimal::significant;
-use crate::method::numbers::{force_of, frequency_squared_of};
-use crate::method::one_term::coefficient_by_quadrature;
+use crate::method::numbers::{error_of_integral, frequency_squared_of};
 use crate::method::table::{Entry, Sees};
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
@@ -43,7 +44,7 @@ pub(super) fn ranges(
     };
     ranges.extend(integral_error(oscillator, solution, numbers));
     ranges.extend(bounds(oscillator, solution, numbers));
-    let truth = Truth::new(oscillator, solution, numbers);
+    let truth = backbone(oscillator, solution, numbers);
     ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude()));
     if Entry::of(solution.method).sees == Sees::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
@@ -70,7 +71,7 @@ pub(super) fn of_equation(
         .is_some_and(|end| amplitude.abs() >= end.amplitude.abs());
     let text = well.in_words(solution.amplitude.symbol().name());
     // Past the edge of one well the motion may still be periodic, over several.
-    let over_all = beyond && super::true_frequency(oscillator, solution, numbers).is_ok();
+    let over_all = beyond && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers).is_ok();
     Some(match over_all {
         true => Range {
             text: format!("{text}; beyond it the motion runs over several wells, and does so here"),
@@ -82,31 +83,26 @@ pub(super) fn of_equation(
 
 /// How good the integral of a law by quadrature is.
 fn integral_error(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
-    let one_term = solution.law.quadrature().is_some()
-        && !matches!(
-            solution.method,
-            Method::Exact | Method::HarmonicBalance | Method::EnergyBalance
-        );
-    let amplitude = numbers.get(&solution.amplitude.symbol()).filter(|_| one_term)?.abs();
-    let force = force_of(oscillator, solution, numbers)?;
-    let (value, change) = coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
-    let error = (change / value).abs().max(1e-15);
+    let error = error_of_integral(oscillator, solution, numbers)?;
     Some(Range {
         text: format!("the integral of the law is good to {error:.0e}"),
         outside: error > 1e-6,
     })
 }
 
-pub(super) fn is_conservative(oscillator: &Oscillator) -> bool {
-    oscillator.parts().is_ok_and(|parts| {
-        [&parts.inertia, &parts.damping, &parts.forcing]
-            .iter()
-            .all(|part| part.is_zero())
-    })
+/// The true frequency against the amplitude, of the motions that an answer is meant for.
+pub(super) fn backbone<'a>(
+    oscillator: &'a Oscillator,
+    solution: &Solution,
+    numbers: &'a BTreeMap<Symbol, f64>,
+) -> TrueBackbone<'a> {
+    let well = well_of(oscillator, solution, numbers);
+    TrueBackbone::new(oscillator, &meant(oscillator, solution, numbers), numbers, well)
 }
 
-pub(super) fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Well> {
-    if !is_conservative(oscillator) || solution.amplitude != AmplitudeConvention::Initial {
+/// The well of the motion that an answer is meant for.
+fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Well> {
+    if !oscillator.of_position_alone() || solution.amplitude != AmplitudeConvention::Initial {
         return None;
     }
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;

@@ -10,6 +10,7 @@
 //!   restarts there.
 //! - [`integrate_first_order`] follows y' = f(t, y) with any number of values.
 //! - [`Event`] is a function of time and values whose zero matters: [`Event::record`], [`Event::stop`], [`Event::switch`].
+//! - [`energy`] finds where a conservative motion turns and how long it takes on the way;
 //! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima.
 //!
 //! ```
@@ -32,6 +33,7 @@
 //! bounds the error of one step, not of the run: on the pendulum the error after a hundred time units is some 60 times the
 //! tolerance. Where the values are an array nothing is allocated in a step but for what is kept of it.
 
+pub mod energy;
 mod event;
 mod integrate;
 pub mod quadrature;

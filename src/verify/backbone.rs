@@ -1,0 +1,156 @@
+//! The backbone curve: the true frequency against the amplitude, and the amplitudes at which it may turn fast.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use super::orbit::{Meant, Physics};
+use super::well::Well;
+use crate::conservative::is_odd;
+use crate::numeric::ode::root::find_root;
+use crate::oscillator::Oscillator;
+use crate::symbol::Symbol;
+
+/// The true frequency as a function of the amplitude, each value computed once.
+pub(super) struct TrueBackbone<'a> {
+    amplitude: Symbol,
+    /// The values asked for.
+    pub(super) numbers: &'a BTreeMap<Symbol, f64>,
+    physics: Option<Physics>,
+    known: RefCell<BTreeMap<u64, Option<f64>>>,
+    well: Option<Well>,
+    /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
+    places: Vec<f64>,
+    /// How many times the amplitude asked for a motion without escape is looked at.
+    times: f64,
+}
+
+/// How far beyond the amplitude asked for a motion without escape is looked at.
+const FARTHEST: f64 = 100.0;
+
+/// Evaluations of the force that one true frequency may take, and all of them together: some seconds of work. A force that
+/// waves thousands of times along a motion is looked at less far.
+const MOST_FOR_ONE: f64 = 3e7;
+const MOST: u64 = 100_000_000;
+
+impl<'a> TrueBackbone<'a> {
+    /// Of the motions that are meant, in a well where it has an end.
+    pub(super) fn new(
+        oscillator: &'a Oscillator,
+        meant: &Meant,
+        numbers: &'a BTreeMap<Symbol, f64>,
+        well: Option<Well>,
+    ) -> Self {
+        let mut backbone = Self {
+            amplitude: meant.convention.symbol(),
+            numbers,
+            physics: Physics::new(oscillator, meant, numbers).ok(),
+            known: RefCell::default(),
+            well,
+            places: vec![],
+            times: FARTHEST,
+        };
+        let asked = backbone.asked().abs();
+        let _ = backbone.frequency(asked);
+        let work = backbone
+            .physics
+            .as_ref()
+            .map_or(0, |physics| physics.rest.evaluations());
+        backbone.times = (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST);
+        let at_origin = meant.equilibrium.is_zero();
+        let symmetric = at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
+        backbone.places = backbone.reached_places(symmetric).unwrap_or_default();
+        backbone
+    }
+
+    /// The amplitude asked for, with its sign.
+    pub(super) fn asked(&self) -> f64 {
+        self.numbers.get(&self.amplitude).copied().unwrap_or(1.0)
+    }
+
+    /// The numbers with another size of the amplitude.
+    pub(super) fn numbers_at(&self, size: f64) -> BTreeMap<Symbol, f64> {
+        let mut numbers = self.numbers.clone();
+        numbers.insert(self.amplitude, size.copysign(self.asked()));
+        numbers
+    }
+
+    /// The size of the amplitude beyond which no motion released on the side asked for is periodic.
+    pub(super) fn largest_amplitude(&self) -> f64 {
+        let end = self.well.and_then(|well| well.on_side(self.asked()));
+        end.map_or(f64::INFINITY, |end| end.amplitude.abs())
+    }
+
+    /// The end of what is looked at.
+    pub(super) fn farthest(&self) -> f64 {
+        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
+            .max(self.asked().abs().min(self.largest_amplitude()))
+    }
+
+    /// The true frequency; `None` where the motion is not periodic.
+    pub(super) fn frequency(&self, size: f64) -> Option<f64> {
+        if let Some(known) = self.known.borrow().get(&size.to_bits()) {
+            return *known;
+        }
+        let affordable = |physics: &&Physics| physics.rest.evaluations() < MOST;
+        let found = self.physics.as_ref().filter(affordable).and_then(|physics| {
+            let start = physics.start(size.copysign(self.asked())).ok()?;
+            let period = physics.period(start).ok()?;
+            Some(std::f64::consts::TAU / period)
+        });
+        self.known.borrow_mut().insert(size.to_bits(), found);
+        found
+    }
+
+    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place. Of the many of a force that
+    /// waves all the way some are enough, for between points the error is followed by halving.
+    fn reached_places(&self, symmetric: bool) -> Option<Vec<f64>> {
+        const MOST: usize = 64;
+        let physics = self.physics.as_ref()?;
+        let (side, farthest) = (self.asked().signum(), self.farthest());
+        let mut sizes: Vec<f64> = Vec::new();
+        for place in physics.rest.cuts(-farthest, farthest) {
+            let distance = side * place;
+            if distance > 0.0 {
+                sizes.push(distance);
+                continue;
+            }
+            // The far turning point: by symmetry, or where the energies are equal.
+            sizes.push(-distance);
+            if symmetric {
+                continue;
+            }
+            let turns = |size: f64| {
+                let end = physics.rest.turning_point(side * size);
+                end.map_or(f64::NAN, |end| side * (place - end))
+            };
+            sizes.extend(find_root(turns, 1e-3 * farthest, 0.999 * farthest).ok());
+        }
+        sizes.sort_by(f64::total_cmp);
+        sizes.dedup();
+        Some(
+            sizes
+                .iter()
+                .copied()
+                .step_by(sizes.len().div_ceil(MOST).max(1))
+                .collect(),
+        )
+    }
+
+    /// Sizes of the amplitude from rest to the end of what is looked at, in order.
+    pub(super) fn amplitudes(&self) -> Vec<f64> {
+        const PER_DECADE: i32 = 4;
+        const LINEAR: usize = 8;
+        let (asked, farthest) = (self.asked().abs(), self.farthest());
+        let mut sizes: Vec<f64> = (-2 * PER_DECADE..=2 * PER_DECADE)
+            .map(|k| asked * 10.0_f64.powf(f64::from(k) / f64::from(PER_DECADE)))
+            .collect();
+        sizes.extend((1..=LINEAR).map(|k| farthest * k as f64 / LINEAR as f64));
+        sizes.extend((1..=LINEAR).map(|k| asked * k as f64 / LINEAR as f64));
+        sizes.extend(&self.places);
+        sizes.push(asked);
+        sizes.retain(|size| *size > 0.0 && *size <= farthest);
+        sizes.sort_by(f64::total_cmp);
+        sizes.dedup_by(|second, first| *second != asked && *first != asked && *second - *first < 1e-9 * *first);
+        sizes
+    }
+}

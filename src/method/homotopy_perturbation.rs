@@ -71,18 +71,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         false => oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?,
     };
     let (amplitude, omega) = (Symbol::new("A"), Symbol::new("omega"));
-    // Everything beside the linear force stands at p^1, in units of omega^2.
-    let term = |term: &Term| {
-        let (position, velocity) = (term.position as i32, term.velocity as i32);
-        let unit = Monomial::power_of(amplitude, position + velocity - 1);
-        let unit = unit.product(&Monomial::power_of(omega, velocity - 2));
-        Term {
-            order: 1,
-            coefficient: term.coefficient.times_monomial(&unit),
-            ..term.clone()
-        }
-    };
-    let terms: Vec<Term> = force.terms.iter().map(term).collect();
+    let terms = embedded(&force.terms, amplitude, omega);
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
         amplitude: Amplitude::Free,
@@ -90,19 +79,8 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     };
     let series = expand_exactly(&terms, order, &scheme, None, None, &oscillator.names())?;
 
-    // 1 + W_1 + W_2 + ... in units of omega^2 holds the corrections: omega0^2 = omega^2 (1 - W_1 - ...).
-    let squared = Polynomial::term(Monomial::power_of(omega, 2), Rational::one());
-    let mut corrections = series.frequency_squared;
-    corrections.accumulate(&Polynomial::constant(-Rational::one()));
-    let mut explicit = corrections.product(&squared);
-    explicit.accumulate(&force.linear);
-    let mut relation = explicit.clone();
-    relation.negate();
-    relation.accumulate(&squared);
-    // Whole powers of omega^2: multiply out what stands below the line.
-    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
-    let relation = relation.times_monomial(&Monomial::power_of(omega, -lowest));
-
+    let explicit = explicit_terms(&series.frequency_squared, &force.linear, omega);
+    let relation = relation(&explicit, omega);
     let root = match explicit.exponent_range(omega).is_none_or(|range| range == (0, 0)) {
         true => Some(Root::Polynomial(explicit)),
         false => root_in_closed_form(&relation, omega)?.map(|value| Root::Closed(ClosedForm { squared: true, value })),
@@ -142,6 +120,40 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
             &force.linear,
         )],
     })
+}
+
+/// The terms of the force under the embedding: everything beside the linear one stands at `p^1`, in units of `omega^2`.
+fn embedded(terms: &[Term], amplitude: Symbol, omega: Symbol) -> Vec<Term> {
+    let term = |term: &Term| {
+        let (position, velocity) = (term.position as i32, term.velocity as i32);
+        let unit = Monomial::power_of(amplitude, position + velocity - 1);
+        let unit = unit.product(&Monomial::power_of(omega, velocity - 2));
+        Term {
+            order: 1,
+            coefficient: term.coefficient.times_monomial(&unit),
+            ..term.clone()
+        }
+    };
+    terms.iter().map(term).collect()
+}
+
+/// `omega0^2 + omega^2 (W_1 + W_2 + ...)`, which is `omega^2`: `series`, in units of `omega^2`, is `1 + W_1 + W_2 + ...`, and
+/// `omega0^2 = omega^2 (1 - W_1 - ...)`.
+fn explicit_terms(series: &Polynomial, linear: &Polynomial, omega: Symbol) -> Polynomial {
+    let mut corrections = series.clone();
+    corrections.accumulate(&Polynomial::constant(-Rational::one()));
+    let mut explicit = corrections.product(&Polynomial::term(Monomial::power_of(omega, 2), Rational::one()));
+    explicit.accumulate(linear);
+    explicit
+}
+
+/// `omega^2 - explicit = 0` in whole powers of `omega`: what stands below the line is multiplied out.
+fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
+    let mut relation = explicit.clone();
+    relation.negate();
+    relation.accumulate(&Polynomial::term(Monomial::power_of(omega, 2), Rational::one()));
+    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
+    relation.times_monomial(&Monomial::power_of(omega, -lowest))
 }
 
 /// The root of a relation that is linear in `omega^2`, or the upper one where it is quadratic, as an expression; `None` where it

@@ -212,38 +212,16 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
             return None;
         }
         if !there.is_finite() {
-            // Close in on where the force ends.
-            let (mut inside, mut outside) = (distance, next);
-            for _ in 0..60 {
-                let middle = 0.5 * (inside + outside);
-                if pull(middle).is_finite() {
-                    inside = middle;
-                } else {
-                    outside = middle;
-                }
-            }
             return Some(Rim {
-                place: equilibrium + side * outside,
+                place: equilibrium + side * end_of_force(&pull, distance, next),
                 separatrix: false,
             });
         }
         if there <= 0.0 {
-            let before = pull(distance);
-            // A force that has died away to nothing has no zero there.
-            if there == 0.0 && before.abs() < 1e-100 * strongest {
-                return None;
-            }
-            let size = if there == 0.0 {
-                next
-            } else {
-                find_root(pull, distance, next).ok()?
-            };
-            // A change of sign by way of infinity is an end, not an equilibrium: next to it the force is far stronger than
-            // at the ends of the step.
-            let near = pull(size).abs().max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
+            let (size, separatrix) = sign_change(&pull, distance, next, strongest)?;
             return Some(Rim {
                 place: equilibrium + side * size,
-                separatrix: near <= 1e3 * before.abs().max(there.abs()).max(1e-300 * strongest),
+                separatrix,
             });
         }
         strongest = strongest.max(there);
@@ -253,6 +231,40 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
         }
     }
     None
+}
+
+/// Where a force ends between a distance at which it has a value and one at which it has none, from outside.
+fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
+    const HALVINGS: usize = 60;
+    let (mut inside, mut outside) = (inside, outside);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (inside + outside);
+        if pull(middle).is_finite() {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    outside
+}
+
+/// Where the force turns its sign between two distances, and whether through zero; `None` where it has only died away.
+fn sign_change(pull: &dyn Fn(f64) -> f64, from: f64, to: f64, strongest: f64) -> Option<(f64, bool)> {
+    let (before, there) = (pull(from), pull(to));
+    // A force that has died away to nothing has no zero there.
+    if there == 0.0 && before.abs() < 1e-100 * strongest {
+        return None;
+    }
+    let size = if there == 0.0 {
+        to
+    } else {
+        find_root(pull, from, to).ok()?
+    };
+    // A change of sign by way of infinity is an end, not an equilibrium: next to it the force is far stronger than at the ends
+    // of the step.
+    let near = pull(size).abs().max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
+    let through_zero = near <= 1e3 * before.abs().max(there.abs()).max(1e-300 * strongest);
+    Some((size, through_zero))
 }
 
 #[cfg(test)]

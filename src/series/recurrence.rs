@@ -309,10 +309,11 @@ impl Recurrences {
         if let Some(places) = self.waves.get(&(of, hyperbolic)) {
             return *places;
         }
-        let (first, sign): ([fn(f64) -> f64; 2], f64) = match hyperbolic {
-            true => ([f64::sinh, f64::cosh], 1.0),
-            false => ([f64::sin, f64::cos], -1.0),
+        let first: [fn(f64) -> f64; 2] = match hyperbolic {
+            true => [f64::sinh, f64::cosh],
+            false => [f64::sin, f64::cos],
         };
+        let sign = if hyperbolic { 1.0 } else { -1.0 };
         let slope = self.slope(of);
         let place = self.emit(Operation::Waves {
             of,

@@ -142,3 +142,20 @@ fn every_wrong_equation_is_quoted() {
     }
     assert!(quoted > 50, "{quoted}");
 }
+
+/// Beside polynomial terms the one that is none is meant, also where it stands at a higher power of the small parameter.
+#[test]
+fn polynomial_terms_are_not_blamed() {
+    for (equation, expected) in [
+        ("x'' + x + eps*x^3 - eps^2*sinh(x) = 0", "-eps^2*sinh(x)"),
+        ("x'' + x + eps*x^31 + eps*sinh(x)^9 = 0", "eps*sinh(x)^9"),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let options = Options {
+            order: Some(6),
+            ..Options::default()
+        };
+        let refused = solve(&oscillator, &options).expect_err(equation).to_string();
+        assert!(refused.ends_with(&format!("not `{expected}`")), "{equation}: {refused}");
+    }
+}

@@ -53,8 +53,11 @@ pub(super) fn solve(
         return Ok(None);
     };
     if order > 1 {
-        let force = (&force - &force.substitute(small, &Expr::zero())?).expand()?;
-        let force = force.to_string();
+        // Of the whole force: what stands at a higher power of `small` may be what no polynomial is.
+        let force = &oscillator.force;
+        let perturbation = (force - &force.substitute(small, &Expr::zero())?).expand()?;
+        let no_polynomial = |term: &&Expr| !matches!(term.to_polynomial(&mut |_| None), Ok(Some(_)));
+        let force = Expr::sum(perturbation.terms().iter().filter(no_polynomial).cloned()).to_string();
         return Err(Unsuited::PolynomialOnly { force }.to(Method::LindstedtPoincare));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {

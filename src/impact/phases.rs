@@ -452,13 +452,21 @@ impl ThreePhases {
 }
 
 impl Phase {
+    /// The number of the join at which it starts and from which its time is counted: contact from t1, return from t2.
+    pub fn joined_at(&self) -> Option<u8> {
+        match self.name {
+            "contact" => Some(1),
+            "return" => Some(2),
+            _ => None,
+        }
+    }
+
     /// The formula as people write it, six significant digits (nine for the centre of the contact, so that the depth
     /// has six): t1 is the start of the contact, t2 its end.
     pub fn closed_form(&self) -> String {
-        let clock = match self.name {
-            "contact" => "(t - t1)",
-            "return" => "(t - t2)",
-            _ => "t",
+        let clock = match self.joined_at() {
+            Some(join) => format!("(t - t{join})"),
+            None => "t".to_owned(),
         };
         match self.form {
             Form::Cosine {

@@ -34,10 +34,9 @@ pub(super) fn quantities(rows: &[Quantity]) -> String {
 
 /// The name of a phase and when it is, and its closed form.
 pub(super) fn phase(phase: &Phase) -> [String; 2] {
-    let clock = match phase.name {
-        "contact" => "(t - t_{1})",
-        "return" => "(t - t_{2})",
-        _ => "t",
+    let clock = match phase.joined_at() {
+        Some(join) => format!("(t - t_{{{join}}})"),
+        None => "t".to_owned(),
     };
     let signed = |value: f64| format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()));
     let form = match phase.form {

@@ -9,6 +9,7 @@
 //!
 //! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and modulus, equation (8).
 //! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
+//! - [`contact`]: the contact by other laws, the exact one among them, side by side.
 //! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
 //! - `parameter`: the numbers that a study may vary, by name, group and unit.
 //! - `model`: the forces of equation (7) and what its parameters may be.
@@ -44,6 +45,7 @@
 
 mod case;
 mod closed_form;
+pub mod contact;
 pub mod hertz;
 mod judge;
 mod linearisation;

@@ -80,7 +80,7 @@ impl Raw {
             Self::Power(a, numerator, denominator) => {
                 let base = a.float(point);
                 let exponent = ratio(*numerator, *denominator);
-                let even = |integer: &lindstedt::exact::Integer| !integer.bit(0);
+                let even = |integer: &lindstedt::exact::Integer| !integer.is_odd();
                 let size = base.abs().powf(to_f64(&exponent));
                 match base < 0.0 {
                     true if even(exponent.denom()) => f64::NAN,

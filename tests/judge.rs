@@ -225,7 +225,7 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
                 let mut at = Values::default();
                 at.insert(
                     "A".into(),
-                    lindstedt::expr::Expr::number(lindstedt::exact::Rational::from_float(size).unwrap()),
+                    lindstedt::expr::Expr::number(lindstedt::exact::from_f64(size).unwrap()),
                 )
                 .unwrap();
                 let Ok(motion) = exact_frequency(&oscillator, size) else {

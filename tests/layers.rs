@@ -285,7 +285,7 @@ fn long_integers_come_from_one_place() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let named = |file: &PathBuf| {
         let text = std::fs::read_to_string(file).expect("a source file");
-        ["num_bigint", "num_rational"].iter().any(|name| text.contains(name))
+        ["dashu_int", "num_rational"].iter().any(|name| text.contains(name))
     };
     let files = source_files(&folder).into_iter().filter(named);
     let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| file.starts_with(folder.join("exact")));

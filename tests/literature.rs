@@ -417,7 +417,10 @@ fn periods_by_elliptic_integrals_to_any_order() {
     // Pendulum: T/(2 pi) = (2/pi) K(sin^2(A/2)), in powers of A^2; sin^2(A/2) = (1 - cos A)/2.
     let half_angle = |k: usize| match k {
         0 => Rational::zero(),
-        _ => Rational::new((if k % 2 == 1 { 1 } else { -1 }).into(), factorial(2 * k as u32) * 2),
+        _ => Rational::new(
+            (if k % 2 == 1 { 1 } else { -1 }).into(),
+            factorial(2 * k as u32) * Integer::from(2),
+        ),
     };
     let modulus: Vec<Rational> = (0..TERMS).map(half_angle).collect();
     let period = composed(elliptic_coefficient, &modulus);
@@ -435,7 +438,7 @@ fn periods_by_elliptic_integrals_to_any_order() {
             factorial(2 * k as u32),
             Integer::from(2).pow(k as u32) * factorial(k as u32),
         );
-        Rational::new(top * sign(k), bottom.pow(2_u32))
+        Rational::new(top * Integer::from(sign(k)), bottom.pow(2_u32))
     };
     let root: Vec<Rational> = (0..TERMS).map(binomial).collect();
     let period = product(&composed(elliptic_coefficient, &modulus), &root);

@@ -3,7 +3,7 @@
 
 use lindstedt::exact::Indivisible;
 use lindstedt::exact::Monomial;
-use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring};
+use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring, from_f64};
 use lindstedt::method::secular::{Amplitude, Detuning, Expansion, ForceTerm, Scheme, SecularError, expand};
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::AmplitudeConvention;
@@ -348,7 +348,7 @@ fn enclosing(value: &Integer) -> Interval {
 }
 
 fn contains([lower, upper]: Interval, value: &Rational) -> bool {
-    let exact = |end: f64| Rational::from_float(end).expect("a finite end");
+    let exact = |end: f64| from_f64(end).expect("a finite end");
     exact(lower) <= *value && *value <= exact(upper)
 }
 

@@ -87,7 +87,7 @@ impl Features {
             .filter(|&&name| name != coordinate)
             .filter_map(|name| {
                 let value = numbers.get(name).copied().unwrap_or(0.0);
-                Some((*name, Expr::number(crate::exact::Rational::from_float(value)?)))
+                Some((*name, Expr::number(crate::exact::from_f64(value)?)))
             })
             .collect();
         let Ok(force) = force.substitute_all(&at_numbers) else {

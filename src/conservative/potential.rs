@@ -53,7 +53,7 @@ fn of_term(term: &Expr, coordinate: Symbol) -> Option<Expr> {
         [] => {
             // |x|^(n+1)/(n+1), with the sign where the force is even.
             let odd_after = !power.odd;
-            let size = if whole && (odd_after == next.numer().bit(0)) {
+            let size = if whole && (odd_after == next.numer().is_odd()) {
                 Expr::power(&x, &Expr::number(next.clone())).ok()?
             } else {
                 let size = Expr::function(Function::Absolute, vec![x.clone()]).ok()?;
@@ -68,8 +68,9 @@ fn of_term(term: &Expr, coordinate: Symbol) -> Option<Expr> {
         [factor] => {
             let exponent = power
                 .exponent
+                .to_integer()
                 .to_u32()
-                .filter(|_| whole && power.odd == power.exponent.numer().bit(0))?;
+                .filter(|_| whole && power.odd == power.exponent.numer().is_odd())?;
             with_power(factor, exponent, coordinate)?
         }
         _ => return None,
@@ -139,7 +140,7 @@ fn with_power(factor: &Expr, exponent: u32, coordinate: Symbol) -> Option<Expr> 
                 }
                 // By parts, once for each power of x: int x^n g = x^n G - n int x^(n-1) G.
                 Function::Sin | Function::Cos | Function::Sinh | Function::Cosh | Function::Exp => {
-                    let start = match (function, power.to_i64()?) {
+                    let start = match (function, power.to_integer().to_i64()?) {
                         (Function::Exp, _) => {
                             let argument = argument * &Expr::number(power);
                             let value = call(Function::Exp, &argument)?;

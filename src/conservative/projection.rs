@@ -57,7 +57,10 @@ fn linearised(factors: Vec<Expr>, coordinate: Symbol) -> Option<Vec<(Expr, Vec<E
                 if *function == Function::Exp {
                     waves.push((Function::Exp, &arguments[0] * &exponent));
                 } else {
-                    let times = times.to_usize().filter(|times| (1..=HIGHEST_POWER).contains(times))?;
+                    let times = times
+                        .to_integer()
+                        .to_usize()
+                        .filter(|times| (1..=HIGHEST_POWER).contains(times))?;
                     if !exponent.as_number()?.is_integer() {
                         return None;
                     }
@@ -149,7 +152,11 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
     }
     // Beside anything else only whole powers of x itself.
     let whole = power.exponent.is_integer() && power.odd == power.exponent.numer().is_odd();
-    let exponent = power.exponent.to_usize().filter(|&n| whole && n <= HIGHEST_POWER)?;
+    let exponent = power
+        .exponent
+        .to_integer()
+        .to_usize()
+        .filter(|&n| whole && n <= HIGHEST_POWER)?;
     let [factor] = factors.as_slice() else {
         return steps_coefficient(&factors, exponent, coordinate, amplitude, k).map(|value| coefficient * value);
     };

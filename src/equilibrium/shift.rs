@@ -7,13 +7,12 @@
 
 use std::collections::BTreeMap;
 
-use num_integer::Integer as _;
-use num_traits::{Signed, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::conservative::linear_in;
 use crate::decimal::rounded_to;
 use crate::exact::Rational;
-use crate::exact::rational::{ratio, to_f64};
+use crate::exact::rational::{from_f64, ratio, to_f64};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
@@ -110,7 +109,7 @@ pub(super) fn exact_zero(force: &Expr, coordinate: Symbol, near: f64) -> Option<
 
 /// Fractions that may have been meant by a number: the convergents of its continued fraction, and its decimals.
 fn fractions_near(value: f64) -> Vec<Rational> {
-    let Some(exact) = Rational::from_float(value) else {
+    let Some(exact) = from_f64(value) else {
         return vec![];
     };
     let close = |candidate: &Rational| (to_f64(candidate) - value).abs() <= 1e-11 * value.abs();
@@ -171,7 +170,7 @@ pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<
                     .as_number()
                     .filter(|exponent| exponent.is_integer())?
                     .to_integer();
-                power = usize::try_from(exponent).ok().filter(|power| *power <= 1000)?;
+                power = exponent.to_usize().filter(|power| *power <= 1000)?;
             } else if factor.contains(coordinate) {
                 return None;
             } else {
@@ -223,8 +222,8 @@ fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
             let (base, exponent) = factor.base_and_exponent();
             let exponent = exponent.as_number().filter(|exponent| exponent.is_negative());
             if let Some(exponent) = exponent.filter(|_| base.contains(coordinate)) {
-                let power = i64::try_from(-exponent.to_integer())
-                    .ok()
+                let power = (-exponent.to_integer())
+                    .to_i64()
                     .filter(|power| (1..=4).contains(power))?;
                 if !exponent.is_integer() {
                     return None;

@@ -6,13 +6,15 @@
 //! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what a derivation asks of its
 //! coefficients, so that one derivation serves exact numbers, symbols, floating point, and rings that are chosen at run time.
 
+pub(crate) mod integer;
 pub(crate) mod polynomial;
 pub(crate) mod rational;
 pub(crate) mod real_roots;
 pub(crate) mod ring;
 pub(crate) mod scaled;
 
+pub use integer::{Integer, ParseIntegerError};
 pub use polynomial::{Monomial, POLYNOMIALS, Polynomial, Polynomials};
-pub use rational::{Integer, Rational, factorial, ratio, to_f64};
+pub use rational::{Rational, factorial, from_f64, ratio, to_f64};
 pub use ring::{Doubles, Indivisible, Integers, Number, Rationals, Ring};
 pub use scaled::Scaled;

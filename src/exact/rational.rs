@@ -1,14 +1,12 @@
 //! Exact fractions: reading, printing, roots and the nearest floating-point number.
 
-use num_bigint::BigInt;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-/// An exact fraction in lowest terms.
-pub type Rational = num_rational::BigRational;
+pub use super::integer::Integer;
 
-/// An integer of any length.
-pub type Integer = BigInt;
+/// An exact fraction in lowest terms.
+pub type Rational = num_rational::Ratio<Integer>;
 
 /// The fraction `numerator / denominator`, for constants in formulas and tests.
 ///
@@ -20,7 +18,72 @@ pub fn ratio(numerator: i64, denominator: i64) -> Rational {
 
 /// The nearest `f64`; infinite when it is out of range.
 pub fn to_f64(value: &Rational) -> f64 {
-    value.to_f64().unwrap_or(f64::NAN)
+    /// Integers up to this size are doubles, and the quotient of two of them is rounded once.
+    const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
+    let exact = |integer: &Integer| {
+        let small = integer.to_i64().filter(|small| small.unsigned_abs() <= LARGEST_EXACT);
+        small.map(|small| small as f64)
+    };
+    match (exact(value.numer()), exact(value.denom())) {
+        (Some(numerator), Some(denominator)) => numerator / denominator,
+        _ => nearest(value),
+    }
+}
+
+/// The nearest `f64` to a fraction that is not zero, ties to even.
+fn nearest(value: &Rational) -> f64 {
+    /// The exponent of the last binary digit that a double can have.
+    const LOWEST: i64 = f64::MIN_EXP as i64 - f64::MANTISSA_DIGITS as i64;
+    let length = |integer: &Integer| i64::try_from(integer.bits()).unwrap_or(i64::MAX / 4);
+    // `2^(size - 1) < |value| < 2^(size + 1)`.
+    let size = length(value.numer()) - length(value.denom());
+    let sign = if value.is_negative() { -1.0 } else { 1.0 };
+    if size > i64::from(f64::MAX_EXP) {
+        return sign * f64::INFINITY;
+    }
+    if size < LOWEST - 1 {
+        return sign * 0.0;
+    }
+    // Two digits more than a mantissa has, or three, or fewer where the double itself has fewer.
+    let last = (size - i64::from(f64::MANTISSA_DIGITS) - 2).max(LOWEST - 2);
+    let (numerator, denominator) = match usize::try_from(last) {
+        Ok(up) => (value.numer().abs(), value.denom() << up),
+        Err(_) => (
+            value.numer().abs() << last.unsigned_abs() as usize,
+            value.denom().clone(),
+        ),
+    };
+    let (quotient, remainder) = numerator.div_rem(&denominator);
+    // At most 56 digits, and whether anything is below them.
+    let quotient = quotient.to_u64().unwrap_or(u64::MAX) | u64::from(!remainder.is_zero());
+    // Rounded to the digits that the double has there, then scaled without a further rounding.
+    let dropped =
+        (i64::from(u64::BITS - quotient.leading_zeros()) - i64::from(f64::MANTISSA_DIGITS)).max(LOWEST - last);
+    let unit = 1_u64 << dropped;
+    let (kept, rest) = (quotient / unit, quotient % unit);
+    let up = rest > unit / 2 || (rest == unit / 2 && kept % 2 == 1);
+    let mantissa = (kept + u64::from(up)) as f64;
+    let exponent = (last + dropped) as i32;
+    // In two steps: the first power alone may be out of range where the product is not.
+    sign * mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
+}
+
+/// The fraction that a finite double is; `None` for the others.
+pub fn from_f64(value: f64) -> Option<Rational> {
+    if !value.is_finite() {
+        return None;
+    }
+    let bits = value.to_bits();
+    let (biased, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
+    // Subnormal numbers have no leading one, and the exponent of the smallest normal ones.
+    let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
+    let exponent = biased.max(1) as i32 - 1075;
+    let mantissa = Integer::from(mantissa);
+    let size = match usize::try_from(exponent) {
+        Ok(up) => Rational::from_integer(mantissa << up),
+        Err(_) => Rational::new(mantissa, Integer::one() << exponent.unsigned_abs() as usize),
+    };
+    Some(if value < 0.0 { -size } else { size })
 }
 
 /// The exact `p/q`-th power, where one exists among the fractions: `(4/9)^(1/2) = 2/3`.

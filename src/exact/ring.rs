@@ -27,7 +27,7 @@
 use std::fmt::Debug;
 
 use num_integer::Integer as _;
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
 use super::rational::{Integer, Rational, to_f64};
 
@@ -146,7 +146,7 @@ impl Ring for Integers {
         left * right
     }
     fn scale(&self, element: &mut Integer, factor: i64) {
-        *element *= factor;
+        *element *= Integer::from(factor);
     }
     fn scale_by(&self, element: &mut Integer, factor: &Integer) {
         *element *= factor;
@@ -157,7 +157,7 @@ impl Ring for Integers {
         divisor: &Integer,
     ) -> Result<(), Indivisible> {
         // One and minus one are their own inverses.
-        if !divisor.magnitude().is_one() {
+        if !divisor.abs().is_one() {
             return Err(Indivisible {
                 divisor: divisor.clone(),
                 ring: "the integers".to_owned(),

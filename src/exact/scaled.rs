@@ -41,9 +41,9 @@ impl Scaled {
         const BITS: i64 = 64;
         let length = |integer: &Integer| i64::try_from(integer.bits()).unwrap_or(i64::MAX / 4);
         let shift = BITS + length(value.denom()) - length(value.numer());
-        let shifted = match u64::try_from(shift) {
+        let shifted = match usize::try_from(shift) {
             Ok(up) => (value.numer() << up) / value.denom(),
-            Err(_) => value.numer() / (value.denom() << shift.unsigned_abs()),
+            Err(_) => value.numer() / (value.denom() << shift.unsigned_abs() as usize),
         };
         let rounded = Self::new(shifted.to_f64().unwrap_or(f64::NAN));
         Self {

@@ -176,7 +176,7 @@ fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Ex
             let times = exponent
                 .as_number()
                 .filter(|number| number.is_integer())
-                .and_then(|number| number.to_u32());
+                .and_then(|number| number.to_integer().to_u32());
             match (base.node(), times) {
                 (Node::Sum(_), Some(times)) => {
                     (0..times).try_fold(Expr::one(), |product, _| multiply(&product, base, budget))

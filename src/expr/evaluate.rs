@@ -318,7 +318,7 @@ impl Compiler<'_> {
 
     /// A sum over `2^bits`.
     fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> Slot {
-        let unit = Rational::new(Integer::one(), Integer::one() << bits);
+        let unit = Rational::new(Integer::one(), Integer::one() << bits as usize);
         let mut total: Option<Slot> = None;
         for term in sum.terms() {
             let (coefficient, factors) = term.factors();
@@ -466,7 +466,7 @@ fn shift(base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
     let root_bits = longest.div_ceil(u64::from(denominator));
     Some(Shift {
         bits: root_bits * u64::from(denominator),
-        made_up: Rational::from_integer(Integer::one() << root_bits).pow(numerator),
+        made_up: Rational::from_integer(Integer::one() << root_bits as usize).pow(numerator),
     })
 }
 

@@ -275,7 +275,7 @@ pub(super) fn has_large_exponent(expr: &Expr) -> bool {
     expr.factors().1.iter().any(|factor| match factor.node() {
         Node::Power(_, exponent) => exponent
             .as_number()
-            .is_some_and(|number| *number.numer().magnitude() > *limit.magnitude() || *number.denom() > limit),
+            .is_some_and(|number| number.numer().abs() > limit || *number.denom() > limit),
         _ => false,
     })
 }
@@ -323,12 +323,7 @@ fn number_power(base: &Rational, exponent: &Rational) -> Result<Expr, ExprError>
     if let Some(value) = rational::power(base, exponent) {
         return Ok(Expr::number(value));
     }
-    let within = |integer: &Integer| {
-        integer
-            .magnitude()
-            .to_u32()
-            .is_some_and(|size| size <= LARGEST_EXPONENT)
-    };
+    let within = |integer: &Integer| integer.abs().to_u32().is_some_and(|size| size <= LARGEST_EXPONENT);
     if exponent.is_integer() || !within(&exponent.floor().to_integer()) {
         return Err(ExprError::NumberTooLarge(message()));
     }

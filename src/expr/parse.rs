@@ -23,7 +23,7 @@ mod mistakes;
 use std::fmt;
 use std::ops::Range;
 
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
 use super::typed::{Typed, TypedTerm};
 use super::{Expr, ExprError, Function, LARGEST_EXPONENT, normal, number};
@@ -397,8 +397,10 @@ impl<'a> Parser<'a> {
             let message = format!("the exponent of this number is beyond {LARGEST_DECIMAL_EXPONENT}");
             return Err(self.error(token.span(), &message, ""));
         };
-        let digits = Integer::parse_bytes(format!("0{whole}{fraction}").as_bytes(), 10).unwrap_or_else(Integer::zero);
-        let ten_to = |power: usize| (0..power).fold(Integer::one(), |product, _| product * 10);
+        let digits = format!("0{whole}{fraction}")
+            .parse()
+            .unwrap_or_else(|_| Integer::zero());
+        let ten_to = |power: usize| num_traits::pow(Integer::from(10), power);
         let (mut numerator, mut denominator) = (digits, ten_to(fraction.len()));
         if exponent.starts_with('-') {
             denominator *= ten_to(size);

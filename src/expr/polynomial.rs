@@ -72,10 +72,10 @@ fn single_factor(factor: &Expr, name: &mut dyn FnMut(&Expr) -> Option<Symbol>) -
         Node::Symbol(symbol) => Some(Monomial::power_of(*symbol, 1)),
         Node::Power(base, exponent) => match (base.node(), exponent.as_number()) {
             (Node::Symbol(symbol), Some(power)) if power.is_integer() => {
-                Some(Monomial::power_of(*symbol, power.to_i32()?))
+                Some(Monomial::power_of(*symbol, power.to_integer().to_i32()?))
             }
             (Node::Pi, Some(power)) if power.is_integer() => {
-                Some(Monomial::power_of(Symbol::new("pi"), power.to_i32()?))
+                Some(Monomial::power_of(Symbol::new("pi"), power.to_integer().to_i32()?))
             }
             _ => name(factor).map(|symbol| Monomial::power_of(symbol, 1)),
         },

@@ -27,8 +27,8 @@ impl Expr {
     pub fn fraction(&self) -> Fraction {
         let (coefficient, factors) = self.factors();
         let whole = |value: &Integer| {
-            let value = value.magnitude().clone();
-            (!value.is_one()).then(|| Expr::number(Rational::from_integer(value.into())))
+            let value = value.abs();
+            (!value.is_one()).then(|| Expr::number(Rational::from_integer(value)))
         };
         let mut numerator: Vec<Expr> = whole(coefficient.numer()).into_iter().collect();
         let mut denominator: Vec<Expr> = whole(coefficient.denom()).into_iter().collect();

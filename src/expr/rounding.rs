@@ -75,8 +75,8 @@ fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<R
         (Node::Power(_, exponent), [base, power]) => {
             let number = exponent.as_number();
             let raised = |base: f64, power: f64| match number {
-                Some(number) if base < 0.0 && number.denom() % 2_u8 != 0_u8.into() => {
-                    let odd = number.numer() % 2_u8 != 0_u8.into();
+                Some(number) if base < 0.0 && number.denom().is_odd() => {
+                    let odd = number.numer().is_odd();
                     base.abs().powf(power) * if odd { -1.0 } else { 1.0 }
                 }
                 _ => base.powf(power),

@@ -22,7 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use num_traits::One;
+use num_traits::{One, ToPrimitive};
 
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::secular::SecularError;
@@ -222,7 +222,7 @@ impl<'a> Expansion<'a> {
         self.linear.accumulate(&first.product(&first));
         self.inverse = first.inverse().map_or_else(
             || FourierSeries::zero(POLYNOMIALS),
-            |(unit, integer)| constant_series(unit).divided_by(i64::try_from(&integer).unwrap_or(1)),
+            |(unit, integer)| constant_series(unit).divided_by(integer.to_i64().unwrap_or(1)),
         );
         let defined = |name: &Symbol| self.solution.definitions.iter().any(|entry| entry.symbol == *name);
         let name = first.single_term().filter(|(_, number)| number.is_one());

@@ -467,7 +467,7 @@ mod tests {
         let named = |terms: &[(i32, f64)]| {
             let term = |&(power, value): &(i32, f64)| {
                 let unit = Monomial::power_of("k".into(), power).product(&Monomial::power_of("A".into(), 2 * power));
-                Polynomial::term(unit, Rational::from_float(value).unwrap())
+                Polynomial::term(unit, crate::exact::from_f64(value).unwrap())
             };
             poles(&terms.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term)).to_string()
         };

@@ -361,7 +361,7 @@ impl Factor {
     fn new(weight: i64, common: &Integer, denominator: &Integer) -> Self {
         match common == denominator {
             true => Self::Small(weight),
-            false => Self::Large(common / denominator * weight),
+            false => Self::Large(common / denominator * Integer::from(weight)),
         }
     }
 

@@ -259,8 +259,7 @@ impl Recurrences {
                 false => result,
             };
         }
-        let is_odd = |number: &crate::exact::Integer| number % 2_u32 != 0_u32.into();
-        let first = match (is_odd(exponent.denom()), is_odd(exponent.numer())) {
+        let first = match (exponent.denom().is_odd(), exponent.numer().is_odd()) {
             (true, true) => odd,
             (true, false) => even,
             (false, _) => f64::powf,

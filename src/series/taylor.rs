@@ -340,14 +340,14 @@ impl Expansion<'_> {
         };
         let shift = (integer(lowest) - integer(base.pole)) * exponent;
         // (s^m)^(p/q) with q even is |s|^(m p/q): analytic only where m p/q is an even whole number.
-        let even_root = !exponent.denom().bit(0);
-        if !shift.is_integer() || (even_root && shift.numer().bit(0)) {
+        let even_root = !exponent.denom().is_odd();
+        if !shift.is_integer() || (even_root && shift.numer().is_odd()) {
             return Err(self.not_analytic(term));
         }
         if even_root && sign_of(&base.coefficients[lowest]) == Some(std::cmp::Ordering::Less) {
             return Err(self.not_analytic(term));
         }
-        let size = shift.abs().to_usize().unwrap_or(usize::MAX);
+        let size = shift.abs().to_integer().to_usize().unwrap_or(usize::MAX);
         let (zeros, pole) = if shift.is_negative() { (0, size) } else { (size, 0) };
         let mut result = vec![Expr::zero(); self.length.min(zeros)];
         if zeros >= self.length {

@@ -13,7 +13,7 @@
 
 use num_traits::{One, Zero};
 
-use crate::exact::rational::to_f64;
+use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
 
 /// Bits behind the point.
@@ -22,13 +22,13 @@ const BITS: usize = 768;
 /// The coefficients of `A^0, A^1, ...` of `omega^2/omega_0^2`, as many as there are of the force; `force[k]` belongs to `y^k`,
 /// `force[1]` is one. `None` where a number is not finite.
 pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
-    let fixed = |value: f64| Some(whole(&Rational::from_float(value)?));
+    let fixed = |value: f64| Some(whole(&from_f64(value)?));
     // 2 V/y^2: the coefficient of y^(k-1) is 2 f_k/(k+1).
     let potential: Vec<Integer> = force
         .iter()
         .enumerate()
         .skip(1)
-        .map(|(k, &value)| Some(fixed(value)? * 2 / (k + 1)))
+        .map(|(k, &value)| Some(fixed(value)? * Integer::from(2) / Integer::from(k + 1)))
         .collect::<Option<_>>()?;
     let length = potential.len();
     let inverse_root = power(&potential, -1);
@@ -48,7 +48,7 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
         of_energy = multiply(&of_energy, &square);
         of_inverse = multiply(&multiply(&of_inverse, &inverse_root), &inverse_root);
         // The mean of cos^j grows by (j+1)/(j+2).
-        mean = mean * (j + 1) / (j + 2);
+        mean = mean * Integer::from(j + 1) / Integer::from(j + 2);
     }
     let squared = power(&period, -4);
     let scale = Integer::one() << BITS;
@@ -77,9 +77,10 @@ fn multiply(left: &[Integer], right: &[Integer]) -> Vec<Integer> {
 fn power(u: &[Integer], halves: i64) -> Vec<Integer> {
     let mut p = vec![Integer::one() << BITS];
     for n in 1..u.len() {
-        let term = |k: usize| &u[k] * &p[n - k] * (halves * k as i64 + 2 * k as i64 - 2 * n as i64);
+        let weight = |k: usize| Integer::from(halves * k as i64 + 2 * k as i64 - 2 * n as i64);
+        let term = |k: usize| &u[k] * &p[n - k] * weight(k);
         let sum: Integer = (1..=n).filter(|&k| !u[k].is_zero()).map(term).sum();
-        p.push((sum >> BITS) / (2 * n));
+        p.push((sum >> BITS) / Integer::from(2 * n));
     }
     p
 }

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use super::VerificationError;
 use crate::conservative::force::Force;
-use crate::exact::rational::Rational;
+use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::period::{PeriodError, Swing, period_between, swing_with_cuts};
@@ -313,7 +313,7 @@ fn with_numbers(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Expr, ExprError> {
     let exact = |name: &Symbol| {
-        let value = Rational::from_float(*numbers.get(name)?)?;
+        let value = from_f64(*numbers.get(name)?)?;
         Some((*name, Expr::number(value)))
     };
     let values = oscillator.parameters.iter().filter_map(exact).collect();

@@ -1,0 +1,339 @@
+//! Integers of any length; those of up to two machine words need no memory of their own.
+
+use std::fmt;
+use std::iter::{Product, Sum};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, RemAssign, Shl, Shr, Sub, SubAssign};
+use std::str::FromStr;
+
+use dashu_int::IBig;
+use dashu_int::ops::{Abs as _, BitTest as _, DivRem as _, Gcd as _};
+use num_traits::{Num, One, Pow, Signed, ToPrimitive, Zero};
+
+/// An integer of any length.
+///
+/// A type of its own about that of `dashu-int`, whose `num_integer::Integer` rounds quotients between -1 and 0 up: fractions
+/// over it would not be in order.
+#[derive(Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Integer(IBig);
+
+impl Integer {
+    /// The number of binary digits of the absolute value, none for zero.
+    pub fn bits(&self) -> u64 {
+        self.0.bit_len() as u64
+    }
+
+    /// Whether the integer has no half.
+    pub fn is_odd(&self) -> bool {
+        self.0.bit(0)
+    }
+
+    /// The `exponent`-th power.
+    pub fn pow(&self, exponent: u32) -> Self {
+        Self(self.0.pow(exponent as usize))
+    }
+
+    /// The `degree`-th root, rounded towards zero.
+    ///
+    /// # Panics
+    /// Of an even root of a negative number, and if `degree` is zero.
+    pub fn nth_root(&self, degree: u32) -> Self {
+        Self(self.0.nth_root(degree as usize))
+    }
+}
+
+impl fmt::Display for Integer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// All digits: the inner type would leave out those in the middle.
+impl fmt::Debug for Integer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// What is no integer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no integer")]
+pub struct ParseIntegerError;
+
+/// Decimal digits after at most one sign.
+impl FromStr for Integer {
+    type Err = ParseIntegerError;
+
+    fn from_str(text: &str) -> Result<Self, ParseIntegerError> {
+        Self::from_str_radix(text, 10)
+    }
+}
+
+macro_rules! from_primitive {
+    ($($primitive:ty)*) => {$(
+        impl From<$primitive> for Integer {
+            fn from(value: $primitive) -> Self {
+                Self(value.into())
+            }
+        }
+    )*};
+}
+from_primitive!(i32 u32 i64 u64 i128 u128 usize);
+
+impl Neg for Integer {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Neg for &Integer {
+    type Output = Integer;
+
+    fn neg(self) -> Integer {
+        Integer(-&self.0)
+    }
+}
+
+macro_rules! arithmetic {
+    ($($operation:ident $method:ident $assignment:ident $in_place:ident)*) => {$(
+        impl $operation for Integer {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+
+        impl $operation<&Self> for Integer {
+            type Output = Self;
+
+            fn $method(self, other: &Self) -> Self {
+                Self(self.0.$method(&other.0))
+            }
+        }
+
+        impl $operation<Integer> for &Integer {
+            type Output = Integer;
+
+            fn $method(self, other: Integer) -> Integer {
+                Integer((&self.0).$method(other.0))
+            }
+        }
+
+        impl $operation for &Integer {
+            type Output = Integer;
+
+            fn $method(self, other: Self) -> Integer {
+                Integer((&self.0).$method(&other.0))
+            }
+        }
+
+        impl $assignment for Integer {
+            fn $in_place(&mut self, other: Self) {
+                self.0.$in_place(other.0);
+            }
+        }
+
+        impl $assignment<&Self> for Integer {
+            fn $in_place(&mut self, other: &Self) {
+                self.0.$in_place(&other.0);
+            }
+        }
+    )*};
+}
+arithmetic! {
+    Add add AddAssign add_assign
+    Sub sub SubAssign sub_assign
+    Mul mul MulAssign mul_assign
+    Div div DivAssign div_assign
+    Rem rem RemAssign rem_assign
+}
+
+impl Shl<usize> for Integer {
+    type Output = Self;
+
+    fn shl(self, places: usize) -> Self {
+        Self(self.0 << places)
+    }
+}
+
+impl Shl<usize> for &Integer {
+    type Output = Integer;
+
+    fn shl(self, places: usize) -> Integer {
+        Integer(&self.0 << places)
+    }
+}
+
+/// Rounded down.
+impl Shr<usize> for Integer {
+    type Output = Self;
+
+    fn shr(self, places: usize) -> Self {
+        Self(self.0 >> places)
+    }
+}
+
+impl Sum for Integer {
+    fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
+        terms.fold(Self::zero(), Add::add)
+    }
+}
+
+impl Product for Integer {
+    fn product<I: Iterator<Item = Self>>(factors: I) -> Self {
+        factors.fold(Self::one(), Mul::mul)
+    }
+}
+
+impl Zero for Integer {
+    fn zero() -> Self {
+        Self(IBig::ZERO)
+    }
+
+    fn is_zero(&self) -> bool {
+        self.0.is_zero()
+    }
+}
+
+impl One for Integer {
+    fn one() -> Self {
+        Self(IBig::ONE)
+    }
+
+    fn is_one(&self) -> bool {
+        self.0.is_one()
+    }
+}
+
+impl Num for Integer {
+    type FromStrRadixErr = ParseIntegerError;
+
+    fn from_str_radix(text: &str, radix: u32) -> Result<Self, ParseIntegerError> {
+        let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
+        // Underscores between the digits would do as well.
+        let only_digits = (2..=36).contains(&radix) && digits.chars().all(|digit| digit.is_digit(radix));
+        if digits.is_empty() || !only_digits {
+            return Err(ParseIntegerError);
+        }
+        IBig::from_str_radix(text, radix)
+            .map(Self)
+            .map_err(|_| ParseIntegerError)
+    }
+}
+
+impl Signed for Integer {
+    fn abs(&self) -> Self {
+        Self((&self.0).abs())
+    }
+
+    fn abs_sub(&self, other: &Self) -> Self {
+        if self > other { self - other } else { Self::zero() }
+    }
+
+    fn signum(&self) -> Self {
+        Self(self.0.signum())
+    }
+
+    fn is_positive(&self) -> bool {
+        self.0 > IBig::ZERO
+    }
+
+    fn is_negative(&self) -> bool {
+        self.0 < IBig::ZERO
+    }
+}
+
+impl Pow<u32> for Integer {
+    type Output = Self;
+
+    fn pow(self, exponent: u32) -> Self {
+        Self::pow(&self, exponent)
+    }
+}
+
+impl Pow<u32> for &Integer {
+    type Output = Integer;
+
+    fn pow(self, exponent: u32) -> Integer {
+        Integer::pow(self, exponent)
+    }
+}
+
+impl ToPrimitive for Integer {
+    fn to_i64(&self) -> Option<i64> {
+        i64::try_from(&self.0).ok()
+    }
+
+    fn to_u64(&self) -> Option<u64> {
+        u64::try_from(&self.0).ok()
+    }
+
+    fn to_i128(&self) -> Option<i128> {
+        i128::try_from(&self.0).ok()
+    }
+
+    fn to_u128(&self) -> Option<u128> {
+        u128::try_from(&self.0).ok()
+    }
+
+    /// The nearest double, infinite beyond their range.
+    fn to_f64(&self) -> Option<f64> {
+        Some(self.0.to_f64().value())
+    }
+}
+
+impl num_integer::Integer for Integer {
+    fn div_floor(&self, other: &Self) -> Self {
+        self.div_mod_floor(other).0
+    }
+
+    fn mod_floor(&self, other: &Self) -> Self {
+        self.div_mod_floor(other).1
+    }
+
+    fn div_mod_floor(&self, other: &Self) -> (Self, Self) {
+        let (quotient, remainder) = (&self.0).div_rem(&other.0);
+        if remainder.is_zero() || remainder.sign() == other.0.sign() {
+            (Self(quotient), Self(remainder))
+        } else {
+            (Self(quotient - IBig::ONE), Self(remainder + &other.0))
+        }
+    }
+
+    fn gcd(&self, other: &Self) -> Self {
+        // The inner type refuses two zeros.
+        if self.is_zero() {
+            return other.abs();
+        }
+        Self((&self.0).gcd(&other.0).into())
+    }
+
+    fn lcm(&self, other: &Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            return Self::zero();
+        }
+        (self / self.gcd(other) * other).abs()
+    }
+
+    fn is_multiple_of(&self, other: &Self) -> bool {
+        if other.is_zero() {
+            return self.is_zero();
+        }
+        (self % other).is_zero()
+    }
+
+    fn is_even(&self) -> bool {
+        !self.0.bit(0)
+    }
+
+    fn is_odd(&self) -> bool {
+        self.0.bit(0)
+    }
+
+    fn div_rem(&self, other: &Self) -> (Self, Self) {
+        let (quotient, remainder) = (&self.0).div_rem(&other.0);
+        (Self(quotient), Self(remainder))
+    }
+}

@@ -32,19 +32,11 @@
 use std::f64::consts::PI;
 
 use super::super::hertz::positive;
+use super::time::{Panel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
 use crate::numeric::ode::root::find_root;
-
-/// Points of a Gauss rule, and coefficients of a series on a panel.
-const POINTS: usize = 20;
-
-/// The last coefficients of a series that is resolved, relative to its largest.
-const RESOLVED: f64 = 1e-13;
-
-/// A motion that needs more pieces is not that of a smooth force.
-const MOST_PANELS: usize = 400;
 
 /// A harmonic beyond it is worth a parabola of its own.
 const MOST_HARMONICS: usize = 64;
@@ -93,7 +85,7 @@ impl ExactContact {
                 false => Err(ContactError::NeverTurns { searched: q * q }),
             }
         };
-        let first = expand(slowness, |q| 2.0 * q, 0.5 * deepest)?;
+        let first = expand(slowness, |q| 2.0 * q, 0.0, 0.5 * deepest)?;
         let rate = |w: f64| -> Result<f64, ContactError> {
             let per_root = |part: f64| {
                 let q = deepest * (1.0 - w * w * part);
@@ -105,7 +97,7 @@ impl ExactContact {
                 false => Err(ContactError::NeverTurns { searched: depth }),
             }
         };
-        let second = expand(rate, |w| deepest * (1.0 - w * w), 0.5_f64.sqrt())?;
+        let second = expand(rate, |w| deepest * (1.0 - w * w), 0.0, 0.5_f64.sqrt())?;
         let duration = in_range("duration", 2.0 * (length(&first) + length(&second)))?;
         let samples = (0..=64).map(|part| force(depth * f64::from(part) / 64.0));
         Ok(Self {
@@ -229,6 +221,16 @@ pub struct SineSeries {
 }
 
 impl SineSeries {
+    /// A motion that is these sines and nothing else.
+    pub(super) fn of(duration: f64, harmonics: Vec<f64>) -> Self {
+        Self {
+            duration,
+            parabola: 0.0,
+            harmonics,
+            deviation: 0.0,
+        }
+    }
+
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     pub fn at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
@@ -316,131 +318,6 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
         Ok(_) => Ok(deepest),
         Err(_) => Err(never(deepest)),
     }
-}
-
-/// A smooth function on an interval as a Legendre series, and the time as the integral of it with a weight.
-#[derive(Debug, Clone, PartialEq)]
-struct Panel {
-    from: f64,
-    to: f64,
-    /// Time at both ends.
-    start: f64,
-    end: f64,
-    function: [f64; POINTS],
-    /// The time since the start.
-    time: [f64; POINTS + 1],
-}
-
-impl Panel {
-    fn coordinate(&self, at: f64) -> f64 {
-        ((at - self.from) - (self.to - at)) / (self.to - self.from)
-    }
-
-    fn time_at(&self, at: f64) -> f64 {
-        self.start + legendre_sum(&self.time, self.coordinate(at))
-    }
-
-    fn function_at(&self, at: f64) -> f64 {
-        legendre_sum(&self.function, self.coordinate(at))
-    }
-}
-
-/// The function from 0 to `end` on as many panels as it needs, and the time, the integral of function times weight.
-fn expand(
-    function: impl Fn(f64) -> Result<f64, ContactError>,
-    weight: impl Fn(f64) -> f64,
-    end: f64,
-) -> Result<Vec<Panel>, ContactError> {
-    let mut panels: Vec<Panel> = Vec::new();
-    let mut waiting = vec![(0.0, end)];
-    while let Some((from, to)) = waiting.pop() {
-        let (mut values, mut rates) = ([0.0; POINTS], [0.0; POINTS + 1]);
-        for (point, (at, _)) in nodes_and_weights(from, to).enumerate() {
-            values[point] = function(at)?;
-            rates[point] = values[point] * weight(at);
-        }
-        let half = 0.5 * (to - from);
-        let (function, rate) = (coefficients(&values), coefficients(&rates[..POINTS]));
-        let resolved = |series: &[f64; POINTS]| {
-            let largest = series.iter().fold(0.0_f64, |largest, term| largest.max(term.abs()));
-            series[POINTS - 2].abs() + series[POINTS - 1].abs() <= RESOLVED * largest
-        };
-        if !(resolved(&function) && resolved(&rate)) && to - from > 1e-15 * to {
-            if panels.len() + waiting.len() > MOST_PANELS {
-                return Err(ContactError::NotSmooth);
-            }
-            let middle = 0.5 * (from + to);
-            waiting.extend([(middle, to), (from, middle)]);
-            continue;
-        }
-        // int P_0 = P_0 + P_1 from the left end, int P_k = (P_(k+1) - P_(k-1))/(2 k + 1).
-        let mut time = [0.0; POINTS + 1];
-        for (k, coefficient) in rate.iter().enumerate() {
-            let part = half * coefficient / (2 * k + 1) as f64;
-            time[k + 1] += part;
-            time[k.saturating_sub(1)] += if k == 0 { part } else { -part };
-        }
-        let start = panels.last().map_or(0.0, |panel| panel.end);
-        let end = start + legendre_sum(&time, 1.0);
-        panels.push(Panel {
-            from,
-            to,
-            start,
-            end,
-            function,
-            time,
-        });
-    }
-    Ok(panels)
-}
-
-/// The Legendre coefficients of a function by its values at the Gauss points.
-fn coefficients(values: &[f64]) -> [f64; POINTS] {
-    let mut coefficients = [0.0; POINTS];
-    for ((x, weight), value) in nodes_and_weights(-1.0, 1.0).zip(values) {
-        let (mut before, mut polynomial) = (0.0, 1.0);
-        for (k, coefficient) in coefficients.iter_mut().enumerate() {
-            let degree = k as f64;
-            *coefficient += (degree + 0.5) * weight * value * polynomial;
-            let next = ((2.0 * degree + 1.0) * x * polynomial - degree * before) / (degree + 1.0);
-            (before, polynomial) = (polynomial, next);
-        }
-    }
-    coefficients
-}
-
-fn legendre_sum(coefficients: &[f64], x: f64) -> f64 {
-    let (mut before, mut polynomial, mut sum) = (0.0, 1.0, 0.0);
-    for (k, coefficient) in coefficients.iter().enumerate() {
-        let degree = k as f64;
-        sum += coefficient * polynomial;
-        let next = ((2.0 * degree + 1.0) * x * polynomial - degree * before) / (degree + 1.0);
-        (before, polynomial) = (polynomial, next);
-    }
-    sum
-}
-
-/// The time at the end of the last panel.
-fn length(panels: &[Panel]) -> f64 {
-    panels.last().map_or(0.0, |panel| panel.end)
-}
-
-/// The place at which the time has this value, and the function there.
-fn invert(panels: &[Panel], time: f64) -> (f64, f64) {
-    let number = panels
-        .partition_point(|panel| panel.end < time)
-        .min(panels.len().saturating_sub(1));
-    let Some(panel) = panels.get(number) else {
-        return (0.0, f64::INFINITY);
-    };
-    let late = |at: f64| panel.time_at(at) - time;
-    let nearer = if time - panel.start < panel.end - time {
-        panel.from
-    } else {
-        panel.to
-    };
-    let at = find_root(late, panel.from, panel.to).unwrap_or(nearer);
-    (at, panel.function_at(at))
 }
 
 #[cfg(test)]

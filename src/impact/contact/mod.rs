@@ -10,20 +10,29 @@
 //! only those above it:
 //!
 //! - [`power_law`]: a = k = 0, by Gamma and incomplete beta functions; a and k as corrections in powers of them.
+//! - `time`: the time along a motion whose speed is known at every place, and back.
 //! - [`exact`]: any force as a closure, by energy and quadrature; the motion as a short series of sines.
+//! - [`hunt_crossley`]: a contact that loses energy, gamma d^n (1 + lambda d'): restitution, loop of force and depth, duration.
+//! - [`law`]: all laws by name, the fitted lines, perturbation and balances among them, beside the exact one: [`comparison`].
 //!
 //! Depths are in the unit of x, rad for the pendulum, times in units of 1/omega, forces per unit of mass: accelerations, rad omega^2.
 
 use thiserror::Error;
 
 use super::hertz::NotPositive;
+use super::linearisation::LinearisationError;
 use crate::numeric::ode::quadrature::QuadratureError;
 use crate::numeric::ode::root::RootError;
 
 pub mod exact;
+pub mod hunt_crossley;
+pub mod law;
 pub mod power_law;
+mod time;
 
 pub use exact::{ExactContact, SineSeries};
+pub use hunt_crossley::HuntCrossley;
+pub use law::{ContactErrors, ContactLaw, ContactMotion, ContactRow, Touch, UnknownContactLaw, comparison};
 pub use power_law::{CorrectedPowerLaw, PowerLaw};
 
 /// Why there is no contact to speak of.
@@ -48,6 +57,17 @@ pub enum ContactError {
     Range {
         /// What it is.
         quantity: &'static str,
+    },
+    /// A restitution outside its range.
+    #[error("the coefficient of restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss")]
+    Restitution(f64),
+    /// A damping below zero.
+    #[error("the {quantity} must be a number and not negative, not {value}: 0 is a contact without loss")]
+    Negative {
+        /// What it is.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
     },
     /// A correction of more terms than are worth their rounding, or of none.
     #[error(
@@ -82,6 +102,19 @@ pub enum ContactError {
     /// The force has corners, jumps or waves on the way.
     #[error("the force in contact is not smooth enough for its motion to be computed: integrate it step by step")]
     NotSmooth,
+    /// A law of a power of the depth, asked about another force.
+    #[error(
+        "the force of this contact is not given as a power of the depth: give its exponent, or take the exact contact"
+    )]
+    NoPowerLaw,
+    /// The perturbation or the balance has no oscillation at this speed.
+    #[error(
+        "no oscillation of this form begins with that speed: what acts beside the contact is too strong; take the exact contact"
+    )]
+    NotOscillating,
+    /// No line for the force.
+    #[error(transparent)]
+    Linearisation(#[from] LinearisationError),
     /// An integral over the force failed.
     #[error("the force in contact cannot be integrated: {0}")]
     Quadrature(#[from] QuadratureError),

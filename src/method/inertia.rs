@@ -36,7 +36,7 @@ use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
-use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Rational};
+use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::numeric::ode::energy;
 use crate::numeric::ode::quadrature::integrate_smooth;
@@ -447,8 +447,6 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
     const METHOD: Method = Method::HarmonicBalance;
     /// The most harmonics of an equation with inertia terms.
     const HIGHEST: u32 = 40;
-    /// The longest system that is written out, in harmonics.
-    const WRITTEN_OUT: usize = 6;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > HIGHEST {
         return Err(Unsuited::HighestOrder { highest: HIGHEST }.to(METHOD));
@@ -471,70 +469,15 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
         typed.because("balanced as it stands"),
         Line::equation(x, solution.displacement.clone()),
     ];
-    let terms = typed_terms(oscillator)?.filter(|_| harmonics.len() <= WRITTEN_OUT);
-    let balances: Option<Vec<Polynomial>> = terms.map(|terms| {
-        let omega = FourierSeries::constant(POLYNOMIALS, Polynomial::symbol("omega".into()));
-        let motion = &solution.displacement;
-        let velocity = motion.derivative().product(&omega);
-        let acceleration = velocity.derivative().product(&omega);
-        let factors = [motion, &velocity, &acceleration];
-        let mut along = FourierSeries::zero(POLYNOMIALS);
-        for (powers, coefficient) in &terms {
-            let mut product = FourierSeries::constant(POLYNOMIALS, coefficient.clone());
-            for (factor, &power) in factors.iter().zip(powers) {
-                if power > 0 {
-                    product = product.product(&factor.power(power));
-                }
-            }
-            along = along.sum(&product);
-        }
-        let balance = |&k: &usize| along.cosine(k).constant_term();
-        harmonics.iter().map(balance).collect()
-    });
-    let squared = Expr::symbol("omega").integer_power(2)?;
-    match (balances, names.as_slice()) {
-        (Some(balances), [_]) => {
-            let balance = Expr::from(&balances[0]);
-            let still = balance.substitute("omega".into(), &Expr::zero())?;
-            let inertia = Expr::divide(&(&still - &balance).expand()?, &squared)?.expand()?;
-            let amplitude = Expr::symbol("A");
-            let law = Expr::divide(
-                &Expr::divide(&still, &amplitude)?.expand()?,
-                &Expr::divide(&inertia, &amplitude)?.expand()?,
-            )?;
-            solution
-                .derivation
-                .push(Line::equation(balance, Expr::zero()).because("the cos(theta) part"));
-            solution.derivation.push(Line::equation(squared, &law));
-            set_law(&mut solution, &law)?;
-        }
-        (Some(balances), names) => {
-            let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
-            let mut equations: Vec<Expr> = balances.iter().map(Expr::from).collect();
-            equations.push((sum - Expr::symbol("A")).expand()?);
-            let unknowns = std::iter::once(Symbol::new("omega"))
-                .chain(names.iter().copied())
-                .collect();
-            solution.law = Law::System(System { unknowns, equations });
-        }
+    match (
+        balances(oscillator, &solution.displacement, &harmonics)?,
+        names.as_slice(),
+    ) {
+        (Some(balances), [_]) => one_balance(&mut solution, &balances[0])?,
+        (Some(balances), names) => solution.law = Law::System(system(&balances, names)?),
         (None, names) => {
-            let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
-            let k = named("k", oscillator);
-            let projection = Formula::Integral {
-                factor: Expr::one(),
-                from: Expr::zero(),
-                to: Expr::pi(),
-                integrand: Box::new((&oscillator.residual * &(Expr::from(k) * Expr::symbol("theta")).cos()?).into()),
-                variable: "theta".into(),
-            };
-            let line = Line::equal([projection, Expr::zero().into()]);
-            solution
-                .derivation
-                .push(line.because(format!("for {k} = {}", kept.join(", "))));
-            let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
-            if names.len() > 1 {
-                solution.derivation.push(Line::equation("A", sum));
-            }
+            let projections = projections(oscillator, &harmonics, names)?;
+            solution.derivation.extend(projections);
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
@@ -543,6 +486,84 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
         by_numbers: false,
     });
     Ok(solution)
+}
+
+/// The cosine parts of the equation as typed along a motion with unknown coefficients, one for each harmonic; `None` where it is
+/// no polynomial, or too long to be written out.
+fn balances(
+    oscillator: &Oscillator,
+    motion: &FourierSeries<Polynomials>,
+    harmonics: &[usize],
+) -> Result<Option<Vec<Polynomial>>, Refusal> {
+    /// The longest system that is written out, in harmonics.
+    const WRITTEN_OUT: usize = 6;
+    let Some(terms) = typed_terms(oscillator)?.filter(|_| harmonics.len() <= WRITTEN_OUT) else {
+        return Ok(None);
+    };
+    let omega = FourierSeries::constant(POLYNOMIALS, Polynomial::symbol("omega".into()));
+    let velocity = motion.derivative().product(&omega);
+    let acceleration = velocity.derivative().product(&omega);
+    let factors = [motion, &velocity, &acceleration];
+    let mut along = FourierSeries::zero(POLYNOMIALS);
+    for (powers, coefficient) in &terms {
+        let mut product = FourierSeries::constant(POLYNOMIALS, coefficient.clone());
+        for (factor, &power) in factors.iter().zip(powers) {
+            if power > 0 {
+                product = product.product(&factor.power(power));
+            }
+        }
+        along = along.sum(&product);
+    }
+    let balance = |&k: &usize| along.cosine(k).constant_term();
+    Ok(Some(harmonics.iter().map(balance).collect()))
+}
+
+/// The law of one harmonic: its balance solved for omega^2.
+fn one_balance(solution: &mut Solution, balance: &Polynomial) -> Result<(), Refusal> {
+    let squared = Expr::symbol("omega").integer_power(2)?;
+    let balance = Expr::from(balance);
+    let still = balance.substitute("omega".into(), &Expr::zero())?;
+    let inertia = Expr::divide(&(&still - &balance).expand()?, &squared)?.expand()?;
+    let amplitude = Expr::symbol("A");
+    let law = Expr::divide(
+        &Expr::divide(&still, &amplitude)?.expand()?,
+        &Expr::divide(&inertia, &amplitude)?.expand()?,
+    )?;
+    let condition = Line::equation(balance, Expr::zero()).because("the cos(theta) part");
+    solution.derivation.extend([condition, Line::equation(squared, &law)]);
+    set_law(solution, &law)
+}
+
+/// The balances of several harmonics, whose coefficients add up to the amplitude.
+fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<System, Refusal> {
+    let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
+    let mut equations: Vec<Expr> = balances.iter().map(Expr::from).collect();
+    equations.push((sum - Expr::symbol("A")).expand()?);
+    let omega = std::iter::once(Symbol::new("omega"));
+    Ok(System {
+        unknowns: omega.chain(names.iter().copied()).collect(),
+        equations,
+    })
+}
+
+/// The balances as integrals, where they are not written out.
+fn projections(oscillator: &Oscillator, harmonics: &[usize], names: &[Symbol]) -> Result<Vec<Line>, Refusal> {
+    let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
+    let k = named("k", oscillator);
+    let projection = Formula::Integral {
+        factor: Expr::one(),
+        from: Expr::zero(),
+        to: Expr::pi(),
+        integrand: Box::new((&oscillator.residual * &(Expr::from(k) * Expr::symbol("theta")).cos()?).into()),
+        variable: "theta".into(),
+    };
+    let line = Line::equal([projection, Expr::zero().into()]);
+    let mut lines = vec![line.because(format!("for {k} = {}", kept.join(", ")))];
+    if names.len() > 1 {
+        let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
+        lines.push(Line::equation("A", sum));
+    }
+    Ok(lines)
 }
 
 /// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out; `None` where the law is

@@ -25,9 +25,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::collections::BTreeSet;
+
 use num_traits::{One, Zero};
 
-use super::expansion::expand_exactly;
+use super::expansion::{ExactSeries, expand_exactly};
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
 use super::secular::{Amplitude, Detuning, Scheme, SecularError, bounded};
@@ -52,165 +54,59 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let term = first_term(&parts.forcing);
         return Err(Unsuited::Forcing { term }.by(Refuser::Expansion));
     }
-    let Perturbation {
-        force,
-        marker,
-        small,
-        small_with,
-        order,
-        bookkeeping,
-    } = match perturbation(oscillator, &parts, options) {
+    let perturbation = match perturbation(oscillator, &parts, options) {
         Err(Refusal::Oscillator(refusal @ OscillatorError::NotPolynomial(_))) => {
-            return match in_a_parameter(oscillator, options) {
-                Some((small, order)) => first_order::solve(oscillator, &parts, options, small, order)?,
-                None => None,
-            }
-            .ok_or(refusal.into());
+            return in_a_parameter(oscillator, &parts, options)?.ok_or(refusal.into());
         }
         other => other?,
     };
+    let force = &perturbation.force;
     let mut taken = oscillator.names();
-    let (linear_frequency, definition) = force.linear_frequency(&taken);
-    let root = definition
-        .as_ref()
-        .and_then(|root| Some((root.symbol, force.linear.as_number()?)));
-    let in_numbers = |polynomial: Polynomial| match &root {
-        Some((symbol, square)) => with_square(&polynomial, *symbol, square),
-        None => polynomial,
-    };
-    // Constants of the linear force alone are written out in its definition.
-    let used = |name: Symbol| {
-        let coefficients = force.terms.iter().map(|term| &term.coefficient);
-        let mut coefficients = coefficients.chain([&linear_frequency]);
-        coefficients.any(|coefficient| coefficient.symbols().contains(&name))
-    };
-    let constants = force.definitions.iter().filter(|entry| used(entry.symbol)).cloned();
-    let mut definitions: Vec<Definition> = definition.clone().into_iter().chain(constants).collect();
+    let (linear_frequency, root) = force.linear_frequency(&taken);
+    let constants = constants_beside(force, &linear_frequency);
+    let mut definitions: Vec<Definition> = root.clone().into_iter().chain(constants).collect();
     taken.extend(definitions.iter().map(|definition| definition.symbol));
 
-    let units = Units::new(&force, linear_frequency.clone());
-    let equation = AmplitudeEquation::new(&force, &units);
-    let cycles = match &equation {
-        None => None,
-        Some(equation) => {
-            let cycles = equation
-                .cycles(marker.unwrap_or(small), &linear_frequency, &taken)
-                .map_err(|reason| {
-                    let equation = equation.in_square(fresh("z", &taken));
-                    Refusal::LimitCycle { equation, reason }
-                })?;
-            if marker.is_none() {
-                return Err(Refusal::AmplitudeNotFree {
-                    term: first_term(&parts.damping),
-                });
-            }
-            let number = chosen(&cycles, options.cycle, || match equation.is_single_term() {
-                true => damped(&parts),
-                false => Refusal::NoLimitCycle {
-                    equation: equation.in_square(fresh("z", &taken)),
-                },
-            })?;
-            Some((cycles, number))
-        }
-    };
-    if let (None, Some(asked)) = (&cycles, options.cycle) {
-        return Err(Refusal::NoSuchCycle { asked, count: 0 });
-    }
-    let cycle = cycles.as_ref().map(|(cycles, number)| &cycles[number - 1]);
-    if let (
-        Some(Cycle {
-            attracts_where: None, ..
-        }),
-        Some(equation),
-    ) = (cycle, &equation)
-    {
-        return Err(Refusal::LimitCycle {
-            equation: equation.in_square(fresh("z", &taken)),
-            reason: "a multiple root: no expansion in powers begins there",
-        });
-    }
+    let units = Units::new(force, linear_frequency.clone());
+    let excited = self_excitation(&perturbation, &units, &parts, options.cycle, &taken)?;
+    let cycle = excited.as_ref().map(SelfExcitation::cycle);
     let convention = options.amplitude.unwrap_or(match cycle {
         Some(_) => AmplitudeConvention::FirstHarmonic,
         None => AmplitudeConvention::Initial,
     });
-    let symbol = convention.symbol();
-    let (unit, amplitude) = match cycle {
-        None => (Polynomial::symbol(symbol), Amplitude::Free),
-        Some(cycle) => (cycle.unit.clone(), Amplitude::Determined),
-    };
     let of_cycle = cycle.and_then(|cycle| cycle.definition.clone());
     definitions.extend(of_cycle.clone());
-    let positive: Vec<Definition> = definition.into_iter().chain(of_cycle).collect();
-    definitions.extend(bookkeeping.clone());
-    let scheme = Scheme {
-        normalisation: convention,
-        amplitude,
-        detuning: Detuning::Acceleration,
-    };
-    let reduced = |polynomial: Polynomial| match cycle {
-        Some(cycle) => cycle.reduced(&polynomial),
-        None => polynomial,
-    };
-    let scaled: Vec<Term> = scaled_terms(&force.terms, &unit, &units)
-        .into_iter()
-        .map(|term| Term {
-            coefficient: reduced(term.coefficient),
-            ..term
-        })
-        .collect();
-    let delta = marker.unwrap_or(symbol);
-    let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
-    let mut series =
-        expand_exactly(&scaled, order, &scheme, Some(delta), inverse_slope, &taken).map_err(|error| match error {
-            SecularError::Growth { .. } | SecularError::Degenerate { .. } if !parts.damping.is_zero() => {
-                damping_or_excitation(&parts)
-            }
-            error => error.into(),
-        })?;
-    if cycle.is_some() {
-        // What marked the order of a term is one where it is no parameter of the answer.
-        let unmarked = |polynomial: &Polynomial| match (
-            delta == small,
-            polynomial.substitute(delta, &Polynomial::constant(One::one())),
-        ) {
-            (false, Some(unmarked)) => reduced(unmarked),
-            _ => reduced(polynomial.clone()),
-        };
-        series.change_coefficients(&unmarked);
-    }
-    let small = marker.map_or(symbol, |_| small);
+    definitions.extend(perturbation.bookkeeping.clone());
+    let series = expanded(&perturbation, excited.as_ref(), &units, &parts, convention, &taken)?;
 
-    let mut steps = series.steps;
-    if let (Some(equation), Some(cycle), Some(start)) = (&equation, cycle, steps.first_mut()) {
-        let marked = (delta == small).then_some(delta);
-        start.amplitude = Some(equation.condition(cycle, fresh("a0", &taken), marked));
-    }
-    let times = |series: Polynomial, factor: &Polynomial| series.product(factor);
-    let squared_unit = times(linear_frequency.clone(), &linear_frequency);
+    let in_numbers = |polynomial: Polynomial| match (&root, force.linear.as_number()) {
+        (Some(root), Some(square)) => with_square(&polynomial, root.symbol, &square),
+        _ => polynomial,
+    };
+    let unit = unit_of(cycle, convention);
     let displacement = series.displacement.map(POLYNOMIALS, |coefficient, _| {
-        in_numbers(reduced(coefficient.product(&unit)))
+        in_numbers(reduced(cycle, coefficient.product(&unit)))
     });
-    let limit_cycle = cycles.as_ref().map(|(cycles, number)| LimitCycle {
-        amplitude: amplitude_of(&displacement, convention),
-        number: *number,
-        cycles: cycles.iter().map(|cycle| cycle.to_leading(delta, small)).collect(),
-        small_with: small_with.clone(),
-    });
-    let mut validity = vec![Note::Cut(Cut::Truncated {
-        small: std::iter::once(small).chain(small_with.iter().copied()).collect(),
-        order,
-        marks: bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
-    })];
-    if let (Some(cycle), Some(limit_cycle)) = (cycle, &limit_cycle) {
-        let own = &limit_cycle.cycles[limit_cycle.number - 1];
+    // In powers of the amplitude, the small parameter is the symbol that stands for it.
+    let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
+    let amplitude = amplitude_of(&displacement, convention);
+    let limit_cycle = excited
+        .as_ref()
+        .map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
+    let mut validity = vec![perturbation.cut(small)];
+    if let (Some(excited), Some(limit_cycle)) = (&excited, &limit_cycle) {
+        let own = &limit_cycle.cycles[excited.number - 1];
         validity.push(Note::Stability(own.clone()));
-        validity.extend(cycle.remark.clone());
+        validity.extend(excited.cycle().remark.clone());
     }
-    validity.extend(positive.into_iter().map(Note::Positive));
+    validity.extend(root.iter().cloned().chain(of_cycle).map(Note::Positive));
+    let squared = series
+        .frequency_squared
+        .product(&linear_frequency.product(&linear_frequency));
     Ok(Solution {
         equation: oscillator.equation(),
         method: Method::LindstedtPoincare,
-        order,
+        order: perturbation.order,
         degrees: None,
         small_parameter: small,
         amplitude: convention,
@@ -218,19 +114,170 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         definitions,
         equilibrium: Expr::zero(),
         law: Law::Series {
-            squared: in_numbers(times(series.frequency_squared, &squared_unit)),
-            frequency: Some(in_numbers(times(series.frequency, &linear_frequency))),
+            squared: in_numbers(squared),
+            frequency: Some(in_numbers(series.frequency.product(&linear_frequency))),
         },
         displacement,
         limit_cycle,
         numerical: false,
         validity,
-        steps,
+        steps: series.steps,
         derivation: vec![Line::equation(
             Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
             &force.linear,
         )],
     })
+}
+
+/// The definitions of the force that a formula about it needs: constants of the linear force alone are written out in that of
+/// the linear frequency.
+fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
+    let coefficients = force.terms.iter().map(|term| &term.coefficient);
+    let used: BTreeSet<Symbol> = coefficients
+        .chain([linear_frequency])
+        .flat_map(Polynomial::symbols)
+        .collect();
+    let constants = force.definitions.iter();
+    constants
+        .filter(|entry| used.contains(&entry.symbol))
+        .cloned()
+        .collect()
+}
+
+/// The limit cycles of a self-excited equation.
+struct SelfExcitation {
+    equation: AmplitudeEquation,
+    cycles: Vec<Cycle>,
+    /// Which of them is asked for, counted from one.
+    number: usize,
+}
+
+impl SelfExcitation {
+    fn cycle(&self) -> &Cycle {
+        &self.cycles[self.number - 1]
+    }
+
+    /// The answer's part of it; `small` is the small parameter of the answer.
+    fn limit_cycle(&self, perturbation: &Perturbation, small: Symbol, amplitude: Polynomial) -> LimitCycle {
+        let marker = perturbation.marker.unwrap_or(small);
+        LimitCycle {
+            amplitude,
+            number: self.number,
+            cycles: self
+                .cycles
+                .iter()
+                .map(|cycle| cycle.to_leading(marker, small))
+                .collect(),
+            small_with: perturbation.small_with.clone(),
+        }
+    }
+}
+
+/// The limit cycles and the one that is asked for, where the equation determines its amplitude.
+fn self_excitation(
+    perturbation: &Perturbation,
+    units: &Units,
+    parts: &Parts,
+    asked: Option<u32>,
+    taken: &[Symbol],
+) -> Result<Option<SelfExcitation>, Refusal> {
+    let Some(equation) = AmplitudeEquation::new(&perturbation.force, units) else {
+        return match asked {
+            Some(asked) => Err(Refusal::NoSuchCycle { asked, count: 0 }),
+            None => Ok(None),
+        };
+    };
+    let without = |reason| Refusal::LimitCycle {
+        equation: equation.in_square(fresh("z", taken)),
+        reason,
+    };
+    let marker = perturbation.marker.unwrap_or(perturbation.small);
+    let cycles = equation.cycles(marker, &units.frequency, taken).map_err(without)?;
+    if perturbation.marker.is_none() {
+        return Err(Refusal::AmplitudeNotFree {
+            term: first_term(&parts.damping),
+        });
+    }
+    let number = chosen(&cycles, asked, || match equation.is_single_term() {
+        true => damped(parts),
+        false => Refusal::NoLimitCycle {
+            equation: equation.in_square(fresh("z", taken)),
+        },
+    })?;
+    if cycles[number - 1].attracts_where.is_none() {
+        return Err(without("a multiple root: no expansion in powers begins there"));
+    }
+    Ok(Some(SelfExcitation {
+        equation,
+        cycles,
+        number,
+    }))
+}
+
+/// What the motion is measured in: the amplitude of the cycle to leading order, or the symbol of a free one.
+fn unit_of(cycle: Option<&Cycle>, convention: AmplitudeConvention) -> Polynomial {
+    cycle.map_or_else(|| Polynomial::symbol(convention.symbol()), |cycle| cycle.unit.clone())
+}
+
+/// A polynomial in lowest powers of what the amplitude of the cycle is a root of.
+fn reduced(cycle: Option<&Cycle>, polynomial: Polynomial) -> Polynomial {
+    match cycle {
+        Some(cycle) => cycle.reduced(&polynomial),
+        None => polynomial,
+    }
+}
+
+/// Frequency and motion in units of the linear frequency and of the [amplitude](unit_of).
+fn expanded(
+    perturbation: &Perturbation,
+    excited: Option<&SelfExcitation>,
+    units: &Units,
+    parts: &Parts,
+    convention: AmplitudeConvention,
+    taken: &[Symbol],
+) -> Result<ExactSeries, Refusal> {
+    let cycle = excited.map(SelfExcitation::cycle);
+    let scheme = Scheme {
+        normalisation: convention,
+        amplitude: match cycle {
+            Some(_) => Amplitude::Determined,
+            None => Amplitude::Free,
+        },
+        detuning: Detuning::Acceleration,
+    };
+    let terms = scaled_terms(&perturbation.force.terms, &unit_of(cycle, convention), units);
+    let terms: Vec<Term> = terms
+        .into_iter()
+        .map(|term| Term {
+            coefficient: reduced(cycle, term.coefficient),
+            ..term
+        })
+        .collect();
+    let delta = perturbation.delta(convention);
+    let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
+    let series = expand_exactly(&terms, perturbation.order, &scheme, Some(delta), inverse_slope, taken);
+    let mut series = series.map_err(|error| match error {
+        SecularError::Growth { .. } | SecularError::Degenerate { .. } if !parts.damping.is_zero() => {
+            damping_or_excitation(parts)
+        }
+        error => error.into(),
+    })?;
+    if let Some(excited) = excited {
+        let is_parameter = delta == perturbation.small;
+        // What marked the order of a term is one where it is no parameter of the answer.
+        let one = Polynomial::constant(One::one());
+        let unmarked = |polynomial: &Polynomial| match (is_parameter, polynomial.substitute(delta, &one)) {
+            (false, Some(unmarked)) => reduced(cycle, unmarked),
+            _ => reduced(cycle, polynomial.clone()),
+        };
+        series.change_coefficients(&unmarked);
+        if let Some(start) = series.steps.first_mut() {
+            let marked = is_parameter.then_some(delta);
+            let condition = excited.equation.condition(excited.cycle(), fresh("a0", taken), marked);
+            start.amplitude = Some(condition);
+        }
+    }
+    Ok(series)
 }
 
 /// A polynomial in a root of a number, its even powers written as the number: `sqrt(2)^2` as 2, `1/sqrt(2)^3` as half of
@@ -259,12 +306,31 @@ struct Perturbation {
     bookkeeping: Option<Definition>,
 }
 
-/// The parameter in which to expand and the order, where it is not the amplitude.
-fn in_a_parameter(oscillator: &Oscillator, options: &Options) -> Option<(Symbol, u32)> {
+impl Perturbation {
+    /// What marks the orders: the symbol of the amplitude where no parameter does.
+    fn delta(&self, convention: AmplitudeConvention) -> Symbol {
+        self.marker.unwrap_or(convention.symbol())
+    }
+
+    /// How the expansion is cut, in the small parameter of the answer.
+    fn cut(&self, small: Symbol) -> Note {
+        let together = self.small_with.iter().copied();
+        Note::Cut(Cut::Truncated {
+            small: std::iter::once(small).chain(together).collect(),
+            order: self.order,
+            marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
+        })
+    }
+}
+
+/// The first order in a parameter, of a force that is no polynomial; `None` where the amplitude is the small parameter.
+fn in_a_parameter(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Option<Solution>, Refusal> {
     match oscillator.small_parameter(options.small.as_deref()) {
-        // A force that is no polynomial has no higher order to default to.
-        Ok(SmallParameter::Parameter(small)) => Some((small, options.order.unwrap_or(1))),
-        _ => None,
+        // Such a force has no higher order to default to.
+        Ok(SmallParameter::Parameter(small)) => {
+            first_order::solve(oscillator, parts, options, small, options.order.unwrap_or(1))
+        }
+        _ => Ok(None),
     }
 }
 

@@ -51,107 +51,131 @@ const LARGEST_WITH_SYMBOLS: usize = 9;
 /// As for the method of Lindstedt and Poincare; degrees without an approximant.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let (numerator_degree, denominator_degree) = options.pade.unwrap_or((2, 1));
-    let refused = |reason| {
-        Err(Refusal::Pade {
-            numerator: numerator_degree,
-            denominator: denominator_degree,
-            reason,
-        })
+    let refused = |reason| Refusal::Pade {
+        numerator: numerator_degree,
+        denominator: denominator_degree,
+        reason,
     };
     if numerator_degree > LARGEST_NUMERATOR || denominator_degree > LARGEST_DENOMINATOR {
-        return refused("degrees go up to [40/20]");
+        return Err(refused("degrees go up to [40/20]"));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Unsuited::Convention.to(METHOD));
     }
     let order = numerator_degree + denominator_degree;
     let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
-    let series = |order| {
-        let options = Options {
-            order: Some(order),
-            ..options.clone()
-        };
-        lindstedt_poincare::solve(oscillator, &options)
+    let highest = if in_amplitude { 2 * order } else { order };
+    let options = Options {
+        order: Some(highest),
+        ..options.clone()
     };
-    // In the squared amplitude where the series has even powers alone.
-    let mut solution = series(if in_amplitude { 2 * order } else { order })?;
+    let mut solution = lindstedt_poincare::solve(oscillator, &options)?;
     if solution.limit_cycle.is_some() {
-        return refused("the amplitude is not free");
+        return Err(refused("the amplitude is not free"));
     }
-    let small = solution.small_parameter;
-    let law = solution
-        .law
-        .frequency_squared()
-        .cloned()
-        .unwrap_or_else(Polynomial::zero);
-    let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
-    let step = if in_amplitude && even { 2 } else { 1 };
-    let coefficient = |power: i64| match u32::try_from(power) {
-        Ok(power) => part(&law, small, step * power as i32),
-        Err(_) => Polynomial::zero(),
-    };
-    let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
-    let below = match denominator(&(0..=l + m as i64).map(coefficient).collect::<Vec<_>>(), l, m) {
-        Ok(below) => below,
-        Err(reason) => return refused(reason),
-    };
-    let above: Vec<Polynomial> = (0..=l)
-        .map(|i| {
-            let mut sum = Polynomial::zero();
-            for (j, q) in below.iter().enumerate() {
-                sum.accumulate(&q.product(&coefficient(i - j as i64)));
-            }
-            sum
-        })
-        .collect();
-    let with_powers = |coefficients: &[Polynomial]| {
-        let mut sum = Polynomial::zero();
-        for (power, coefficient) in coefficients.iter().enumerate() {
-            sum.accumulate(&coefficient.times_monomial(&Monomial::power_of(small, step * power as i32)));
-        }
-        sum
-    };
-    let values = (above.clone(), below.clone());
-    let (above, below) = (with_powers(&above), with_powers(&below));
-    let value = Expr::divide(&Expr::from(&above), &Expr::from(&below))?;
+    let series = PowerSeries::of(&solution, in_amplitude);
+    let quotient = quotient(&series, (numerator_degree, denominator_degree)).map_err(refused)?;
+    let below = series.with_powers(&quotient.below);
+    let value = Expr::divide(&Expr::from(&series.with_powers(&quotient.above)), &Expr::from(&below))?;
     if !has_values(&value) {
-        return refused("its coefficients are too long for a value in double precision");
+        return Err(refused("its coefficients are too long for a value in double precision"));
     }
     solution.method = METHOD;
     solution.order = order;
     solution.degrees = Some((numerator_degree, denominator_degree));
     solution.law = Law::Closed(ClosedForm { squared: true, value });
     solution.steps = vec![];
-    solution.displacement = first_correction(&solution.displacement, small, step);
+    solution.displacement = first_correction(&solution.displacement, series.small, series.step);
     let harmonics = solution.displacement.harmonics();
     let motion = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
-    let mut used = &solution.equilibrium.symbols() | &law.symbols();
+    let mut used = &solution.equilibrium.symbols() | &series.law.symbols();
     used.extend(motion.flat_map(Polynomial::symbols));
     solution.definitions = solution.definitions_behind(used).into_iter().cloned().collect();
     solution.validity = vec![
         Note::AgreesThrough {
             degrees: (numerator_degree, denominator_degree),
-            small,
-            step: step as u32,
+            small: series.small,
+            step: series.step as u32,
             order,
         },
         Note::Poles(poles(&below)),
         Note::MotionOfSeries,
     ];
     let letters = ["p", "q"].map(|letter| fresh_stem(letter, &solution.names()));
-    solution.derivation = linear_system(&coefficient, &law, (l, m), &values, &with_powers, &letters);
+    solution.derivation = linear_system(&series, &quotient, &letters);
     Ok(solution)
 }
 
+/// omega^2 in powers of `s`, the small parameter or its square.
+struct PowerSeries {
+    law: Polynomial,
+    small: Symbol,
+    /// The power of the small parameter that `s` is.
+    step: i32,
+}
+
+impl PowerSeries {
+    /// In the squared amplitude where the series has even powers alone.
+    fn of(solution: &Solution, in_amplitude: bool) -> Self {
+        let small = solution.small_parameter;
+        let law = solution.law.frequency_squared().cloned();
+        let law = law.unwrap_or_else(Polynomial::zero);
+        let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
+        Self {
+            law,
+            small,
+            step: if in_amplitude && even { 2 } else { 1 },
+        }
+    }
+
+    /// `c_k`; zero for a negative power.
+    fn coefficient(&self, power: i64) -> Polynomial {
+        match u32::try_from(power) {
+            Ok(power) => part(&self.law, self.small, self.step * power as i32),
+            Err(_) => Polynomial::zero(),
+        }
+    }
+
+    /// `c_0 + c_1 s + ...` of other coefficients.
+    fn with_powers(&self, coefficients: &[Polynomial]) -> Polynomial {
+        let mut sum = Polynomial::zero();
+        for (power, coefficient) in coefficients.iter().enumerate() {
+            sum.accumulate(&coefficient.times_monomial(&Monomial::power_of(self.small, self.step * power as i32)));
+        }
+        sum
+    }
+}
+
+/// The coefficients of numerator and denominator.
+struct Quotient {
+    above: Vec<Polynomial>,
+    below: Vec<Polynomial>,
+}
+
+/// The quotient of these degrees that agrees with a series, or why there is none.
+fn quotient(
+    series: &PowerSeries,
+    (numerator_degree, denominator_degree): (u32, u32),
+) -> Result<Quotient, &'static str> {
+    let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
+    let coefficients: Vec<Polynomial> = (0..=l + m as i64).map(|power| series.coefficient(power)).collect();
+    let below = denominator(&coefficients, l, m)?;
+    let entry = |i: i64| {
+        let mut sum = Polynomial::zero();
+        for (j, q) in below.iter().enumerate() {
+            sum.accumulate(&q.product(&series.coefficient(i - j as i64)));
+        }
+        sum
+    };
+    Ok(Quotient {
+        above: (0..=l).map(entry).collect(),
+        below,
+    })
+}
+
 /// The equations for the denominator and then for the numerator, with the coefficients of this series in them.
-fn linear_system(
-    coefficient: &dyn Fn(i64) -> Polynomial,
-    law: &Polynomial,
-    (l, m): (i64, usize),
-    (above, below): &(Vec<Polynomial>, Vec<Polynomial>),
-    with_powers: &dyn Fn(&[Polynomial]) -> Polynomial,
-    [p, q]: &[String; 2],
-) -> Vec<Line> {
+fn linear_system(series: &PowerSeries, Quotient { above, below }: &Quotient, [p, q]: &[String; 2]) -> Vec<Line> {
+    let (l, m) = (above.len() as i64 - 1, below.len() - 1);
     let name = |letter: &str, index: usize| Symbol::new(&format!("{letter}{index}"));
     let unknown = |j: usize| match j {
         0 => Polynomial::constant(Rational::one()),
@@ -160,7 +184,7 @@ fn linear_system(
     let sum = |highest: i64, most: usize| {
         let mut sum = Polynomial::zero();
         for j in 0..=most {
-            sum.accumulate(&unknown(j).product(&coefficient(highest - j as i64)));
+            sum.accumulate(&unknown(j).product(&series.coefficient(highest - j as i64)));
         }
         sum
     };
@@ -172,8 +196,8 @@ fn linear_system(
     let squared = Expr::symbol("omega").integer_power(2).unwrap_or_else(|_| Expr::zero());
     let numerator: Vec<Polynomial> = (0..above.len()).map(|i| Polynomial::symbol(name(p, i))).collect();
     let denominator: Vec<Polynomial> = (0..=m).map(unknown).collect();
-    let [numerator, denominator] = [numerator, denominator].map(|names| Expr::from(&with_powers(&names)));
-    let mut lines = vec![Line::equation(squared.clone(), law).because("the exact series begins")];
+    let [numerator, denominator] = [numerator, denominator].map(|names| Expr::from(&series.with_powers(&names)));
+    let mut lines = vec![Line::equation(squared.clone(), &series.law).because("the exact series begins")];
     if let Ok(quotient) = Expr::divide(&numerator, &denominator) {
         lines.push(Line::equation(squared, quotient).because("agrees with"));
     }

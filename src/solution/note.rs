@@ -230,19 +230,7 @@ impl fmt::Display for Note {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FirstStep(step) => step.fmt(formatter),
-            Self::Collocated(instant) => {
-                let at = match instant {
-                    Instant::EighthOfPeriod => "theta = pi/4",
-                    Instant::CosineSquared => "cos(theta)^2 = 3/4",
-                };
-                write!(
-                    formatter,
-                    "one term, collocated at {at}: the instant is a convention of the method"
-                )
-            }
-            Self::SlopeAtHalf => {
-                formatter.write_str("one line: exact for linear forces, and to first order for cubic ones alone")
-            }
+            Self::Collocated(instant) => instant.fmt(formatter),
             Self::EvenPartLeftOut(even) => write!(
                 formatter,
                 "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
@@ -256,25 +244,12 @@ impl fmt::Display for Note {
                 formatter,
                 "{hbar} controls the convergence; numbers are given with the one of least squared residual"
             ),
-            Self::TaylorPolynomial { degree } => {
-                write!(
-                    formatter,
-                    "the force entered as its Taylor polynomial of degree {degree}"
-                )
-            }
+            Self::TaylorPolynomial { degree } => write!(
+                formatter,
+                "the force entered as its Taylor polynomial of degree {degree}"
+            ),
             Self::MotionCutAfter { harmonic } => write!(formatter, "the motion is cut after its harmonic {harmonic}"),
-            Self::Balanced { harmonics, by_numbers } => {
-                let how = if *by_numbers {
-                    "; solved by numbers at an amplitude"
-                } else {
-                    ""
-                };
-                write!(
-                    formatter,
-                    "harmonics {} balanced, those above left out{how}",
-                    listed(harmonics)
-                )
-            }
+            Self::Balanced { harmonics, by_numbers } => balanced(formatter, harmonics, *by_numbers),
             Self::ArcsFor { positive } => write!(formatter, "the arcs are written for {positive} > 0"),
             Self::Bounds {
                 at_rest,
@@ -282,25 +257,12 @@ impl fmt::Display for Note {
                 range,
             } => bounds(formatter, at_rest, at_turning, range),
             Self::AgreesThrough {
-                degrees: (above, below),
+                degrees,
                 small,
                 step,
                 order,
-            } => {
-                let variable = match step {
-                    1 => small.to_string(),
-                    _ => format!("{small}^{step}"),
-                };
-                write!(
-                    formatter,
-                    "degree {above} over degree {below} in {variable}: agrees with the exact series through {small}^{}",
-                    step * order
-                )
-            }
+            } => agreement(formatter, *degrees, *small, *step, *order),
             Self::Poles(poles) => poles.fmt(formatter),
-            Self::MotionOfSeries => {
-                formatter.write_str("the motion is that of Lindstedt-Poincare to its first correction")
-            }
             Self::Exact(by) => by.fmt(formatter),
             Self::Stability(cycle) => write!(formatter, "the limit cycle {}", cycle.stability()),
             Self::RoundedAmplitude {
@@ -311,27 +273,81 @@ impl fmt::Display for Note {
                 formatter,
                 "{amplitude}^2 is a root {square} of {polynomial} = 0; the value of {amplitude} is rounded to 15 digits"
             ),
-            Self::Positive(definition) => write!(
-                formatter,
-                "{} = {} > 0",
-                definition.symbol,
-                definition.meaning_in_words()
-            ),
-            Self::Corners => formatter
-                .write_str("the force has corners: the expansion holds for motions that stay before the nearest"),
-            Self::BarriersApart { positive } => {
-                let conditions: Vec<String> = positive.iter().map(|edge| format!("{edge} > 0")).collect();
-                write!(formatter, "for {}: no barrier acts at rest", conditions.join(", "))
+            Self::Positive(definition) => {
+                write!(
+                    formatter,
+                    "{} = {} > 0",
+                    definition.symbol,
+                    definition.meaning_in_words()
+                )
             }
+            Self::BarriersApart { positive } => barriers_apart(formatter, positive),
             Self::Equilibrium { coordinate, position } => {
                 write!(formatter, "swings about the equilibrium {coordinate} = {position}")
             }
+            Self::SlopeAtHalf => {
+                formatter.write_str("one line: exact for linear forces, and to first order for cubic ones alone")
+            }
+            Self::MotionOfSeries => {
+                formatter.write_str("the motion is that of Lindstedt-Poincare to its first correction")
+            }
+            Self::Corners => formatter
+                .write_str("the force has corners: the expansion holds for motions that stay before the nearest"),
             Self::RoundedCoefficients => {
                 formatter.write_str("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction")
             }
             Self::Stated(words) => formatter.write_str(words),
         }
     }
+}
+
+impl fmt::Display for Instant {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let at = match self {
+            Self::EighthOfPeriod => "theta = pi/4",
+            Self::CosineSquared => "cos(theta)^2 = 3/4",
+        };
+        write!(
+            formatter,
+            "one term, collocated at {at}: the instant is a convention of the method"
+        )
+    }
+}
+
+fn balanced(formatter: &mut fmt::Formatter<'_>, harmonics: &[usize], by_numbers: bool) -> fmt::Result {
+    let how = if by_numbers {
+        "; solved by numbers at an amplitude"
+    } else {
+        ""
+    };
+    write!(
+        formatter,
+        "harmonics {} balanced, those above left out{how}",
+        listed(harmonics)
+    )
+}
+
+fn agreement(
+    formatter: &mut fmt::Formatter<'_>,
+    (above, below): (u32, u32),
+    small: Symbol,
+    step: u32,
+    order: u32,
+) -> fmt::Result {
+    let variable = match step {
+        1 => small.to_string(),
+        _ => format!("{small}^{step}"),
+    };
+    write!(
+        formatter,
+        "degree {above} over degree {below} in {variable}: agrees with the exact series through {small}^{}",
+        step * order
+    )
+}
+
+fn barriers_apart(formatter: &mut fmt::Formatter<'_>, positive: &[Expr]) -> fmt::Result {
+    let conditions: Vec<String> = positive.iter().map(|edge| format!("{edge} > 0")).collect();
+    write!(formatter, "for {}: no barrier acts at rest", conditions.join(", "))
 }
 
 impl fmt::Display for Cut {

@@ -25,7 +25,7 @@
 //! let contact = ExactContact::new(|d| (0.323 + d).sin() + d.powf(1.5), 0.5)?;
 //! assert!((contact.at(contact.duration).1 + 0.5).abs() < 1e-12);
 //! let series = contact.sine_series(1e-6);
-//! assert!(series.deviation <= 1e-6 && series.harmonics.len() <= 4);
+//! assert!(series.deviation <= 1e-6 && series.harmonics.len() == 10);
 //! # Ok::<(), lindstedt::impact::contact::ContactError>(())
 //! ```
 

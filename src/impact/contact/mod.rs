@@ -143,3 +143,171 @@ fn in_range(quantity: &'static str, value: f64) -> Result<f64, ContactError> {
 fn within(time: f64, duration: f64) -> f64 {
     if time > 0.0 { time.min(duration) } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decimal::significant;
+    use hunt_crossley::{damping_for, restitution};
+    use power_law::duration_factor;
+
+    const PAGE: &str = include_str!("../../../docs/contact.md");
+
+    /// The lines of a table of the page: under this header, as long as there are columns.
+    fn table(header: &str) -> Vec<&'static str> {
+        let lines = PAGE.lines().skip_while(|line| *line != header).skip(2);
+        lines.take_while(|line| line.starts_with('|')).collect()
+    }
+
+    fn assert_table(header: &str, rows: &[String]) {
+        let computed = rows.join("\n");
+        assert_eq!(table(header).join("\n"), computed, "under {header}:\n{computed}\n");
+    }
+
+    fn percent(part: f64) -> String {
+        let text = format!("{:+.4}", 100.0 * part);
+        if text.ends_with("0.0000") { "0".to_owned() } else { text }
+    }
+
+    fn row(cells: impl IntoIterator<Item = String>) -> String {
+        format!("| {} |", cells.into_iter().collect::<Vec<_>>().join(" | "))
+    }
+
+    #[test]
+    fn the_numbers_of_the_power_law_are_those_of_the_page() {
+        let numbers = [("Hertz", "3/2", 1.5), ("cone", "2", 2.0), ("cube", "3", 3.0)];
+        for (force, name, exponent) in numbers {
+            let line = row([
+                force.to_owned(),
+                name.to_owned(),
+                significant(duration_factor(exponent), 12),
+            ]);
+            assert!(PAGE.contains(&line), "{line}");
+        }
+    }
+
+    #[test]
+    fn the_corrections_are_those_of_the_page() {
+        let header = "| gamma | T, power law | T, first order | its estimate | T, second order | its estimate | D, second order |";
+        let rows = [1e8, 1e6, 1e4, 1e2].map(|stiffness| {
+            let touch = Touch {
+                stiffness,
+                ..Touch::default()
+            };
+            let exact = touch.by(ContactLaw::Exact).unwrap();
+            let plain = PowerLaw::new(1.5, stiffness, touch.speed).unwrap();
+            let preload = touch.barrier.sin();
+            let [first, second] = [1, 2].map(|order| plain.corrected(preload, touch.slope, order).unwrap());
+            let error = |duration: f64| percent(duration / exact.duration - 1.0);
+            row([
+                format!("{stiffness:.0e}"),
+                error(plain.duration),
+                error(first.duration),
+                percent(first.duration_error).replace('+', ""),
+                error(second.duration),
+                percent(second.duration_error).replace('+', ""),
+                percent(second.depth / exact.depth - 1.0),
+            ])
+        });
+        assert_table(header, &rows);
+    }
+
+    #[test]
+    fn the_sines_are_those_of_the_page() {
+        let rows = [
+            (hertz_stiffness(), Touch::default().speed),
+            (1e3, Touch::default().speed),
+            (1.0, 0.5),
+        ]
+        .map(|(stiffness, speed)| {
+            let touch = Touch {
+                stiffness,
+                speed,
+                ..Touch::default()
+            };
+            let contact = ExactContact::new(|d| touch.force(d), speed).unwrap();
+            let (coarse, fine) = (contact.sine_series(1e-3), contact.sine_series(1e-6));
+            row([
+                format!("gamma {}, v = {}", significant(stiffness, 3), significant(speed, 5)),
+                coarse.harmonics.len().to_string(),
+                fine.harmonics.len().to_string(),
+                format!("{:.1e}", fine.deviation),
+            ])
+        });
+        assert_table(
+            "| pendulum at a barrier | sines for 1e-3 of D | for 1e-6 | left of the second |",
+            &rows,
+        );
+    }
+
+    fn hertz_stiffness() -> f64 {
+        super::super::hertz::DEFAULT_STIFFNESS
+    }
+
+    #[test]
+    fn the_losses_are_those_of_the_page() {
+        let plain = PowerLaw::new(1.5, 1e6, 1.0).unwrap();
+        let rows = [0.01, 0.1, 0.3, 1.0, 3.0, 10.0].map(|x| {
+            let contact = HuntCrossley::new(1.5, 1e6, x, 1.0).unwrap();
+            row([
+                significant(x, 2),
+                format!("{:.6}", contact.restitution),
+                format!("{:.6}", 1.0 - 2.0 / 3.0 * x),
+                format!("{:.5}", contact.depth / plain.depth),
+                format!("{:.5}", contact.duration / plain.duration),
+                format!("{:.5}", contact.peak_force / plain.peak_force),
+            ])
+        });
+        assert_table(
+            "| lambda v | e | 1 - (2/3) lambda v | D/D0 | T/T0 | peak force/gamma D0^n |",
+            &rows,
+        );
+        let rows = [0.99, 0.9, 0.7, 0.5, 0.3, 0.1].map(|e: f64| {
+            let rules = [1.5 * (1.0 - e), 0.75 * (1.0 - e * e), 1.6 * (1.0 - e) / e];
+            let reached = rules.map(|x| format!("{:.4}", restitution(x).unwrap()));
+            row([significant(e, 2), format!("{:.5}", damping_for(e).unwrap())]
+                .into_iter()
+                .chain(reached))
+        });
+        assert_table(
+            "| e wanted | lambda v | Hunt-Crossley | Lankarani-Nikravesh | Flores |",
+            &rows,
+        );
+    }
+
+    #[test]
+    fn the_errors_of_the_laws_are_those_of_the_page() {
+        let soft = Touch {
+            stiffness: 1e3,
+            ..Touch::default()
+        };
+        let alone = Touch {
+            stiffness: 1e6,
+            restoring_force: &|_| 0.0,
+            slope: 0.0,
+            ..Touch::default()
+        };
+        let rows = |touch: &Touch| -> Vec<String> {
+            let line = |row_of: ContactRow| {
+                let (_, errors) = row_of.outcome.unwrap();
+                let numbers = [errors.duration, errors.depth, errors.peak_force];
+                let motion = percent(errors.motion).replace('+', "");
+                row([format!("`{}`", row_of.law)]
+                    .into_iter()
+                    .chain(numbers.map(percent))
+                    .chain([motion]))
+            };
+            comparison(touch).unwrap().into_iter().map(line).collect()
+        };
+        let header = "| law | T | D | peak force | motion |";
+        let (first, second) = PAGE
+            .split_once("Errors in % for the paper's pendulum at a soft barrier")
+            .unwrap();
+        for (part, touch) in [(first, &alone), (second, &soft)] {
+            let lines = part.lines().skip_while(|line| *line != header).skip(2);
+            let printed: Vec<&str> = lines.take_while(|line| line.starts_with('|')).collect();
+            let computed = rows(touch).join("\n");
+            assert_eq!(printed.join("\n"), computed, "{computed}\n");
+        }
+    }
+}

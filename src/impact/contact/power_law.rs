@@ -294,7 +294,7 @@ pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
 }
 
 /// A series in two small quantities up to an order, and what may be missing in it: the terms of the last order by their sizes, or
-/// those before them times the quantities where the last happen to vanish.
+/// those before them times the square of the quantities where the last happen to vanish.
 fn double_series(order: u32, small: [f64; 2], coefficient: impl Fn(i32, i32) -> f64) -> (f64, f64) {
     let order = order as i32;
     let (mut sum, mut last, mut before) = (0.0, 0.0, 0.0);
@@ -307,7 +307,7 @@ fn double_series(order: u32, small: [f64; 2], coefficient: impl Fn(i32, i32) -> 
             last += term.abs();
         }
     }
-    (sum, last.max(before * (small[0].abs() + small[1].abs())))
+    (sum, last.max(before * (small[0].abs() + small[1].abs()).powi(2)))
 }
 
 /// The coefficient of (-E1)^p (-E2)^q in D/D0.

@@ -155,7 +155,31 @@ fn polynomial_terms_are_not_blamed() {
             order: Some(6),
             ..Options::default()
         };
-        let refused = solve(&oscillator, &options).expect_err(equation).to_string();
-        assert!(refused.ends_with(&format!("not `{expected}`")), "{equation}: {refused}");
+        let refused = solve(&oscillator, &options).expect_err(equation);
+        assert_eq!(refused.term(), Some(expected), "{equation}: {refused}");
+        assert!(
+            refused.to_string().ends_with(&format!("not `{expected}`")),
+            "{equation}: {refused}"
+        );
+    }
+    let of_position = [
+        ("x'' + x + 0.5*sin(x) = 0", "0.5*sin(x)", 10),
+        ("x'' + sqrt(k)*x + x^3 - x*exp(-x^2)/2 = 0", "-x*exp(-x^2)/2", 24),
+        ("x'' + 2*x + 0.1*abs(x)*x = 0", "0.1*abs(x)*x", 12),
+        ("x'' + 2*(x + 0.25*tanh(x)) = 0", "0.25*tanh(x)", 13),
+    ];
+    for (equation, expected, column) in of_position {
+        for method in [Method::IterationPerturbation, Method::ParameterExpansion] {
+            let oscillator = Oscillator::parse(equation).expect(equation);
+            let options = Options {
+                method: Some(method),
+                order: Some(2),
+                ..Options::default()
+            };
+            let refused = solve(&oscillator, &options).expect_err(equation);
+            assert_eq!(refused.term(), Some(expected), "{equation}: {refused}");
+            let [_, carets] = oscillator.typed.place(expected).expect(equation);
+            assert_eq!(carets.find('^'), Some(column), "{equation}");
+        }
     }
 }

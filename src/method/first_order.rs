@@ -21,7 +21,7 @@
 use num_traits::Zero;
 
 use super::one_term::{integral_law, note_even_part, set_law, shared_integral, unsolved};
-use super::{Options, Refusal, Refuser, Unsuited};
+use super::{Options, Refusal, Refuser, Unsuited, not_polynomial};
 use crate::derivation::Line;
 use crate::exact::Rational;
 use crate::expr::Expr;
@@ -56,9 +56,7 @@ pub(super) fn solve(
         // Of the whole force: what stands at a higher power of `small` may be what no polynomial is.
         let force = &oscillator.force;
         let perturbation = (force - &force.substitute(small, &Expr::zero())?).expand()?;
-        let no_polynomial = |term: &&Expr| !matches!(term.to_polynomial(&mut |_| None), Ok(Some(_)));
-        let force = Expr::sum(perturbation.terms().iter().filter(no_polynomial).cloned()).to_string();
-        return Err(Unsuited::PolynomialOnly { force }.to(Method::LindstedtPoincare));
+        return Err(not_polynomial(&perturbation, oscillator.coordinate).to(Method::LindstedtPoincare));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Unsuited::Convention.by(Refuser::FirstOrder));

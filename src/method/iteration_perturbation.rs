@@ -24,7 +24,7 @@ use num_traits::{One, Zero};
 use super::one_term::{
     conservative_force, cosine, first_projection, law_of, note_even_part_last, solve_by_integral, unsolved,
 };
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Refusal, Unsuited, not_polynomial};
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
@@ -128,13 +128,8 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
 /// Several passes for a polynomial force: an implicit relation in even powers of omega.
 fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u32) -> Result<Solution, Refusal> {
     let (omega, amplitude) = (Symbol::new("omega"), Symbol::new("A"));
-    let not_polynomial = || {
-        Unsuited::PolynomialOnly {
-            force: force.to_string(),
-        }
-        .to(METHOD)
-    };
-    let coefficients = polynomial_coefficients(oscillator, force)?.ok_or_else(not_polynomial)?;
+    let coefficients = polynomial_coefficients(oscillator, force)?
+        .ok_or_else(|| not_polynomial(force, oscillator.coordinate).to(METHOD))?;
     // Every pass multiplies the number of harmonics by the degree.
     let degree = coefficients.len().saturating_sub(1);
     if degree.saturating_pow(passes) > MOST_HARMONICS {

@@ -53,7 +53,7 @@ use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
 use crate::solution::{Advice, AmplitudeConvention, Method, Note, Setting, Solution, note::Position};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// The highest order any method accepts.
 pub const HIGHEST_ORDER: u32 = 400;
@@ -220,10 +220,10 @@ pub enum Unsuited {
         choice: Choice,
     },
     /// A force that is no polynomial, where one is needed.
-    #[error("needs a polynomial force at this order, not `{force}`")]
+    #[error("needs a polynomial force at this order, not `{term}`")]
     PolynomialOnly {
-        /// The force.
-        force: String,
+        /// The terms of the force that are none.
+        term: String,
     },
 }
 
@@ -306,7 +306,8 @@ impl Refusal {
                     | Unsuited::Forcing { term }
                     | Unsuited::Velocity { term }
                     | Unsuited::NotOdd { term }
-                    | Unsuited::NotOddAbout { term, .. },
+                    | Unsuited::NotOddAbout { term, .. }
+                    | Unsuited::PolynomialOnly { term },
                 ..
             }
             | Self::AmplitudeNotFree { term }
@@ -469,6 +470,28 @@ fn has_corners(force: &Expr) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     let corners = [Absolute, Maximum, Minimum, Sign, Step];
     corners.into_iter().any(|function| force.contains_function(function))
+}
+
+/// The refusal of a force that is no polynomial in the coordinate, by the terms that are none.
+fn not_polynomial(force: &Expr, coordinate: Symbol) -> Unsuited {
+    let constant = fresh("c", &[coordinate]);
+    let is_none = |term: &Expr, constants: bool| {
+        let mut name = |factor: &Expr| (constants && !factor.contains(coordinate)).then_some(constant);
+        match term.to_polynomial(&mut name) {
+            Ok(Some(polynomial)) => polynomial
+                .exponent_range(coordinate)
+                .is_some_and(|(lowest, _)| lowest < 0),
+            Ok(None) | Err(_) => true,
+        }
+    };
+    let expanded = force.expand().unwrap_or_else(|_| force.clone());
+    // A constant such as sqrt(k) is in the way of some methods, and named where nothing else is.
+    let found = [true, false].map(|constants| {
+        let terms = expanded.terms().iter().filter(|term| is_none(term, constants));
+        Expr::sum(terms.cloned())
+    });
+    let term = found.iter().find(|terms| !terms.is_zero()).unwrap_or(force).to_string();
+    Unsuited::PolynomialOnly { term }
 }
 
 /// The term of a sum that a refusal names.

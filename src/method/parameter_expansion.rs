@@ -23,7 +23,7 @@
 
 use super::iteration_perturbation::numbered;
 use super::one_term::{conservative_force, integral_law, solve_by_integral};
-use super::{Options, Refusal, Unsuited, homotopy_perturbation};
+use super::{Options, Refusal, homotopy_perturbation, not_polynomial};
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -64,10 +64,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Ok(solution);
     }
     if !polynomial && options.taylor.is_none() && options.order.is_some() {
-        return Err(Unsuited::PolynomialOnly {
-            force: oscillator.force.to_string(),
-        }
-        .to(METHOD));
+        return Err(not_polynomial(&oscillator.force, oscillator.coordinate).to(METHOD));
     }
     let options = Options {
         order: Some(order),

@@ -57,7 +57,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         Unsuited::Damping { term }
         | Unsuited::Forcing { term }
         | Unsuited::Velocity { term }
-        | Unsuited::PolynomialOnly { force: term } => {
+        | Unsuited::PolynomialOnly { term } => {
             let found = typed(term, oscillator, centred);
             replace(term, found);
         }

@@ -484,6 +484,18 @@ pub(crate) fn half_a_period(k: usize, value: f64) -> f64 {
 }
 
 /// The values of all symbols that the formulas of an answer are written with, of which `found` are the numbers, if it has any.
+///
+/// ```
+/// use lindstedt::{Oscillator, method::{Options, numbers::{evaluate, symbol_values}, solve}};
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// let at = [("A".into(), 1.0)].into();
+/// let found = evaluate(&pendulum, &solution, &at)?;
+/// let known = symbol_values(&pendulum, &solution, &at, Some(&found));
+/// let omega = known.values.iter().find(|(name, _)| name.name() == "omega").unwrap().1;
+/// assert!((omega * omega - 0.875).abs() < 1e-14); // 1 - A^2/8
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn symbol_values(
     oscillator: &Oscillator,
     solution: &Solution,

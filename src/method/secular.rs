@@ -192,6 +192,25 @@ pub fn expand<R: Ring>(
 ///
 /// # Errors
 /// See [`SecularError`].
+///
+/// ```
+/// use lindstedt::exact::Doubles;
+/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand_from_root};
+/// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
+///
+/// // The cycle of van der Pol, x = 2 y: y'' + y - delta y' + 4 delta y^2 y' = 0
+/// let number = |value| FourierSeries::constant(Doubles, value);
+/// let term = |position, coefficient| ForceTerm { order: 1, position, velocity: 1, coefficient: number(coefficient) };
+/// let scheme = Scheme {
+///     normalisation: AmplitudeConvention::FirstHarmonic,
+///     amplitude: Amplitude::Determined,
+///     detuning: Detuning::Acceleration,
+/// };
+/// // Along a*cos(tau) the secular sine is a^3 - a: its slope at a = 1 is 2.
+/// let found = expand_from_root(&Doubles, &[term(0, -1.0), term(2, 4.0)], 2, &scheme, Some(number(0.5)))?;
+/// assert!((found.frequency_squared[2].mean().0 + 0.125).abs() < 1e-15); // omega^2 = 1 - delta^2/8
+/// # Ok::<(), lindstedt::method::secular::SecularError>(())
+/// ```
 pub fn expand_from_root<R: Ring>(
     ring: &R,
     force: &[ForceTerm<R>],

@@ -380,6 +380,18 @@ impl Factor {
 }
 
 /// `sum of weight * series`, over one common denominator.
+///
+/// ```
+/// use lindstedt::exact::{Integer, Integers};
+/// use lindstedt::series::{FourierSeries, linear_combination};
+/// let series = |parts: &[i64]| {
+///     let cosine = parts.iter().map(|&part| Integer::from(part)).collect();
+///     FourierSeries::from_parts(Integers, cosine, vec![])
+/// };
+/// let (one, half) = (series(&[0, 1]), series(&[3, 0, 1]).divided_by(2)); // cos(t) and (3 + cos(2 t))/2
+/// let sum = linear_combination(&Integers, &[(1, &one), (-2, &half)]);
+/// assert_eq!(sum, series(&[-3, 1, -1]));
+/// ```
 pub fn linear_combination<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>)]) -> FourierSeries<R> {
     let common = terms
         .iter()
@@ -397,6 +409,16 @@ pub fn linear_combination<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>)])
 }
 
 /// `sum of weight * left * right`, over one common denominator: one order of a running convolution.
+///
+/// ```
+/// use lindstedt::exact::{Integer, Integers};
+/// use lindstedt::series::{FourierSeries, sum_of_products};
+/// let parts = vec![Integer::from(0), Integer::from(1)];
+/// let cosine = FourierSeries::from_parts(Integers, parts.clone(), vec![]);
+/// let sine = FourierSeries::from_parts(Integers, vec![], parts);
+/// let sum = sum_of_products(&Integers, &[(3, &cosine, &cosine), (3, &sine, &sine)]);
+/// assert_eq!(sum, FourierSeries::constant(Integers, Integer::from(3)));
+/// ```
 pub fn sum_of_products<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>, &FourierSeries<R>)]) -> FourierSeries<R> {
     let terms: Vec<_> = terms
         .iter()

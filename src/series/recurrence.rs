@@ -410,6 +410,14 @@ impl Recurrences {
 
 /// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s` and no other symbol; `None`
 /// where it is not analytic there, contains another symbol, or a coefficient is out of range.
+///
+/// ```
+/// use lindstedt::{expr::parse_expression, series::numeric_taylor};
+/// let root = parse_expression("sqrt(x)").unwrap();
+/// // sqrt(4 + 8 s) = 2 + 2 s - s^2 + ...
+/// assert_eq!(numeric_taylor(&root, "x".into(), 4.0, 8.0, 2), Some(vec![2.0, 2.0, -1.0]));
+/// assert_eq!(numeric_taylor(&root, "x".into(), 0.0, 1.0, 2), None);
+/// ```
 pub fn numeric_taylor(expr: &Expr, coordinate: Symbol, centre: f64, scale: f64, degree: usize) -> Option<Vec<f64>> {
     let mut recurrences = Recurrences::new(&[(coordinate, Some(1))], &BTreeMap::new(), degree);
     let place = recurrences.add(expr).ok()?;

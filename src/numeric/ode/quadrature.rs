@@ -121,6 +121,12 @@ pub fn integrate_smooth(
 
 /// Nodes and weights of the 20-point Gauss-Legendre rule carried to `[from, to]`, for sums that need the points
 /// themselves, such as a least-squares fit.
+///
+/// ```
+/// use lindstedt::numeric::ode::quadrature::nodes_and_weights;
+/// let integral: f64 = nodes_and_weights(0.0, 2.0).map(|(x, weight)| weight * x.powi(3)).sum();
+/// assert!((integral - 4.0).abs() < 1e-14);
+/// ```
 pub fn nodes_and_weights(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     RULE.iter()

@@ -200,7 +200,7 @@ impl ExactContact {
                 .iter()
                 .map(|(angle, element)| (k * angle).cos() * element)
                 .sum();
-            4.0 / (k * PI) * sum - 4.0 * self.force_at_touch / (k * wave).powi(2) / (k * PI)
+            4.0 / (k * PI) * (sum - self.force_at_touch / (k * wave) / (k * wave))
         };
         (0..MOST_HARMONICS).map(harmonic).collect()
     }

@@ -125,6 +125,12 @@ impl HuntCrossley {
         let turning = expand(rate, |_| scale, FRAC_PI_4, 3.0 * FRAC_PI_4)?;
         let duration = length(&loading) + length(&turning) + length(&unloading);
 
+        let energy_lost = 0.5 * speed * loss * (2.0 - loss) * speed;
+        if !energy_lost.is_finite() {
+            return Err(ContactError::Range {
+                quantity: "energy lost",
+            });
+        }
         let (peak_depth, factor) = motion.peak(exponent);
         // gamma D^n = (m v^2/2) (1 + psi)/D.
         let elastic = 0.5 * m * speed / depth * speed * (1.0 + excess(x));
@@ -139,7 +145,7 @@ impl HuntCrossley {
             peak_depth: depth * peak_depth,
             restitution: 1.0 - loss,
             exit_speed: speed * restitution_of(x, loss),
-            energy_lost: 0.5 * speed * speed * loss * (2.0 - loss),
+            energy_lost,
             loading,
             turning,
             unloading,

@@ -3,7 +3,6 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;
 use lindstedt::Values;
-use lindstedt::impact::Rule;
 use lindstedt::impact::hertz::Design;
 use lindstedt::impact::{self, Setup};
 use lindstedt::method::{Options, numbers, solve};
@@ -89,14 +88,8 @@ fn contact(criterion: &mut Criterion) {
     criterion.bench_function("impact of the paper", |bencher| {
         bencher.iter(|| {
             impact::solve(Setup {
-                amplitude: 1.5,
-                barrier: 0.323,
                 stiffness,
-                stiffness_source: String::new(),
-                order: 2,
-                rule: Rule::default(),
-                integrator_tolerance: 1e-10,
-                step_limit: 250_000,
+                ..Setup::default()
             })
             .expect("an impact")
         });

@@ -27,14 +27,14 @@ def motion(solution, t):
     return sum(number(h["cos"]) * math.cos(angle) + number(h["sin"]) * math.sin(angle) for angle, h in waves)
 
 
-def phase(p, t):
-    c, angle = p["coefficients"], p["coefficients"]["frequency"] * (t - p["start"])
-    if "centre" in c:
-        return c["centre"] + c["amplitude"]["re"] * math.cos(angle) - c["amplitude"]["im"] * math.sin(angle)
-    return c["amplitude"] * math.cos(angle + c["phase"])
+def phase(p, t):  # of `impact`: the clock of a phase is where its formula counts from
+    d, s = p["displacement"], t - p["clock"]
+    waves = [(h["harmonic"] * d["frequency"] * s, h) for h in d["harmonics"]]
+    wave = sum(h["cos"] * math.cos(angle) + h["sin"] * math.sin(angle) for angle, h in waves)
+    return d["centre"] + d["parabola"] * s * (d["duration"] - s) + wave
 
 document, times = json.load(open(sys.argv[1])), [float(t) for t in sys.argv[2:]]
 if document["schema"] == "lindstedt/solution/1":
     print(json.dumps([frequency(document)] + [motion(document, t) for t in times]))
-for p in document.get("phases", []) + document.get("energy_phases", []):
+for p in sum((document.get(key, []) for key in ("phases", "energy_phases", "derived_phases")), []):
     print(json.dumps([p["name"]] + [phase(p, t) for t in times if p["start"] <= t <= p["end"]]))

@@ -175,7 +175,7 @@ fn innermost(document: &mut Value) -> &mut Value {
     let place = match document["schema"].as_str() {
         Some("lindstedt/solution/1") => "/equilibrium",
         Some("lindstedt/comparison/1") => "/methods/0",
-        Some("lindstedt/impact/1") => "/phases/1/coefficients/amplitude",
+        Some("lindstedt/impact/1") => "/derived_phases/1/displacement",
         Some("lindstedt/simulation/1") => "/parameters/barrier",
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         _ => "/entries/0/methods/0",
@@ -276,8 +276,12 @@ fn every_key_is_described_and_no_other_is_allowed() {
     );
     said(Kind::Solution, &key("closed_form"), &["parameter m"]);
     said(Kind::Solution, &key("displacement"), &["equilibrium included"]);
-    said(Kind::Impact, "/$defs/Phase/description", &["s = t - start"]);
-    said(Kind::Impact, "/$defs/Phase/properties/start/description", &["clock"]);
+    said(Kind::Impact, "/$defs/Phase/description", &["s = t - clock"]);
+    said(
+        Kind::Impact,
+        "/$defs/Phase/properties/clock/description",
+        &["counts", "derived return"],
+    );
 }
 
 #[test]
@@ -417,16 +421,18 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
     for file in files("examples", ".toml").into_iter().filter(|file| is_impact(file)) {
         let written = document(&["impact", &file.to_string_lossy()]);
         let impact: ImpactDocument = serde_json::from_value(written.clone()).expect("an impact");
-        let phases = || impact.phases.iter().chain(&impact.energy_phases);
+        let derived = &impact.derived_phases;
+        let phases = || impact.phases.iter().chain(&impact.energy_phases).chain(derived);
         let middles: Vec<f64> = phases()
             .flat_map(|phase| [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start)))
             .collect();
         let lines = by_reader(&folder, &written, &middles);
-        assert_eq!(lines.len(), 6, "{}", file.display());
+        assert_eq!(lines.len(), phases().count(), "{}", file.display());
+        assert_eq!(derived.len(), 3, "{}", file.display());
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
             assert_eq!(line[0], phase.name);
             let inside = middles.iter().filter(|t| (phase.start..=phase.end).contains(t));
-            let expected: Vec<f64> = inside.map(|t| phase.form.at(t - phase.start).0).collect();
+            let expected: Vec<f64> = inside.map(|t| phase.at(*t).0).collect();
             assert_eq!(line.len(), 1 + expected.len());
             assert!(expected.len() >= 3);
             for (x, value) in line[1..].iter().zip(expected) {

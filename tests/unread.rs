@@ -43,7 +43,7 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 28] = [
+const LINES: [(&str, &str, &str); 30] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -53,9 +53,11 @@ const LINES: [(&str, &str, &str); 28] = [
     ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),
     ("[pendulum] amplitude", "[pendulum]\namplitude = 1.25", ""),
     ("[pendulum] barrier", "[pendulum]\nbarrier = 0.25", ""),
+    ("[pendulum] side", "[pendulum]\nside = \"left\"", ""),
     ("[pendulum] start", "[pendulum]\nstart = 0.25", ""),
     ("[pendulum] speed", "[pendulum]\nspeed = 0.25", ""),
     ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
+    ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
     ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
     (
@@ -222,7 +224,7 @@ fn a_file_for_another_command_is_sent_there() {
         ("derive", "examples/simulate/damper.toml", "`lindstedt simulate`"),
         ("impact", "examples/simulate/damper.toml", "`lindstedt simulate`"),
         ("impact", "examples/simulate/stick-slip.toml", "`lindstedt simulate`"),
-        ("impact", "examples/duffing.toml", "`lindstedt derive`"),
+        ("impact", "examples/duffing.toml", "gamma=1e6"),
         ("simulate", "examples/duffing.toml", "`lindstedt derive`"),
         ("simulate", "examples/impact-soft.toml", "`lindstedt impact`"),
     ] {
@@ -317,6 +319,12 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("compare", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
         ("compare", vec!["pendulum", "--at", "A=1"], vec!["--timeout", "1e-9"]),
         ("compare", vec!["pendulum", "--at", "A=1"], vec!["--quiet"]),
+        ("impact", vec![], vec!["--at", "A=1"]),
+        ("impact", vec![], vec!["--method", "pade"]),
+        ("impact", vec![], vec!["--order", "6"]),
+        ("impact", vec![], vec!["--amplitude", "first-harmonic"]),
+        ("impact", vec![], vec!["--force", "gamma*d^2"]),
+        ("impact", vec![], vec!["--left"]),
         ("impact", vec![], vec!["--format", "csv"]),
         ("impact", vec![], vec!["--format", "latex"]),
         ("impact", vec![], vec!["--output", file]),

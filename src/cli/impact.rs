@@ -1,31 +1,46 @@
 //! `lindstedt impact [FILE]`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use lindstedt::export::{json, latex, text};
-use lindstedt::impact::{ContactSpeed, Impact, Setup, solve};
-use lindstedt::problem::Problem;
+use lindstedt::expr::parse_expression;
+use lindstedt::impact::{Impact, Setup, solve};
+use lindstedt::problem::{BarrierSide, Problem};
+use lindstedt::verify::Verdict;
 
-use super::problem::from_file;
+use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
 #[derive(Args, Default)]
 pub struct Arguments {
-    /// A TOML file, or - for standard input; without it the paper's swing
-    pub file: Option<PathBuf>,
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input; without it the paper's swing
+    pub problem: Option<String>,
+    /// A value, exact (1.5, 3/2, pi/3): A of the release, xc of the barrier, its gamma, parameters; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    /// How the swing of the derived phases is derived, by a method of `lindstedt derive`; without it the first that passes
+    #[arg(long)]
+    method: Option<String>,
+    /// The order of the law; without it 2 for the paper's reading, for the derived phases the lowest that passes
+    #[arg(long, value_parser = super::count, allow_hyphen_values = true)]
+    order: Option<u32>,
+    /// What the amplitude of the derived law measures: initial or first-harmonic
+    #[arg(long)]
+    amplitude: Option<String>,
+    /// The whole force of the barrier in the depth d, such as "k*d^2"; without it gamma*d^(3/2)
+    #[arg(long, value_name = "FORCE")]
+    force: Option<String>,
+    /// The barrier is on the left of xc, and the release at x = A
+    #[arg(long)]
+    left: bool,
     #[command(flatten)]
     pub common: Common,
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let problem = match &arguments.file {
-        None => Problem::default(),
-        Some(path) => from_file(path)?,
-    };
-    let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;
-    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
+    let problem = asked(arguments)?;
     let tolerance = tolerance(&arguments.common);
+    let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;
+    let impact = solve(Setup { tolerance, ..setup }).map_err(|error| Failure::refused(&error, None))?;
     let text = match arguments.common.format {
         Format::Text => text::impact(&impact, tolerance),
         Format::Latex => latex::impact(&impact, tolerance),
@@ -37,13 +52,47 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         .plot
         .as_ref()
         .map(|path| (path.clone(), picture(&impact)));
+    let passes = impact.verdicts(tolerance).contains(&Verdict::Pass);
     Ok(Outcome {
         result: whole(text),
         picture,
         note: None,
-        verdict: Some(impact.verdict(ContactSpeed::Paper, tolerance)),
+        verdict: Some(Verdict::of(passes)),
         partial: false,
     })
+}
+
+/// The problem of the file with what the command line says, which wins.
+fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
+    let mut asked = match &arguments.problem {
+        None => Problem::default(),
+        Some(text) => problem(text)?,
+    };
+    for text in &arguments.at {
+        let usage = |message: String| Failure::Usage(format!("--at {text}: {message}"));
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| usage("expected NAME=VALUE, such as A=1.5".to_owned()))?;
+        let value = parse_expression(value).map_err(|error| usage(error.to_string()))?;
+        asked.set_value(name.trim(), &value.to_string());
+    }
+    let words = [
+        (&arguments.method, &mut asked.method),
+        (&arguments.amplitude, &mut asked.amplitude),
+        (&arguments.force, &mut asked.contact.force),
+    ];
+    for (given, place) in words {
+        if given.is_some() {
+            place.clone_from(given);
+        }
+    }
+    if let Some(order) = arguments.order {
+        asked.order = Some(lindstedt::problem::Order::Power(order));
+    }
+    if arguments.left {
+        asked.pendulum.side = Some(BarrierSide::Left);
+    }
+    Ok(asked)
 }
 
 #[cfg(not(feature = "plot"))]
@@ -55,15 +104,16 @@ fn picture(_: &Impact) -> Result<String, Failure> {
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
-    use lindstedt::impact::SampledMotion;
+    use lindstedt::impact::{Reading, SampledMotion, Side};
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);
-    let styles = [
-        ("Runge-Kutta", CurveStyle::RUNGE_KUTTA),
-        ("closed form, paper", CurveStyle::FORMULA),
-        ("closed form, energy", CurveStyle::SECOND_FORMULA),
-    ];
+    let closed_forms = impact.columns.iter().map(|column| match column.reading {
+        Reading::Paper => ("closed form, paper", CurveStyle::FORMULA),
+        Reading::Energy => ("closed form, energy", CurveStyle::SECOND_FORMULA),
+        Reading::Derived => ("closed form, derived", CurveStyle::THIRD_FORMULA),
+    });
+    let styles = std::iter::once(("Runge-Kutta", CurveStyle::RUNGE_KUTTA)).chain(closed_forms);
     let motion = |(path, (label, style))| {
         let SampledMotion { samples, contact }: &SampledMotion = path;
         ImpactMotion {
@@ -75,15 +125,27 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
     };
     let motions: Vec<_> = drawn.iter().zip(styles).map(motion).collect();
     let setup = &impact.setup;
+    let what = match &setup.swing {
+        None => "Pendulum and elastic barrier".to_owned(),
+        Some(_) => impact.equation.clone(),
+    };
+    let release = match setup.side {
+        Side::Right if impact.equilibrium == 0.0 => format!("A = {}", decimal(-setup.release)),
+        _ => format!("{}(0) = {}", impact.letters.coordinate, decimal(setup.release)),
+    };
+    let stiffness = match &setup.force {
+        None => format!(", γ = {}", decimal(setup.stiffness)),
+        Some(_) => String::new(),
+    };
     let caption = format!(
-        "Pendulum and elastic barrier: A = {}, x_c = {}, γ = {}; one period from the release.",
-        decimal(setup.amplitude),
+        "{what}: {release}, {}_c = {}{stiffness}; one period from the release.",
+        impact.letters.coordinate,
         decimal(setup.barrier),
-        decimal(setup.stiffness)
     );
+    let place = |side| (setup.side == side).then_some(setup.barrier);
     let figure = ImpactFigure {
-        left_barrier: None,
-        right_barrier: Some(setup.barrier),
+        left_barrier: place(Side::Left),
+        right_barrier: place(Side::Right),
         motions: &motions,
         caption: &caption,
     };

@@ -188,7 +188,7 @@ pub fn run() -> ExitCode {
     let input = match &command {
         Command::Derive(arguments) => problem::path(&arguments.problem),
         Command::Compare(arguments) => problem::path(&arguments.problem),
-        Command::Impact(arguments) => arguments.file.as_deref(),
+        Command::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
         Command::Simulate(arguments) => arguments.file.as_deref(),
         Command::Catalog(_) | Command::Schema(_) => None,
     };

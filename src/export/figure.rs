@@ -37,6 +37,8 @@ impl CurveStyle {
     pub const FORMULA: Self = Self("#d55e00", "6 3", 2.0);
     /// A second closed form beside the first: thin, black and dotted.
     pub const SECOND_FORMULA: Self = Self("#000000", "2 3", 1.5);
+    /// A third closed form: green, thin and solid.
+    pub const THIRD_FORMULA: Self = Self("#009e73", "none", 1.3);
     /// A difference or an error: thin and solid.
     pub const DIFFERENCE: Self = Self("#0072b2", "none", 1.6);
     /// One of a series, such as the errors of successive orders, after [`Self::DIFFERENCE`].
@@ -164,10 +166,12 @@ pub struct ImpactFigure<'a> {
 /// use lindstedt::impact::{Setup, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// let [truth, _, energy] = impact.paths(200);
-/// let motions = [("Runge-Kutta", CurveStyle::RUNGE_KUTTA, &truth), ("closed form", CurveStyle::FORMULA, &energy)].map(
-///     |(label, style, path)| ImpactMotion { label, style, samples: &path.samples, contact: &path.contact },
-/// );
+/// let paths = impact.paths(200);
+/// let styles = [("Runge-Kutta", CurveStyle::RUNGE_KUTTA), ("closed form", CurveStyle::FORMULA)];
+/// let motions = paths.iter().zip(styles).map(|(path, (label, style))| {
+///     ImpactMotion { label, style, samples: &path.samples, contact: &path.contact }
+/// });
+/// let motions: Vec<_> = motions.collect();
 /// let right_barrier = Some(impact.setup.barrier);
 /// let svg = impact_figure(&ImpactFigure { left_barrier: None, right_barrier, motions: &motions, caption: "One impact." })?;
 /// assert!(svg.starts_with("<svg") && svg.contains("closed form"));

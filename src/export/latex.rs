@@ -223,15 +223,25 @@ impl Page {
                     self.comment(Rank::Note, line.clone());
                 }
             }
-            Block::Speed(speed) => self.rows.push(impact::speed(*speed)),
-            Block::Phase(phase) => self.rows.extend(impact::phase(phase)),
-            Block::Quantities { rows, .. } => self.table(&impact::quantities(rows)),
-            Block::Verdicts {
-                verdicts: [paper, energy],
-                ..
+            Block::Reading { reading, .. } => self.rows.push(impact::reading(*reading)),
+            Block::Fitted {
+                fitted,
+                barrier,
+                rule,
+                letters,
+                per_stiffness,
             } => {
-                let words = format!("verdict: paper {}, energy {}", paper.name(), energy.name());
-                self.comment(Rank::Verdict, words);
+                let line = impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness);
+                self.rows.push(line);
+            }
+            Block::Phase { phase, letters, .. } => self.rows.extend(impact::phase(phase, *letters)),
+            Block::Quantities { columns, rows, .. } => self.table(&impact::quantities(columns, rows)),
+            Block::Verdicts { verdicts, .. } => {
+                let each: Vec<String> = verdicts
+                    .iter()
+                    .map(|(reading, verdict)| format!("{} {}", reading.name(), verdict.name()))
+                    .collect();
+                self.comment(Rank::Verdict, format!("verdict: {}", each.join(", ")));
             }
         }
     }

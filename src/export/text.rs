@@ -164,11 +164,27 @@ impl Page {
             Block::Refused(refused) => comparison::refused(refused, self),
             Block::TrueMotion(lines) => comparison::true_motion(lines, self.width),
             Block::Closing(words) => comparison::wrapped(words, self.width, "", "") + "\n",
-            Block::Speed(speed) => impact::speed(*speed),
-            Block::Phase(phase) => impact::phase(phase),
-            Block::Quantities { rows, deviations } => impact::quantities(rows, deviations),
+            Block::Reading { words, .. } => format!("{words}\n"),
+            Block::Fitted {
+                fitted,
+                barrier,
+                rule,
+                letters,
+                per_stiffness,
+            } => impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness),
+            Block::Phase {
+                phase,
+                letters,
+                release,
+            } => impact::phase(phase, *letters, release),
+            Block::Quantities {
+                columns,
+                rows,
+                deviations,
+                shapes,
+            } => impact::quantities(columns, rows, deviations, shapes),
             Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
-            Block::Shortcoming { speed, errors, cause } => impact::shortcoming(*speed, errors, cause),
+            Block::Shortcoming { reading, errors, cause } => impact::shortcoming(*reading, errors, cause),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The main job: pendulum and elastic barrier, from the equation to three checked phases.
+//! The main job: a swing and an elastic barrier, from the equation to three checked phases.
 //!
 //! ```text
 //! x'' + sin x + gamma (x - x_c)^(3/2) H(x - x_c) = 0,   x(0) = -A, x'(0) = 0        (9)
@@ -7,64 +7,21 @@
 //! return    x = A cos(omega (t - t2) + acos(x_c/A))                                   (16)
 //! ```
 //!
-//! The law comes from [`method::solve`] on `x'' + sin x = 0`, the phases from
-//! [`three_phases`], the judgement from Runge-Kutta on equation (9) as it stands.
+//! In: a [`Setup`]. Out: an [`Impact`]: one column for each reading. The paper's comes first, with its one-term swing by
+//! [`method::solve`] and its line by [`three_phases`], then the same with the speed from the energy, then the derived one, all
+//! harmonics and the best contact law; each judged by Runge-Kutta on the equation as it stands. Without an order or a method the
+//! derived column has the first of a ladder that passes: what it tried is told.
 
-use super::hertz::DEFAULT_STIFFNESS;
+use super::collision::{Collision, CollisionError};
+use super::derived::{Flight, NoFlight, contact, phases_of};
 use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
-use super::linearisation::Rule;
-use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
 use super::phases::{ContactSpeed, Form, PhasesError, Swing, ThreePhases, three_phases};
-use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError};
-use crate::method::{self, Refusal};
+use super::setup::{Equations, Letters, Setup, SetupError};
+use crate::method::table::{Choice, Entry};
+use crate::method::{self, Refusal, is_odd};
 use crate::numeric::ode::Options;
-use crate::oscillator::{Oscillator, OscillatorError};
-use crate::solution::Solution;
-use crate::symbol::Symbol;
+use crate::solution::{Method, Solution};
 use crate::verify::Verdict;
-
-/// The swing without barrier.
-const FREE_SWING: &str = "x'' + sin(x) = 0";
-
-/// The equation that is judged, equation (9).
-const WITH_BARRIER: &str = "x'' + sin(x) + gamma*(x - xc)^(3/2)*H(x - xc) = 0";
-
-/// The numbers of an impact.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Setup {
-    /// Released from rest at `x = -amplitude`, rad.
-    pub amplitude: f64,
-    /// Position of the barrier, rad.
-    pub barrier: f64,
-    /// Dimensionless stiffness gamma, positive.
-    pub stiffness: f64,
-    /// Where gamma comes from, in words.
-    pub stiffness_source: String,
-    /// Order of the frequency law in the amplitude.
-    pub order: u32,
-    /// How the line is fitted.
-    pub rule: Rule,
-    /// Error per step of Runge-Kutta, relative; between 1e-15 and 0.1.
-    pub integrator_tolerance: f64,
-    /// Steps after which Runge-Kutta gives up, which is an error.
-    pub step_limit: u32,
-}
-
-/// The paper's pendulum: released at 1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
-impl Default for Setup {
-    fn default() -> Self {
-        Self {
-            amplitude: DEFAULT_AMPLITUDE,
-            barrier: DEFAULT_BARRIER,
-            stiffness: DEFAULT_STIFFNESS,
-            stiffness_source: "equation (8)".to_owned(),
-            order: 2,
-            rule: Rule::default(),
-            integrator_tolerance: 1e-10,
-            step_limit: 250_000,
-        }
-    }
-}
 
 /// The three phases in closed form beside the true motion.
 #[derive(Clone, Debug)]
@@ -74,152 +31,384 @@ pub struct Impact {
     pub setup: Setup,
     /// The equation as it is judged.
     pub equation: String,
-    /// The derived law of the free swing.
-    pub free_swing: Solution,
-    /// Every join continuous, contact speed from the one-term motion.
-    pub paper: ThreePhases,
-    /// Contact speed from the energy.
-    pub energy: ThreePhases,
+    /// Its letters.
+    pub letters: Letters,
+    /// The equilibrium of the swing, in the unit of x.
+    pub equilibrium: f64,
+    /// The derived law of the free swing in the paper's reading, where there is one.
+    pub free_swing: Option<Solution>,
+    /// The closed forms, the paper's first.
+    pub columns: Vec<Column>,
+    /// The swing of the derived column.
+    pub flight: Option<Flight>,
+    /// What was tried for the derived column, in order; where that has a reason not to be, it is here.
+    pub tried: Vec<Attempt>,
+    /// The speed at the touch from the energy, exact for the equation.
+    pub energy_speed: f64,
+    /// Why the paper's reading does not apply, where it does not.
+    pub no_paper: Option<String>,
     /// Runge-Kutta on the original equation.
     pub truth: TrueImpact,
-    /// Largest deviation of the paper's column.
-    pub paper_deviation: Deviation,
-    /// Largest deviation of the energy column.
-    pub energy_deviation: Deviation,
+}
+
+/// How the three phases are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// As the paper has it: every join continuous, contact speed from the one-term motion.
+    Paper,
+    /// The same with the contact speed from the energy.
+    Energy,
+    /// The derived motion with all its harmonics, the joins from it.
+    Derived,
+}
+
+impl Reading {
+    /// The name in tables and documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Energy => "energy",
+            Self::Derived => "derived",
+        }
+    }
+}
+
+/// The three phases in one reading, judged.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Column {
+    /// Which reading it is.
+    pub reading: Reading,
+    /// The closed forms.
+    pub phases: ThreePhases,
+    /// Its largest deviation from the true motion.
+    pub deviation: Deviation,
+}
+
+/// A method that was tried for the derived column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// The method.
+    pub method: Method,
+    /// Its order, where it was given one.
+    pub order: Option<u32>,
+    /// Its degrees, where it was given some.
+    pub degrees: Option<(u32, u32)>,
+    /// The largest error, relative, or why there is none.
+    pub error: Result<f64, String>,
 }
 
 /// Why there is no impact to report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
+    /// There is no equation of an impact.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Nothing hits the barrier.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
     /// The law could not be derived.
     #[error(transparent)]
     Law(#[from] Refusal),
-    /// The equation could not be read.
-    #[error(transparent)]
-    Equation(#[from] OscillatorError),
-    /// The equation could not be evaluated.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
-    /// A step of algebra failed.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
     /// There are no three phases.
     #[error(transparent)]
     Phases(#[from] PhasesError),
+    /// The swing of the derived column could not be derived.
+    #[error(transparent)]
+    Flight(#[from] NoFlight),
     /// The true motion could not be followed.
     #[error(transparent)]
     Truth(#[from] TrueImpactError),
+    /// No reading applies.
+    #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
+    NoReading {
+        /// Why not the paper's.
+        paper: String,
+        /// What else was tried.
+        tried: Vec<Attempt>,
+    },
 }
 
-/// Derives the law, builds both columns and follows the true motion.
+fn attempts(tried: &[Attempt]) -> String {
+    let reason = |attempt: &Attempt| {
+        let reason = attempt.error.as_ref().err()?;
+        Some(format!("{}: {reason}", attempt.method.title()))
+    };
+    tried.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
+}
+
+/// Derives the law, builds every column and follows the true motion.
 ///
 /// # Errors
 /// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not positive: see [`ImpactError`].
 ///
 /// ```
-/// use lindstedt::impact::{Setup, solve};
+/// use lindstedt::impact::{Reading, Setup, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// let contact = &impact.energy.phases[1];
-/// assert!(contact.end > contact.start && contact.form.at(0.0).1 > 0.0); // pressed into the barrier
+/// let derived = impact.column(Reading::Derived).ok_or("none passes")?;
+/// let contact = &derived.phases.phases[1];
+/// assert!(contact.end > contact.start && contact.at(contact.start).1 > 0.0); // pressed into the barrier
+/// assert!((derived.phases.penetration / impact.truth.penetration - 1.0).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
-    let swing = Oscillator::parse(FREE_SWING)?;
-    let free_swing = method::solve(
-        &swing,
-        &method::Options {
-            order: Some(setup.order),
-            ..Default::default()
-        },
-    )?;
-    let amplitude = |symbol| (symbol == free_swing.amplitude.symbol()).then_some(setup.amplitude);
-    let squared = free_swing
-        .law
-        .frequency_squared()
-        .map(|squared| free_swing.evaluate(squared, &amplitude));
-    let frequency_squared = squared.and_then(Result::ok).unwrap_or(f64::NAN);
-
-    // Both forces come out of the printed equation, so that phases and judge use what is printed.
-    let original = Oscillator::parse(WITH_BARRIER)?;
-    let [position, barrier, stiffness] = ["x", "xc", "gamma"].map(Symbol::new);
-    let restoring = original.force.substitute(stiffness, &Expr::zero())?;
-    let elastic = original
-        .force
-        .differentiate(stiffness)?
-        .substitute(barrier, &Expr::zero())?;
-    let linear = restoring.differentiate(position)?.evaluate(&[(position, 0.0)].into())?;
-    let (restoring, elastic) = (
-        CompiledFunction::new(&restoring, &[position])?,
-        CompiledFunction::new(&elastic, &[position])?,
-    );
-    let restoring_force = |x: f64| restoring.call(&[x]);
-    let elastic_force = |depth: f64| elastic.call(&[depth]);
-
-    let phases = |column| {
-        three_phases(
-            &Swing {
-                amplitude: setup.amplitude,
-                barrier: setup.barrier,
-                stiffness: setup.stiffness,
-                frequency_squared,
-                linear_stiffness: linear,
-                restoring_force: &restoring_force,
-                elastic_force: &elastic_force,
-                rule: setup.rule,
-            },
-            column,
-        )
+    let equations = setup.equations()?;
+    let (sign, origin) = (setup.side.sign(), equations.equilibrium);
+    // z = sign (x - x_e) runs from the equilibrium towards the barrier.
+    let z = |x: f64| sign * (x - origin);
+    let restoring_force = |z: f64| sign * equations.restoring_force(origin + sign * z);
+    let elastic_force = |depth: f64| equations.elastic_force(depth);
+    let collision = Collision {
+        release: z(setup.release),
+        barrier: z(setup.barrier),
+        stiffness: equations.stiffness,
+        restoring_force: &restoring_force,
+        elastic_force: &elastic_force,
     };
-    let (paper, energy) = (phases(ContactSpeed::Paper)?, phases(ContactSpeed::Energy)?);
+    let seen = |error: CollisionError| error.seen_from(sign, origin);
+    collision.check().map_err(seen)?;
+    let paper = paper(&setup, &equations, &collision);
+    let energy_speed = collision.contact_speed().map_err(seen)?;
     let options = Options {
         maximum_steps: setup.step_limit as usize,
         ..Options::with_tolerance(setup.integrator_tolerance)
     };
-    let truth = assured_impact(
-        setup.amplitude,
-        setup.barrier,
-        setup.stiffness,
-        restoring_force,
-        elastic_force,
-        &options,
-    )?;
-    let (paper_deviation, energy_deviation) = (deviation(&paper, &truth), deviation(&energy, &truth));
+    let truth = assured_impact(&collision, &options).map_err(|error| match error {
+        TrueImpactError::Collision(error) => seen(error).into(),
+        other => ImpactError::from(other),
+    })?;
+    let column = |reading, phases: ThreePhases| Column {
+        reading,
+        deviation: deviation(&phases, &truth),
+        phases: phases.moved(sign, origin),
+    };
+    let errors = |phases: &ThreePhases| {
+        let seen = phases.moved(sign, -sign * origin);
+        worst(&errors_of(
+            &seen,
+            &deviation(&seen, &truth),
+            &truth,
+            collision.release.abs(),
+        ))
+    };
+    let (derived, tried) = derived(&setup, &equations, &collision, &errors);
+    let (free_swing, paper, no_paper) = match paper {
+        Ok((law, phases)) => (Some(law), phases, None),
+        Err(error) => {
+            if derived.is_none() && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_)) {
+                return Err(error);
+            }
+            (None, vec![], Some(error.to_string()))
+        }
+    };
+    let mut columns: Vec<Column> = paper
+        .into_iter()
+        .map(|(reading, phases)| column(reading, phases))
+        .collect();
+    let flight = match derived {
+        None => None,
+        Some((flight, phases)) => {
+            columns.push(Column {
+                reading: Reading::Derived,
+                deviation: deviation(&phases.moved(sign, -sign * origin), &truth),
+                phases,
+            });
+            Some(flight)
+        }
+    };
+    if columns.is_empty() {
+        let paper = no_paper.unwrap_or_default();
+        return Err(ImpactError::NoReading { paper, tried });
+    }
     Ok(Impact {
-        equation: original.equation().to_string(),
+        equation: equations.judged.clone(),
+        letters: equations.letters,
+        equilibrium: origin,
         setup,
         free_swing,
-        paper,
-        energy,
+        columns,
+        flight,
+        tried,
+        energy_speed,
+        no_paper,
         truth,
-        paper_deviation,
-        energy_deviation,
     })
 }
 
-/// One number of an impact: by either column and by Runge-Kutta.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The order of the law in the paper's reading, where none is given.
+const PAPERS_ORDER: u32 = 2;
+
+/// The paper's law and its two readings: of a swing whose force is odd, by one cosine.
+fn paper(
+    setup: &Setup,
+    equations: &Equations,
+    collision: &Collision,
+) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
+    let swing = &equations.swing;
+    if equations.equilibrium != 0.0 || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)? {
+        return Err(SetupError::NotOdd {
+            force: swing.force.to_string(),
+        }
+        .into());
+    }
+    let order = match setup.method {
+        None | Some(Method::LindstedtPoincare) => setup.order.unwrap_or(PAPERS_ORDER),
+        Some(_) => PAPERS_ORDER,
+    };
+    let law = method::solve(
+        swing,
+        &method::Options {
+            order: Some(order),
+            ..Default::default()
+        },
+    )?;
+    let amplitude = -collision.release;
+    let values = equations.values.numbers();
+    let known = |name| match name == law.amplitude.symbol() {
+        true => Some(amplitude),
+        false => values.get(&name).copied(),
+    };
+    let squared = law.law.frequency_squared().map(|squared| law.evaluate(squared, &known));
+    let swing = Swing {
+        amplitude,
+        barrier: collision.barrier,
+        stiffness: collision.stiffness,
+        frequency_squared: squared.and_then(Result::ok).unwrap_or(f64::NAN),
+        linear_stiffness: equations.slope(0.0),
+        restoring_force: collision.restoring_force,
+        elastic_force: collision.elastic_force,
+        rule: setup.rule,
+    };
+    let readings = [
+        (Reading::Paper, ContactSpeed::Paper),
+        (Reading::Energy, ContactSpeed::Energy),
+    ];
+    let phases = readings.map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?)));
+    Ok((law, phases.into_iter().collect::<Result<_, PhasesError>>()?))
+}
+
+/// What a method is asked for: an order, or two degrees.
+type Rung = (Option<u32>, Option<(u32, u32)>);
+
+/// The highest order that is tried where none is asked for.
+const LADDER: u32 = 16;
+
+/// The derived column: as asked, or the first of a ladder of orders and methods that passes; where none passes, the best. `error` is
+/// the largest error of three phases.
+fn derived(
+    setup: &Setup,
+    equations: &Equations,
+    collision: &Collision,
+    error: &dyn Fn(&ThreePhases) -> f64,
+) -> (Option<(Flight, ThreePhases)>, Vec<Attempt>) {
+    let methods = match (setup.method, setup.order) {
+        (Some(method), _) => vec![method],
+        (None, Some(_)) => vec![Method::LindstedtPoincare],
+        (None, None) => vec![Method::LindstedtPoincare, Method::HarmonicBalance, Method::Exact],
+    };
+    let mut tried: Vec<Attempt> = Vec::new();
+    let mut best: Option<(f64, Flight, ThreePhases)> = None;
+    for method in methods {
+        let takes = |choice| Entry::of(method).takes(choice);
+        let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
+            (None, None) if takes(Choice::Degrees) => (1..=LADDER / 4).map(|n| (None, Some((n, n)))).collect(),
+            (None, None) if takes(Choice::Order) => (1..=LADDER).map(|order| (Some(order), None)).collect(),
+            chosen => vec![chosen],
+        };
+        let mut last: Option<Solution> = None;
+        for (order, degrees) in rungs {
+            let options = method::Options {
+                method: Some(method),
+                order,
+                pade: degrees,
+                amplitude: setup.amplitude_convention,
+                ..Default::default()
+            };
+            let found = Flight::derive(equations, [setup.release, -setup.side.sign()], &options);
+            // An order that adds nothing is passed over.
+            let same = |flight: &Flight| {
+                let of = |solution: &Solution| (solution.law.clone(), solution.displacement.clone());
+                last.as_ref().is_some_and(|last| of(last) == of(&flight.solution))
+            };
+            if found.as_ref().is_ok_and(same) && !matches!(method, Method::HarmonicBalance) {
+                continue;
+            }
+            let refused = matches!(found, Err(NoFlight::Refusal(_)));
+            let phases = found.and_then(|flight| {
+                last = Some(flight.solution.clone());
+                let (touch, speed) = flight.touch(setup.barrier)?;
+                let contact = contact(collision, speed)?;
+                let phases = phases_of(&flight, setup.barrier, touch, &contact);
+                Ok((error(&phases), flight, phases))
+            });
+            let outcome = match &phases {
+                Ok((error, ..)) => Ok(*error),
+                Err(reason) => Err(reason.to_string()),
+            };
+            let passes = outcome.as_ref().is_ok_and(|error| *error <= setup.tolerance);
+            tried.push(Attempt {
+                method,
+                order,
+                degrees,
+                error: outcome,
+            });
+            if let Ok(found) = phases
+                && best.as_ref().is_none_or(|best| found.0 < best.0)
+            {
+                best = Some(found);
+            }
+            if passes {
+                return (best.map(|(_, flight, phases)| (flight, phases)), tried);
+            }
+            if refused {
+                break;
+            }
+        }
+    }
+    (best.map(|(_, flight, phases)| (flight, phases)), tried)
+}
+
+/// The relative errors of three phases: time to contact, speed, penetration, duration, period, and the largest deviation in each
+/// phase on its own clock, of the flights over the amplitude and of the contact over the depth.
+fn errors_of(phases: &ThreePhases, deviation: &Deviation, truth: &TrueImpact, amplitude: f64) -> [f64; 8] {
+    let [approach, contact, back] = deviation.aligned;
+    [
+        phases.phases[0].end / truth.touch.t - 1.0,
+        phases.speed / truth.touch.v - 1.0,
+        phases.penetration / truth.penetration - 1.0,
+        phases.duration / truth.duration - 1.0,
+        phases.period / truth.period - 1.0,
+        approach / amplitude,
+        contact / truth.penetration,
+        back / amplitude,
+    ]
+}
+
+/// The largest of them; what is no number is the largest.
+fn worst(errors: &[f64]) -> f64 {
+    errors.iter().fold(0.0, |worst: f64, error| match error.is_nan() {
+        true => f64::INFINITY,
+        false => worst.max(error.abs()),
+    })
+}
+
+/// One number of an impact: by Runge-Kutta and by every column.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     /// What it is.
     pub name: &'static str,
-    /// By the paper's column.
-    pub paper: f64,
-    /// By the energy column.
-    pub energy: f64,
     /// By Runge-Kutta.
     pub runge_kutta: f64,
+    /// By each column, in their order.
+    pub closed_forms: Vec<f64>,
 }
 
 impl Quantity {
-    /// `paper / runge_kutta - 1`.
-    pub fn paper_error(&self) -> f64 {
-        self.paper / self.runge_kutta - 1.0
-    }
-
-    /// `energy / runge_kutta - 1`.
-    pub fn energy_error(&self) -> f64 {
-        self.energy / self.runge_kutta - 1.0
+    /// The relative error of each column, `closed form / runge_kutta - 1`.
+    pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
+        self.closed_forms.iter().map(|value| value / self.runge_kutta - 1.0)
     }
 }
 
@@ -232,9 +421,23 @@ pub struct SampledMotion {
     pub contact: Vec<(f64, f64)>,
 }
 
+/// Numbers beyond the tolerance, with what of the closed form they come from.
+pub type Shortcoming = (Vec<(&'static str, f64)>, String);
+
 impl Impact {
-    /// Runge-Kutta, the paper's column and the energy column, with so many points a phase.
-    pub fn paths(&self, points: usize) -> [SampledMotion; 3] {
+    /// The column of a reading, where there is one.
+    pub fn column(&self, reading: Reading) -> Option<&Column> {
+        self.columns.iter().find(|column| column.reading == reading)
+    }
+
+    /// The distance of the release from the equilibrium, in the unit of x.
+    pub fn amplitude(&self) -> f64 {
+        (self.setup.release - self.equilibrium).abs()
+    }
+
+    /// Runge-Kutta and then every column, with so many points a phase.
+    pub fn paths(&self, points: usize) -> Vec<SampledMotion> {
+        let sign = self.setup.side.sign();
         let path = |[touch, exit, end]: [f64; 3], at: &dyn Fn(f64) -> (f64, f64)| {
             let between = |from: f64, to: f64| (0..=points).map(move |k| from + (to - from) * k as f64 / points as f64);
             let times = between(0.0, touch)
@@ -243,27 +446,32 @@ impl Impact {
             SampledMotion {
                 samples: times.map(|t| (t, at(t).0, at(t).1)).collect(),
                 contact: between(touch, exit)
-                    .map(|t| (t - touch, at(t).0 - self.setup.barrier))
+                    .map(|t| (t - touch, sign * (at(t).0 - self.setup.barrier)))
                     .collect(),
             }
         };
-        let closed_form = |phases: &ThreePhases| {
-            path(phases.phases.map(|phase| phase.end), &|t| {
+        let closed_form = |column: &Column| {
+            let phases = &column.phases;
+            path(phases.phases.each_ref().map(|phase| phase.end), &|t| {
                 (phases.position_at(t), phases.velocity_at(t))
             })
         };
         let truth = &self.truth;
-        let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| truth.at(t));
-        [true_path, closed_form(&self.paper), closed_form(&self.energy)]
+        let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| {
+            let (z, v) = truth.at(t);
+            (self.equilibrium + sign * z, sign * v)
+        });
+        std::iter::once(true_path)
+            .chain(self.columns.iter().map(closed_form))
+            .collect()
     }
 
     /// Speed, penetration and duration of the contact, the time to it, and the period.
     pub fn quantities(&self) -> [Quantity; 5] {
         let quantity = |name, of: &dyn Fn(&ThreePhases) -> f64, runge_kutta| Quantity {
             name,
-            paper: of(&self.paper),
-            energy: of(&self.energy),
             runge_kutta,
+            closed_forms: self.columns.iter().map(|column| of(&column.phases)).collect(),
         };
         [
             quantity("time to contact", &|phases| phases.phases[0].end, self.truth.touch.t),
@@ -274,53 +482,91 @@ impl Impact {
         ]
     }
 
-    /// omega of the approach and the return, by the law.
-    pub fn frequency(&self) -> f64 {
-        match self.paper.phases[0].form {
-            Form::Cosine { frequency, .. } | Form::Oscillation { frequency, .. } => frequency,
+    /// omega of the approach and the return in the paper's reading.
+    pub fn frequency(&self) -> Option<f64> {
+        match self.column(Reading::Paper)?.phases.phases[0].form {
+            Form::Cosine { frequency, .. } => Some(frequency),
+            _ => None,
         }
     }
 
-    /// The verdict on a column: every quantity within the tolerance.
-    pub fn verdict(&self, column: ContactSpeed, tolerance: f64) -> Verdict {
-        Verdict::of(self.shortcomings(column, tolerance).is_empty())
+    /// The largest deviation of a column in approach, contact and return, each on its own clock: of the flights over the
+    /// amplitude, of the contact over the true depth.
+    pub fn deviations(&self, column: &Column) -> [f64; 3] {
+        let [approach, contact, back] = column.deviation.aligned;
+        [
+            approach / self.amplitude(),
+            contact / self.truth.penetration,
+            back / self.amplitude(),
+        ]
     }
 
-    /// What lies beyond the tolerance in a column: the quantities with their errors, and what of the closed form they come
-    /// from.
-    pub fn shortcomings(&self, column: ContactSpeed, tolerance: f64) -> Vec<(Vec<(&'static str, f64)>, String)> {
-        let order = self.free_swing.order;
-        let (speed, met) = match column {
-            ContactSpeed::Paper => (
-                "the contact begins with the speed of that cosine",
-                ", met with that speed",
-            ),
-            ContactSpeed::Energy => ("the contact begins with the speed from the energy", ""),
+    /// The verdict on each column: every quantity within the tolerance, and the deviation in every phase.
+    pub fn verdicts(&self, tolerance: f64) -> Vec<Verdict> {
+        let passes = |index| Verdict::of(self.shortcomings(index, tolerance).is_empty());
+        (0..self.columns.len()).map(passes).collect()
+    }
+
+    /// What lies beyond the tolerance in a column, by its place: the quantities with their errors, and what of the closed form
+    /// they come from.
+    pub fn shortcomings(&self, index: usize, tolerance: f64) -> Vec<Shortcoming> {
+        let column = &self.columns[index];
+        let one_cosine = || {
+            let order = self.free_swing.as_ref().map_or(0, |law| law.order);
+            format!("the swing is one cosine, by the law of order {order}")
         };
-        let causes = [
+        let [swing, speed, contact] = match column.reading {
+            Reading::Paper => [
+                one_cosine(),
+                "the contact begins with the speed of that cosine".to_owned(),
+                "a line stands for the force of the barrier, met with that speed".to_owned(),
+            ],
+            Reading::Energy => [
+                one_cosine(),
+                "the contact begins with the speed from the energy".to_owned(),
+                "a line stands for the force of the barrier".to_owned(),
+            ],
+            Reading::Derived => [
+                "the derived swing is not closer at this order".to_owned(),
+                "the contact begins with the speed of the derived swing".to_owned(),
+                "the contact is met with that speed".to_owned(),
+            ],
+        };
+        let quantities = self.quantities();
+        let mut errors: Vec<(&'static str, f64)> = quantities
+            .iter()
+            .filter_map(|quantity| Some((quantity.name, quantity.errors().nth(index)?)))
+            .collect();
+        let [approach, pressed, back] = self.deviations(column);
+        errors.extend([
+            ("shape of the approach", approach),
+            ("shape of the contact", pressed),
+            ("shape of the return", back),
+        ]);
+        let causes: [(&[&str], String); 3] = [
             (
-                vec!["time to contact", "period"],
-                format!("the swing is one cosine, by the law of order {order}"),
+                &[
+                    "time to contact",
+                    "period",
+                    "shape of the approach",
+                    "shape of the return",
+                ],
+                swing,
             ),
-            (vec!["speed"], speed.to_owned()),
-            (
-                vec!["penetration", "duration"],
-                format!("a line stands for the force of the barrier{met}"),
-            ),
+            (&["speed"], speed),
+            (&["penetration", "duration", "shape of the contact"], contact),
         ];
-        let beyond = |name: &&str| {
-            let quantity = self.quantities().into_iter().find(|quantity| quantity.name == *name)?;
-            let error = match column {
-                ContactSpeed::Paper => quantity.paper_error(),
-                ContactSpeed::Energy => quantity.energy_error(),
-            };
-            // An error that is no number lies beyond every tolerance.
-            let within = error.abs() <= tolerance;
-            (!within).then_some((quantity.name, error))
+        // An error that is no number lies beyond every tolerance.
+        let beyond = |names: &[&str]| {
+            let those = errors.iter().filter(|(name, _)| names.contains(name));
+            those
+                .filter(|(_, error)| error.abs() > tolerance || error.is_nan())
+                .copied()
+                .collect::<Vec<_>>()
         };
         causes
             .into_iter()
-            .map(|(names, cause)| (names.iter().filter_map(beyond).collect::<Vec<_>>(), cause))
+            .map(|(names, cause)| (beyond(names), cause))
             .filter(|(errors, _)| !errors.is_empty())
             .collect()
     }

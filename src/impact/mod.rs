@@ -10,6 +10,7 @@
 //! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and modulus, equation (8).
 //! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
 //! - [`contact`]: the contact by other laws, the exact one among them, side by side.
+//! - `collision`: a [`Collision`], the question: two forces, a release and a barrier; the speed at the touch.
 //! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
 //! - `parameter`: the numbers that a study may vary, by name, group and unit.
 //! - `model`: the forces of equation (7) and what its parameters may be.
@@ -18,7 +19,9 @@
 //! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
 //! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
 //! - `judge`: Runge-Kutta on the equations as they stand, for one impact and for a whole motion.
-//! - `closed_form`: [`solve`], the derived law, the phases and the judge together.
+//! - `setup`: a [`Setup`], the whole question, and the equations and forces that it means.
+//! - `derived`: a [`Flight`], any derived motion as approach and return.
+//! - `closed_form`: [`solve`], every reading of the three phases and the judge together.
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
 //! - [`sweep`]: parameters over a range, on all cores.
 //!
@@ -45,7 +48,9 @@
 
 mod case;
 mod closed_form;
+mod collision;
 pub mod contact;
+mod derived;
 pub mod hertz;
 mod judge;
 mod linearisation;
@@ -53,18 +58,22 @@ mod model;
 mod parameter;
 mod phases;
 mod polynomial;
+mod setup;
 mod simulate;
 mod simulation;
 pub mod sweep;
 mod taylor;
 
 pub use case::{Case, CaseError, ContactDamping};
-pub use closed_form::{Impact, ImpactError, Quantity, SampledMotion, Setup, solve};
+pub use closed_form::{Attempt, Column, Impact, ImpactError, Quantity, Reading, SampledMotion, Shortcoming, solve};
+pub use collision::{Collision, CollisionError};
+pub use derived::{Flight, NoFlight};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use parameter::{Parameter, UnknownParameter};
-pub use phases::{ContactSpeed, Form, Phase, PhasesError, Swing, ThreePhases, three_phases};
+pub use phases::{ContactSpeed, FittedLine, Form, Phase, PhasesError, Swing, Term, ThreePhases, three_phases};
+pub use setup::{Letters, Setup, SetupError};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{
     Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime, Rest,

@@ -58,10 +58,22 @@ pub struct Pendulum {
     pub amplitude: f64,
     /// x_c, rad, or `[left, right]`.
     pub barrier: Barrier,
+    /// For an impact, on which side of its place a single barrier is: `right`, or `left` with the release at x = amplitude.
+    pub side: Option<BarrierSide>,
     /// x(0), rad, where it is not -amplitude.
     pub start: Option<f64>,
     /// x'(0), rad times omega, where it is not 0.
     pub speed: Option<f64>,
+}
+
+/// The side of its place on which a barrier is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BarrierSide {
+    /// At smaller angles.
+    Left,
+    /// At greater angles.
+    Right,
 }
 
 /// One barrier on the right, or one on either side.
@@ -80,6 +92,8 @@ pub enum Barrier {
 pub struct Contact {
     /// Dimensionless stiffness; from `[design]` by equation (8) where it is not given.
     pub gamma: Option<f64>,
+    /// For an impact, the whole force of the barrier as an expression in the depth d: `"k*d^2"`.
+    pub force: Option<String>,
     /// Dimensionless contact damping of equation (7).
     pub mu: Option<f64>,
     /// Contact damping of Hunt and Crossley, s/m.
@@ -138,11 +152,20 @@ pub struct Run {
     pub step_limit: u32,
 }
 
+impl Problem {
+    /// Gives a value, as if it stood in `[values]`.
+    pub fn set_value(&mut self, name: &str, value: &str) {
+        self.values
+            .insert(name.to_owned(), toml::Value::String(value.to_owned()));
+    }
+}
+
 impl Default for Pendulum {
     fn default() -> Self {
         Self {
             amplitude: DEFAULT_AMPLITUDE,
             barrier: Barrier::Right(DEFAULT_BARRIER),
+            side: None,
             start: None,
             speed: None,
         }

@@ -1,9 +1,14 @@
-//! What `impact` reads of a problem file: the undamped pendulum and its barrier, released from rest.
+//! What `impact` reads of a problem file: an undamped swing and its barrier, released from rest.
 
 use thiserror::Error;
 
-use super::{Barrier, Order, Problem, ProblemError, Reader, UnreadKey};
-use crate::impact::{Rule, Setup, UnknownRule};
+use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, UnreadKey};
+use crate::expr::{Expr, ParseError, parse_expression};
+use crate::impact::{CollisionError, Rule, Setup, Side, UnknownRule};
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::solution::{AmplitudeConvention, Method};
+use crate::spelling::nearest;
+use crate::symbol::Symbol;
 
 /// Why a file describes no impact in closed form.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -15,6 +20,12 @@ pub enum ImpactFileError {
     /// The design, or the rule.
     #[error(transparent)]
     Problem(#[from] ProblemError),
+    /// The swing.
+    #[error(transparent)]
+    Swing(#[from] OscillatorError),
+    /// The amplitude.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
     /// Something that damps.
     #[error(
         "the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda, or use \
@@ -27,25 +38,69 @@ pub enum ImpactFileError {
          `lindstedt simulate`"
     )]
     Driven,
-    /// Another start.
-    #[error(
-        "the three phases begin at rest at x = -amplitude: leave out `start` and `speed`, or use `lindstedt simulate`"
-    )]
+    /// A start that is not from rest.
+    #[error("the three phases begin at rest: leave out `speed`, or use `lindstedt simulate`")]
     Start,
-    /// The degrees of an approximant.
-    #[error("the order of the law is one whole number")]
-    Degrees,
-    /// An equation of its own.
-    #[error("the swing of an impact is x'' + sin(x) = 0: leave out `equation`, or use `lindstedt derive`")]
-    Equation,
-    /// Another method.
-    #[error("the law of the approach is derived by lindstedt-poincare: leave out `method`")]
-    Method,
+    /// A method that is none.
+    #[error("unknown method `{name}`{}", near.map_or(String::new(), |near| format!(": did you mean `{near}`?")))]
+    Method {
+        /// As written.
+        name: String,
+        /// The name that may be meant.
+        near: Option<&'static str>,
+    },
+    /// A convention that is none.
+    #[error("unknown amplitude `{0}`: choose initial or first-harmonic")]
+    Convention(String),
+    /// An equilibrium that is none.
+    #[error("about = \"{text}\": expected \"{coordinate} = VALUE\", an equilibrium of the coordinate {coordinate}")]
+    About {
+        /// As written.
+        text: String,
+        /// The coordinate.
+        coordinate: Symbol,
+    },
+    /// A force that cannot be read.
+    #[error("[contact] force = \"{text}\": {error}")]
+    Force {
+        /// As written.
+        text: String,
+        /// Why.
+        error: Box<ParseError>,
+    },
+    /// A stiffness beside a force that does not contain it.
+    #[error("gamma says nothing beside the force `{0}`: write it into the force, or leave it out")]
+    UnusedStiffness(String),
     /// A left barrier in the way.
     #[error(
         "released from rest at x = -amplitude the pendulum starts behind the left barrier: move it below -amplitude"
     )]
     LeftBarrier,
+    /// A number given twice.
+    #[error("`{name}` in [values] and `{key}` say the same: give one of them")]
+    Twice {
+        /// The name in `[values]`.
+        name: &'static str,
+        /// The other key.
+        key: &'static str,
+    },
+    /// Two keys for the release.
+    #[error("`amplitude` says nothing beside `start`, where the swing is released: give one of them")]
+    AmplitudeBesideStart,
+    /// An equilibrium without an equation.
+    #[error("`about` chooses an equilibrium of `equation`: the pendulum has one, leave it out")]
+    AboutNothing,
+    /// An equation without the numbers of its impact.
+    #[error(
+        "an equation of your own needs a release A, a barrier {barrier} and its stiffness gamma, or a `force`: give {missing}, such \
+         as --at A=1 --at {barrier}=0.3 --at gamma=1e6"
+    )]
+    Missing {
+        /// The letter of the barrier.
+        barrier: String,
+        /// What is missing.
+        missing: String,
+    },
 }
 
 impl TryFrom<&Problem> for Setup {
@@ -70,44 +125,163 @@ impl TryFrom<&Problem> for Setup {
         if problem.excitation.beta != 0.0 {
             return Err(ImpactFileError::Driven);
         }
-        if problem.pendulum.start.is_some() || problem.pendulum.speed.is_some() {
+        if problem.pendulum.speed.is_some_and(|speed| speed != 0.0) {
             return Err(ImpactFileError::Start);
         }
-        let usual = Self::default();
-        let order = match problem.order {
-            None => usual.order,
-            Some(Order::Power(order)) => order,
-            Some(Order::Degrees(_)) => return Err(ImpactFileError::Degrees),
+        let swing = swing(problem)?;
+        let force = force(problem)?;
+        // The numbers of the impact may stand among the values, by the letters of the printed equation.
+        let parameters = swing.as_ref().map_or(&[][..], |swing| &swing.parameters);
+        let coordinate = swing.as_ref().map_or("x", |swing| swing.coordinate.name());
+        let letters = [
+            ("A".to_owned(), "A", "[pendulum] amplitude"),
+            (format!("{coordinate}c"), "xc", "[pendulum] barrier"),
+            ("gamma".to_owned(), "gamma", "[contact] gamma"),
+        ];
+        let values = problem.exact_values()?;
+        let own = letters.each_ref().map(|(name, ..)| Symbol::new(name));
+        let own: Vec<Symbol> = own.into_iter().filter(|name| !parameters.contains(name)).collect();
+        let (_, rest) = values.split(&own);
+        let number = |index: usize| -> Result<Option<f64>, ImpactFileError> {
+            let (name, letter, key) = &letters[index];
+            let name = Symbol::new(name);
+            let value = own.contains(&name).then(|| values.get(name)).flatten();
+            match value.is_some() && problem.gives(key) {
+                true => Err(ImpactFileError::Twice { name: letter, key }),
+                false => Ok(value),
+            }
         };
-        if problem.equation.is_some() {
-            return Err(ImpactFileError::Equation);
+        if problem.pendulum.start.is_some() && (number(0)?.is_some() || problem.gives(letters[0].2)) {
+            return Err(ImpactFileError::AmplitudeBesideStart);
         }
-        if problem
-            .method
-            .as_deref()
-            .is_some_and(|name| name != "lindstedt-poincare")
+        if swing.is_some() {
+            let given =
+                |index: usize| Ok::<bool, ImpactFileError>(number(index)?.is_some() || problem.gives(letters[index].2));
+            let given = [
+                given(0)? || problem.pendulum.start.is_some(),
+                given(1)?,
+                given(2)? || force.is_some(),
+            ];
+            let missing = letters.iter().zip(given).filter(|(_, given)| !given);
+            let missing: Vec<&str> = missing.map(|((name, ..), _)| name.as_str()).collect();
+            if !missing.is_empty() {
+                return Err(ImpactFileError::Missing {
+                    barrier: letters[1].0.clone(),
+                    missing: missing.join(" and "),
+                });
+            }
+        }
+        let amplitude = number(0)?.unwrap_or(problem.pendulum.amplitude);
+        let side = match problem.pendulum.side {
+            Some(BarrierSide::Left) => Side::Left,
+            Some(BarrierSide::Right) | None => Side::Right,
+        };
+        if !(amplitude.is_finite() && amplitude > 0.0) && problem.pendulum.start.is_none() {
+            return Err(CollisionError::Amplitude(amplitude).into());
+        }
+        let release = problem.pendulum.start.unwrap_or(-side.sign() * amplitude);
+        let barrier = match (number(1)?, problem.pendulum.barrier, side) {
+            (Some(barrier), ..) => barrier,
+            (None, Barrier::Right(position), _) => position,
+            // A barrier beyond the release is never touched again.
+            (None, Barrier::Both([left, right]), Side::Right) if left < release => right,
+            (None, Barrier::Both([left, right]), Side::Left) if right > release => left,
+            (None, Barrier::Both(_), _) => return Err(ImpactFileError::LeftBarrier),
+        };
+        let (stiffness, source) = match number(2)? {
+            Some(stiffness) => (stiffness, "given"),
+            None => problem.stiffness().map_err(ProblemError::from)?,
+        };
+        let gives_stiffness = contact.gamma.is_some() || number(2)?.is_some();
+        if let Some(force) = &force
+            && gives_stiffness
+            && !force.contains(Symbol::new("gamma"))
         {
-            return Err(ImpactFileError::Method);
+            return Err(ImpactFileError::UnusedStiffness(force.to_string()));
         }
-        let amplitude = problem.pendulum.amplitude;
-        let barrier = match problem.pendulum.barrier {
-            Barrier::Right(position) => position,
-            // A left barrier beyond the release is never touched again.
-            Barrier::Both([left, right]) if left < -amplitude => right,
-            Barrier::Both(_) => return Err(ImpactFileError::LeftBarrier),
+        let (order, degrees) = match problem.order {
+            None => (None, None),
+            Some(Order::Power(order)) => (Some(order), None),
+            Some(Order::Degrees([numerator, denominator])) => (None, Some((numerator, denominator))),
         };
-        let (stiffness, source) = problem.stiffness().map_err(ProblemError::from)?;
         Ok(Self {
-            amplitude,
+            swing,
+            values: rest,
+            release,
             barrier,
+            side,
             stiffness,
             stiffness_source: source.to_owned(),
+            force,
+            method: method(problem)?,
             order,
+            degrees,
+            amplitude_convention: convention(problem)?,
             rule: linearisation(problem).map_err(ProblemError::from)?,
             integrator_tolerance: problem.run.integrator_tolerance,
             step_limit: problem.run.step_limit,
+            ..Self::default()
         })
     }
+}
+
+/// The swing, about the equilibrium asked for.
+fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
+    let Some(equation) = &problem.equation else {
+        return match problem.about {
+            None => Ok(None),
+            Some(_) => Err(ImpactFileError::AboutNothing),
+        };
+    };
+    let swing = Oscillator::parse(equation)?;
+    let Some(text) = &problem.about else {
+        return Ok(Some(swing));
+    };
+    let coordinate = swing.coordinate;
+    let place = text
+        .split_once('=')
+        .filter(|(name, _)| name.trim() == coordinate.name());
+    let place = place.and_then(|(_, place)| parse_expression(place).ok());
+    let known = |place: &Expr| place.symbols().iter().all(|name| swing.parameters.contains(name));
+    match place.filter(known) {
+        Some(place) => Ok(Some(swing.about(place))),
+        None => Err(ImpactFileError::About {
+            text: text.clone(),
+            coordinate,
+        }),
+    }
+}
+
+/// The whole force of the barrier.
+fn force(problem: &Problem) -> Result<Option<Expr>, ImpactFileError> {
+    let Some(text) = &problem.contact.force else {
+        return Ok(None);
+    };
+    let force = parse_expression(text);
+    let force = force.map_err(|error| ImpactFileError::Force {
+        text: text.clone(),
+        error: Box::new(error),
+    })?;
+    Ok(Some(force))
+}
+
+fn method(problem: &Problem) -> Result<Option<Method>, ImpactFileError> {
+    let Some(name) = &problem.method else {
+        return Ok(None);
+    };
+    let unknown = || ImpactFileError::Method {
+        name: name.clone(),
+        near: nearest(name, Method::ALL.iter().map(|method| method.name())),
+    };
+    Method::from_name(name).map(Some).ok_or_else(unknown)
+}
+
+fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ImpactFileError> {
+    let Some(name) = &problem.amplitude else {
+        return Ok(None);
+    };
+    let unknown = || ImpactFileError::Convention(name.clone());
+    AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
 }
 
 /// The rule that replaces the elastic force by a line.

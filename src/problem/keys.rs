@@ -33,19 +33,21 @@ impl fmt::Display for Reader {
 }
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 28] = [
+pub const KEYS: [(&str, &[Reader]); 30] = [
     ("equation", &[Derive, Compare, Impact, Simulate]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
     ("small", &[Derive, Compare]),
-    ("amplitude", &[Derive]),
-    ("about", &[Derive, Compare]),
-    ("[values]", &[Derive, Compare]),
+    ("amplitude", &[Derive, Impact]),
+    ("about", &[Derive, Compare, Impact]),
+    ("[values]", &[Derive, Compare, Impact]),
     ("[pendulum] amplitude", &[Impact, Simulate]),
     ("[pendulum] barrier", &[Impact, Simulate]),
+    ("[pendulum] side", &[Impact]),
     ("[pendulum] start", &[Impact, Simulate]),
     ("[pendulum] speed", &[Impact, Simulate]),
     ("[contact] gamma", &[Impact, Simulate]),
+    ("[contact] force", &[Impact]),
     ("[contact] mu", &[Impact, Simulate]),
     ("[contact] lambda", &[Impact, Simulate]),
     ("[contact] linearisation", &[Impact]),

@@ -22,7 +22,7 @@ use crate::impact::UnknownRule;
 use crate::impact::hertz::{Design, NotPositive};
 use crate::values::ValueError;
 
-pub use document::{Barrier, Contact, Damping, DesignSection, Excitation, Order, Pendulum, Problem, Run};
+pub use document::{Barrier, BarrierSide, Contact, Damping, DesignSection, Excitation, Order, Pendulum, Problem, Run};
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
 pub use keys::{KEYS, Reader, UnreadKey};
@@ -136,6 +136,7 @@ mod tests {
             Pendulum {
                 amplitude: 1.5,
                 barrier: Barrier::Right(0.323),
+                side: None,
                 start: None,
                 speed: None,
             }

@@ -1,10 +1,12 @@
-//! An impact: what was asked, the law of the free swing, the phases by either speed of contact, and the numbers beside
-//! Runge-Kutta.
+//! An impact: what was asked, each reading of the three phases with the law of its swing, and the numbers beside Runge-Kutta.
 
+use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::decimal::decimal;
-use crate::expr::Expr;
-use crate::impact::{ContactSpeed, Impact, ThreePhases};
+use crate::impact::{Attempt, Column, Flight, Form, Impact, Reading, Side};
+use crate::solution::law::Shown;
+use crate::solution::{AmplitudeConvention, Solution};
+use crate::symbol::Symbol;
 
 /// The document of an impact.
 ///
@@ -17,98 +19,238 @@ use crate::impact::{ContactSpeed, Impact, ThreePhases};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
-    let setup = &impact.setup;
-    let value = |name: &str, value, source| Block::Value {
-        name: name.into(),
-        value,
-        source,
-    };
-    let asked = vec![
-        value("A", setup.amplitude, None),
-        value("xc", setup.barrier, None),
-        value("gamma", setup.stiffness, Some(setup.stiffness_source.as_str())),
+    let mut sections = vec![
+        vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
+        asked(impact),
     ];
-    let start = "x(0) = -A, x'(0) = 0: released from rest, towards a barrier at xc";
-    Document {
-        sections: vec![
-            vec![
-                Block::QuestionAsTyped(&impact.equation),
-                Block::Heading(start.to_owned()),
-            ],
-            asked,
-            free_swing(impact),
-            phases(impact, &impact.paper),
-            phases(impact, &impact.energy),
-            judged(impact, tolerance),
-        ],
+    sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
+    for column in &impact.columns {
+        sections.push(match (column.reading, &impact.flight) {
+            (Reading::Derived, Some(flight)) => derived(impact, column, flight),
+            _ => papers(impact, column),
+        });
+    }
+    sections.extend(
+        impact
+            .no_paper
+            .as_ref()
+            .map(|reason| vec![Block::Heading(format!("The paper's reading does not apply: {reason}"))]),
+    );
+    if impact.flight.is_none() {
+        let tried = impact.tried.iter().map(|attempt| Block::Detail(attempted(attempt)));
+        let heading = Block::Heading("No derived motion".to_owned());
+        sections.push(std::iter::once(heading).chain(tried).collect());
+    }
+    sections.push(judged(impact, tolerance));
+    Document { sections }
+}
+
+/// The symbol of the release, where it is that of the paper.
+fn is_minus_amplitude(impact: &Impact) -> bool {
+    impact.equilibrium == 0.0 && impact.setup.side == Side::Right
+}
+
+/// Where a flight begins and ends, in words.
+fn release(impact: &Impact) -> String {
+    match is_minus_amplitude(impact) {
+        true => "-A".to_owned(),
+        false => decimal(impact.setup.release),
     }
 }
 
-fn free_swing(impact: &Impact) -> Vec<Block<'_>> {
-    let swing = &impact.free_swing;
-    let heading = format!(
-        "The law of the free swing, {} to order {} in A",
-        swing.method.title(),
-        swing.order
-    );
-    let mut blocks = vec![Block::Heading(heading), Block::Detail(swing.equation.to_string())];
-    if let Some(squared) = swing.law.frequency_squared() {
-        let omega = Expr::symbol("omega");
-        blocks.push(Block::Law {
-            left: &omega * &omega,
-            right: swing.ordered(squared),
-        });
+fn start(impact: &Impact) -> String {
+    let (x, barrier) = (impact.letters.coordinate, impact.letters.barrier);
+    let side = match impact.setup.side {
+        Side::Right => "",
+        Side::Left => " on the left,",
+    };
+    format!(
+        "{x}(0) = {}, {x}'(0) = 0: released from rest, towards a barrier{side} at {barrier}",
+        release(impact)
+    )
+}
+
+fn asked(impact: &Impact) -> Vec<Block<'_>> {
+    let setup = &impact.setup;
+    let value = |name: Symbol, value, source| Block::Value { name, value, source };
+    let mut blocks = Vec::new();
+    if is_minus_amplitude(impact) {
+        blocks.push(value(AmplitudeConvention::Initial.symbol(), -setup.release, None));
     }
-    blocks.push(Block::Detail(format!(
-        "omega   = {}   (A = {})",
-        decimal(impact.frequency()),
-        decimal(impact.setup.amplitude)
-    )));
+    blocks.push(value(impact.letters.barrier, setup.barrier, None));
+    let gamma = impact.letters.stiffness;
+    if setup.force.as_ref().is_none_or(|force| force.contains(gamma)) {
+        blocks.push(value(gamma, setup.stiffness, Some(setup.stiffness_source.as_str())));
+    }
+    blocks.extend(
+        setup
+            .values
+            .numbers()
+            .into_iter()
+            .map(|(name, number)| value(name, number, None)),
+    );
     blocks
 }
 
-fn phases<'a>(impact: &Impact, phases: &'a ThreePhases) -> Vec<Block<'a>> {
-    let setup = &impact.setup;
-    let constant = phases.line.q(setup.barrier);
-    let force = format!(
-        "elastic force gamma*({}*x {} {}), fitted by {} over the depth {}",
-        decimal(phases.line.slope),
-        if constant < 0.0 { '+' } else { '-' },
-        decimal(constant.abs()),
-        setup.rule,
-        decimal(phases.fitted_depth)
+fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
+    let heading = format!(
+        "The law of the free swing, {} to order {} in {}",
+        law.method.title(),
+        law.order,
+        law.small_parameter
     );
-    let mut blocks = vec![Block::Speed(phases.column), Block::Detail(force)];
-    blocks.extend(phases.phases.iter().map(Block::Phase));
-    if phases.velocity_jump != 0.0 {
-        let jump = decimal(phases.velocity_jump);
+    let mut blocks = vec![Block::Heading(heading), Block::Detail(law.equation.to_string())];
+    blocks.extend(first_law(law));
+    blocks.extend(
+        impact
+            .frequency()
+            .map(|frequency| omega(frequency, "A", impact.amplitude())),
+    );
+    blocks
+}
+
+/// The law in a line, omega^2 where there are two; a balance or an integral stays with `lindstedt derive`.
+fn first_law(solution: &Solution) -> Vec<Block<'_>> {
+    match solution.law.shown().into_iter().next() {
+        None | Some(Shown::System(_) | Shown::Quadrature(_)) => vec![],
+        Some(shown) => law_blocks(solution, shown),
+    }
+}
+
+fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
+    Block::Detail(format!(
+        "omega   = {}   ({symbol} = {})",
+        decimal(frequency),
+        decimal(amplitude)
+    ))
+}
+
+/// A reading by the paper's way.
+fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
+    let setup = &impact.setup;
+    let words = match column.reading {
+        Reading::Paper => "The paper's way: every join continuous, contact speed from the one-term motion".to_owned(),
+        _ => format!("With the contact speed from the energy, v = {}", energy_speed(impact)),
+    };
+    let mut blocks = vec![Block::Reading {
+        reading: column.reading,
+        words,
+    }];
+    blocks.extend(column.phases.fitted.map(|fitted| Block::Fitted {
+        fitted,
+        barrier: setup.barrier,
+        rule: setup.rule,
+        letters: impact.letters,
+        per_stiffness: setup.force.is_none(),
+    }));
+    blocks.extend(phases(impact, column));
+    if column.phases.velocity_jump != 0.0 {
+        let jump = decimal(column.phases.velocity_jump);
         blocks.push(Block::Detail(format!("the velocity jumps by {jump} at either join")));
     }
     blocks
 }
 
+/// The speed from the energy, for the pendulum in closed form.
+fn energy_speed(impact: &Impact) -> String {
+    let barrier = impact.letters.barrier;
+    match impact.setup.swing {
+        None => format!("sqrt(2*(cos({barrier}) - cos(A)))"),
+        Some(_) => format!("sqrt(2*(V(-A) - V({barrier})))"),
+    }
+}
+
+fn phases<'a>(impact: &Impact, column: &'a Column) -> impl Iterator<Item = Block<'a>> {
+    let (letters, release) = (impact.letters, release(impact));
+    column.phases.phases.iter().map(move |phase| Block::Phase {
+        phase,
+        letters,
+        release: release.clone(),
+    })
+}
+
+/// The derived reading: its law, how it was chosen, its phases.
+fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<Block<'a>> {
+    let solution = &flight.solution;
+    let mut blocks = vec![Block::Reading {
+        reading: column.reading,
+        words: format!("Derived, with all harmonics: {}", solution.title()),
+    }];
+    let chosen = match (impact.setup.method, impact.setup.order) {
+        (_, Some(_)) => None,
+        _ if impact.tried.len() == 1 => Some("the first that was tried passes".to_owned()),
+        _ => Some(format!(
+            "chosen among {} that were tried: the first that passes, or the best",
+            impact.tried.len()
+        )),
+    };
+    blocks.extend(chosen.map(Block::Detail));
+    let x = solution.coordinate();
+    if flight.is_turned {
+        blocks.push(Block::Detail(format!("{}   (the equation of -{x})", solution.equation)));
+    }
+    blocks.extend(first_law(solution));
+    blocks.push(omega(
+        flight.motion.frequency(),
+        solution.amplitude.symbol().name(),
+        flight.amplitude,
+    ));
+    blocks.extend(phases(impact, column));
+    blocks.push(Block::Detail(format!(
+        "the contact begins with the speed {} of that motion; by the energy it is {}",
+        decimal(column.phases.speed),
+        decimal(impact.energy_speed)
+    )));
+    if let Form::Contact { depth, .. } = &column.phases.phases[1].form {
+        blocks.push(Block::Detail(format!(
+            "the contact is written to {:.0e} of its depth; as JSON it has {} sines, to {:.0e}",
+            Form::WRITTEN_CONTACT,
+            depth.harmonics.len(),
+            depth.deviation
+        )));
+    }
+    blocks
+}
+
+fn attempted(attempt: &Attempt) -> String {
+    let order = attempt
+        .order
+        .map_or(String::new(), |order| format!(" to order {order}"));
+    let outcome = match &attempt.error {
+        Ok(error) => format!("largest error {} %", decimal(100.0 * error)),
+        Err(reason) => reason.clone(),
+    };
+    format!("{}{order}: {outcome}", attempt.method.title())
+}
+
 fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
-    const SPEEDS: [ContactSpeed; 2] = [ContactSpeed::Paper, ContactSpeed::Energy];
-    let deviations = [&impact.paper_deviation, &impact.energy_deviation];
+    let columns: Vec<Reading> = impact.columns.iter().map(|column| column.reading).collect();
+    let amplitude = impact.amplitude();
     // The power of ten above it; below 1e-15 nothing is known.
     let drift = 10_f64.powf(impact.truth.energy_drift.max(1e-15).log10().ceil());
     let mut blocks = vec![
         Block::Heading("Beside Runge-Kutta on the original equation".to_owned()),
         Block::Quantities {
+            columns: columns.clone(),
             rows: impact.quantities().into(),
-            deviations: deviations.map(|deviation| deviation.total / impact.setup.amplitude),
+            deviations: impact
+                .columns
+                .iter()
+                .map(|column| column.deviation.total / amplitude)
+                .collect(),
+            shapes: impact.columns.iter().map(|column| impact.deviations(column)).collect(),
         },
         Block::Detail(format!(
             "Runge-Kutta keeps the energy to {drift:e} of the kinetic energy at touch"
         )),
         Block::Verdicts {
-            verdicts: SPEEDS.map(|speed| impact.verdict(speed, tolerance)),
+            verdicts: columns.iter().copied().zip(impact.verdicts(tolerance)).collect(),
             tolerance,
         },
     ];
-    for speed in SPEEDS {
-        let shortcomings = impact.shortcomings(speed, tolerance).into_iter();
-        blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming { speed, errors, cause }));
+    for (index, &reading) in columns.iter().enumerate() {
+        let shortcomings = impact.shortcomings(index, tolerance).into_iter();
+        blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming { reading, errors, cause }));
     }
     blocks
 }

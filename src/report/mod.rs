@@ -14,7 +14,7 @@ pub use solution::solution;
 
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
-use crate::impact::{ContactSpeed, Phase, Quantity};
+use crate::impact::{FittedLine, Letters, Phase, Quantity, Reading, Rule};
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Definition, Solution, Sum};
 use crate::symbol::Symbol;
@@ -134,28 +134,58 @@ pub enum Block<'a> {
     TrueMotion(&'a [String]),
     /// What closes a report.
     Closing(String),
-    /// The phases that follow, by where the speed of contact comes from.
-    Speed(ContactSpeed),
+    /// The phases that follow.
+    Reading {
+        /// How they are read.
+        reading: Reading,
+        /// What that means, in a line.
+        words: String,
+    },
+    /// The line that replaces the force of the barrier.
+    Fitted {
+        /// The line and the depth over which it was fitted.
+        fitted: FittedLine,
+        /// The place of the barrier.
+        barrier: f64,
+        /// How it was fitted.
+        rule: Rule,
+        /// The letters of the equation.
+        letters: Letters,
+        /// Whether the line is multiplied by the stiffness.
+        per_stiffness: bool,
+    },
     /// A phase of an impact.
-    Phase(&'a Phase),
+    Phase {
+        /// The phase.
+        phase: &'a Phase,
+        /// The letters of the equation.
+        letters: Letters,
+        /// The release, in words.
+        release: String,
+    },
     /// The numbers of an impact beside those of Runge-Kutta.
     Quantities {
+        /// The columns.
+        columns: Vec<Reading>,
         /// A row each.
         rows: Vec<Quantity>,
-        /// The largest deviations over the amplitude: of the paper's phases, of those by the energy.
-        deviations: [f64; 2],
+        /// The largest deviation of each column over the amplitude, in real time.
+        deviations: Vec<f64>,
+        /// The largest deviation of each column in approach, contact and return, each on its own clock: of the flights over the
+        /// amplitude, of the contact over the depth.
+        shapes: Vec<[f64; 3]>,
     },
     /// The verdicts on an impact.
     Verdicts {
-        /// On the paper's phases, on those by the energy.
-        verdicts: [Verdict; 2],
+        /// On each column.
+        verdicts: Vec<(Reading, Verdict)>,
         /// The error up to which they pass.
         tolerance: f64,
     },
     /// Numbers beyond the tolerance, and what they come from.
     Shortcoming {
         /// Whose numbers.
-        speed: ContactSpeed,
+        reading: Reading,
         /// The names and the relative errors.
         errors: Vec<(&'static str, f64)>,
         /// The cause.

@@ -45,7 +45,7 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
 }
 
 /// A law as blocks.
-fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Block<'a>> {
+pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Block<'a>> {
     let omega = Expr::symbol("omega");
     let explicit = |left: Expr, right| Block::Law {
         left,

@@ -2,45 +2,71 @@
 
 use super::scientific;
 use crate::decimal::significant;
-use crate::impact::{ContactSpeed, Form, Phase, Quantity};
+use crate::export::latex::symbol;
+use crate::impact::{FittedLine, Form, Letters, Phase, Quantity, Reading, Rule, Term};
 
-/// What the phases that follow begin their contact with.
-pub(super) fn speed(speed: ContactSpeed) -> String {
-    let words = match speed {
-        ContactSpeed::Paper => "contact speed from the one-term motion",
-        ContactSpeed::Energy => "contact speed from the energy",
+/// Of what the phases that follow are.
+pub(super) fn reading(reading: Reading) -> String {
+    let words = match reading {
+        Reading::Paper => "contact speed from the one-term motion",
+        Reading::Energy => "contact speed from the energy",
+        Reading::Derived => "derived motion with all harmonics",
     };
     format!("&\\text{{{words}:}}")
 }
 
-/// A table: Runge-Kutta, and by either speed the number and its error.
-pub(super) fn quantities(rows: &[Quantity]) -> String {
-    let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
-    let row = |row: &Quantity| {
-        format!(
-            "{} & ${}$ & ${}$ & {} & ${}$ & {} \\\\\n",
-            row.name,
-            scientific(row.runge_kutta),
-            scientific(row.paper),
-            percent(row.paper_error()),
-            scientific(row.energy),
-            percent(row.energy_error())
-        )
+/// The line in place of the force of the barrier, and how it was fitted.
+pub(super) fn fitted(fitted: &FittedLine, barrier: f64, rule: Rule, letters: Letters, per_stiffness: bool) -> String {
+    let line = format!(
+        "{}\\,{} {}",
+        scientific(fitted.line.slope),
+        symbol(letters.coordinate),
+        signed(-fitted.line.q(barrier))
+    );
+    let force = match per_stiffness {
+        true => format!("{}\\left({line}\\right)", symbol(letters.stiffness)),
+        false => line,
     };
-    let head = " & Runge--Kutta & paper & error & energy & error \\\\\n\\hline\n";
-    let rows: String = rows.iter().map(row).collect();
-    format!("\\begin{{tabular}}{{lrrrrr}}\n{head}{rows}\\end{{tabular}}\n")
+    format!(
+        "&\\text{{elastic force }} {force} \\text{{, {rule} over the depth }} {}",
+        scientific(fitted.depth)
+    )
 }
 
-/// The name of a phase and when it is, and its closed form.
-pub(super) fn phase(phase: &Phase) -> [String; 2] {
+/// A table: Runge-Kutta, and by every column the number and its error.
+pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> String {
+    let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
+    let row = |row: &Quantity| {
+        let cells = row.closed_forms.iter().zip(row.errors());
+        let cells: String = cells
+            .map(|(value, error)| format!(" & ${}$ & {}", scientific(*value), percent(error)))
+            .collect();
+        format!("{} & ${}${cells} \\\\\n", row.name, scientific(row.runge_kutta))
+    };
+    let names: String = columns
+        .iter()
+        .map(|column| format!(" & {} & error", column.name()))
+        .collect();
+    let head = format!(" & Runge--Kutta{names} \\\\\n\\hline\n");
+    let rows: String = rows.iter().map(row).collect();
+    let places = "r".repeat(1 + 2 * columns.len());
+    format!("\\begin{{tabular}}{{l{places}}}\n{head}{rows}\\end{{tabular}}\n")
+}
+
+fn signed(value: f64) -> String {
+    format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()))
+}
+
+/// The name of a phase and when it is, and its closed form: a few waves to a row.
+pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
+    const WAVES_IN_A_ROW: usize = 3;
     let clock = match phase.joined_at() {
         Some(join) => format!("(t - t_{{{join}}})"),
         None => "t".to_owned(),
     };
-    let signed = |value: f64| format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()));
-    let form = match phase.form {
-        Form::Cosine {
+    let mut waves: Vec<String> = Vec::new();
+    match &phase.form {
+        &Form::Cosine {
             amplitude,
             frequency,
             phase,
@@ -50,33 +76,55 @@ pub(super) fn phase(phase: &Phase) -> [String; 2] {
             } else {
                 format!(" {}", signed(phase))
             };
-            format!(
+            waves.push(format!(
                 "{} \\cos\\left({}\\,{clock}{shift}\\right)",
                 scientific(amplitude),
                 scientific(frequency)
-            )
+            ));
         }
-        Form::Oscillation {
+        &Form::Oscillation {
             centre,
             amplitude,
             frequency,
         } => {
             let angle = format!("\\left({}\\,{clock}\\right)", scientific(frequency));
             let centre = significant(centre, 9);
-            format!(
+            waves.push(format!(
                 "{centre} {} \\cos{angle} {} \\sin{angle}",
                 signed(amplitude.re),
                 signed(-amplitude.im)
-            )
+            ));
         }
-    };
+        Form::Harmonics { .. } | Form::Contact { .. } => {
+            for (term, value) in phase.form.felt_terms() {
+                let size = if waves.is_empty() {
+                    scientific(value)
+                } else {
+                    signed(value)
+                };
+                waves.push(match term {
+                    Term::Constant => significant(value, 9),
+                    Term::Parabola => format!("{size}\\,{clock}(t_{{2}} - t)"),
+                    Term::Wave { function, frequency } => {
+                        format!("{size} \\{function}\\left({}\\,{clock}\\right)", scientific(frequency))
+                    }
+                });
+            }
+        }
+    }
     let (from, to) = match phase.name {
         "approach" => ("0", format!("t_{{1}} = {}", scientific(phase.end))),
         "contact" => ("t_{1}", format!("t_{{2}} = {}", scientific(phase.end))),
+        _ if phase.joined_at() == Some(3) => ("t_{2}", format!("t_{{3}} = {}", scientific(phase.end))),
         _ => ("t_{2}", scientific(phase.end)),
     };
-    [
-        format!("&\\text{{{},}} \\quad {from} \\le t \\le {to}", phase.name),
-        format!("x(t) &= {form}"),
-    ]
+    let mut rows = vec![format!("&\\text{{{},}} \\quad {from} \\le t \\le {to}", phase.name)];
+    for (index, waves) in waves.chunks(WAVES_IN_A_ROW).enumerate() {
+        let left = match index {
+            0 => format!("{}(t) &= ", symbol(letters.coordinate)),
+            _ => "&\\quad ".to_owned(),
+        };
+        rows.push(left + &waves.join(" "));
+    }
+    rows
 }

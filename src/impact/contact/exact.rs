@@ -221,11 +221,11 @@ pub struct SineSeries {
 }
 
 impl SineSeries {
-    /// A motion that is these sines and nothing else.
-    pub(super) fn of(duration: f64, harmonics: Vec<f64>) -> Self {
+    /// The series of these numbers, a motion of its own: T, the coefficient of s (T - s), and b_1, b_3, ..
+    pub fn new(duration: f64, parabola: f64, harmonics: Vec<f64>) -> Self {
         Self {
             duration,
-            parabola: 0.0,
+            parabola,
             harmonics,
             deviation: 0.0,
         }

@@ -260,8 +260,9 @@ impl Touch<'_> {
         let excess = |root: f64| squared_speed(root * root) / (self.speed * self.speed) - 1.0;
         let root = rising_root(excess).ok_or(ContactError::NotOscillating)?;
         let (square, harmonics) = self.perturbation(root * root, order);
-        Ok(SineSeries::of(
+        Ok(SineSeries::new(
             PI / positive("square of the frequency", square)?.sqrt(),
+            0.0,
             harmonics,
         ))
     }
@@ -351,7 +352,7 @@ impl Touch<'_> {
             return Err(ContactError::NotOscillating);
         }
         let harmonics = unknown.iter().take(count).map(|part| scale * part).collect();
-        Ok(SineSeries::of(PI / (frequency * unknown[count]), harmonics))
+        Ok(SineSeries::new(PI / (frequency * unknown[count]), 0.0, harmonics))
     }
 }
 

@@ -14,6 +14,7 @@
 use thiserror::Error;
 
 use super::Coordinate;
+use crate::impact::collision::{Collision, CollisionError};
 use crate::impact::linearisation::{greatest_depth, work};
 use crate::impact::phases::ThreePhases;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
@@ -58,30 +59,9 @@ pub struct Deviation {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TrueImpactError {
-    /// It turns round before the barrier.
-    #[error(
-        "the pendulum never reaches the barrier: released at x = {release} it turns round at x = {turn}, and the \
-         barrier stands at {barrier}: raise the amplitude or move the barrier"
-    )]
-    NeverReaches {
-        /// Where it is released.
-        release: f64,
-        /// Where it turns round.
-        turn: f64,
-        /// Where the barrier is.
-        barrier: f64,
-    },
-    /// The release is at or behind the barrier.
-    #[error(
-        "the release at x = {release} lies at or behind the barrier at {barrier}: raise the amplitude or move the \
-         barrier"
-    )]
-    ReleasedBehindBarrier {
-        /// Where it is released.
-        release: f64,
-        /// Where the barrier is.
-        barrier: f64,
-    },
+    /// Nothing hits the barrier.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
     /// The run gave up.
     #[error("the true motion could not be followed to the end of the impact: {}", way_forward(.0))]
     Stopped(StopReason),
@@ -114,48 +94,54 @@ fn way_forward(reason: &StopReason) -> String {
     }
 }
 
-/// Follows x'' + restoring_force(x) + stiffness * elastic_force(x - barrier) = 0 from rest at x = -amplitude until the
-/// barrier lets it go again, with the same speed: nothing is lost. The flight back is the approach run backwards, so the
-/// period has as many digits as the approach, also where the release is near the top of the swing and forgets its energy.
+/// Follows the motion from its release until the barrier lets it go again, with the same speed: nothing is lost. The flight
+/// back is the approach run backwards, so the period has as many digits as the approach, also where the release is near the
+/// top of the swing and forgets its energy.
 ///
-/// `elastic_force` is asked for depths of at least zero only. The contact is counted from the touch, in depth and in time,
-/// so a hard barrier costs no digits. No step may err by more than the relative tolerance at the amplitude or at the depth,
-/// however large the absolute one is.
+/// The contact is counted from the touch, in depth and in time, so a hard barrier costs no digits. No step may err by more
+/// than the relative tolerance at the amplitude or at the depth, however large the absolute one is.
 ///
 /// # Errors
 /// [`TrueImpactError`]: the barrier is not reached, or the run ends early and says why.
 ///
 /// ```
-/// use lindstedt::impact::{hertz::elastic_force, true_impact};
+/// use lindstedt::impact::{Collision, hertz::elastic_force, true_impact};
 /// use lindstedt::numeric::ode::Options;
 ///
-/// let truth = true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &Options::with_tolerance(1e-12))?;
+/// let pendulum = Collision {
+///     release: -1.5,
+///     barrier: 0.323,
+///     stiffness: 1e6,
+///     restoring_force: &f64::sin,
+///     elastic_force: &elastic_force,
+/// };
+/// let truth = true_impact(&pendulum, &Options::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
 /// assert!((truth.touch.v - by_energy).abs() < 1e-10 && truth.energy_drift < 1e-9);
 /// # Ok::<(), lindstedt::impact::TrueImpactError>(())
 /// ```
-pub fn true_impact(
-    amplitude: f64,
-    barrier: f64,
-    stiffness: f64,
-    restoring_force: impl Fn(f64) -> f64,
-    elastic_force: impl Fn(f64) -> f64,
-    options: &ode::Options,
-) -> Result<TrueImpact, TrueImpactError> {
-    let release = -amplitude;
+pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<TrueImpact, TrueImpactError> {
+    let &Collision {
+        release,
+        barrier,
+        stiffness,
+        restoring_force,
+        elastic_force,
+    } = collision;
     if barrier <= release {
-        return Err(TrueImpactError::ReleasedBehindBarrier { release, barrier });
+        return Err(CollisionError::ReleasedBehindBarrier { release, barrier }.into());
     }
+    let scale = release.abs();
     let swing = |_: f64, x: f64, _: f64| -restoring_force(x);
     let press = |depth: f64, _: f64| stiffness * elastic_force(depth.max(0.0));
-    let approach = approach(swing, [release, barrier], &at_scale(options, amplitude))?;
+    let approach = approach(swing, [release, barrier], &at_scale(options, scale))?;
     let touch = ode::State {
         x: barrier,
         ..approach.end()
     };
     let energy = 0.5 * touch.v * touch.v;
     // A barrier that is soft for this swing lets it through to the other side.
-    let size = greatest_depth(&elastic_force, energy / stiffness).map_or(amplitude, |depth| depth.min(amplitude));
+    let size = greatest_depth(elastic_force, energy / stiffness).map_or(scale, |depth| depth.min(scale));
     let touched = ode::State {
         t: 0.0,
         x: 0.0,
@@ -188,8 +174,8 @@ pub fn true_impact(
         x: inside.x(state.x),
         v: state.v,
     };
-    let stored = |depth: f64| Ok(stiffness * work(&elastic_force, depth)?);
-    let energy_drift = energy_drift([release, barrier], [&approach, &contact], &restoring_force, stored)?;
+    let stored = |depth: f64| Ok(stiffness * work(elastic_force, depth)?);
+    let energy_drift = energy_drift([release, barrier], [&approach, &contact], restoring_force, stored)?;
     Ok(TrueImpact {
         touch,
         deepest: seen(deepest),
@@ -237,11 +223,12 @@ fn approach(
     let approach = integrate(released.flight(swing), start, LONGEST_TIME, &events, options)?;
     match approach.stop_reason() {
         StopReason::Event { event: 0, .. } => Ok(approach),
-        StopReason::Event { .. } => Err(TrueImpactError::NeverReaches {
+        StopReason::Event { .. } => Err(CollisionError::NeverReaches {
             release,
-            turn: released.x(approach.end().x),
+            furthest: released.x(approach.end().x),
             barrier,
-        }),
+        }
+        .into()),
         reason => Err(TrueImpactError::Stopped(reason)),
     }
 }
@@ -285,35 +272,28 @@ const TIGHTEST: f64 = 1e-14;
 /// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six digits.
 ///
 /// ```
-/// use lindstedt::impact::{assured_impact, hertz::elastic_force};
+/// use lindstedt::impact::{Collision, assured_impact, hertz::elastic_force};
 /// use lindstedt::numeric::ode::Options;
 ///
-/// let truth = assured_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &Options::default())?;
+/// let pendulum = Collision {
+///     release: -1.5,
+///     barrier: 0.323,
+///     stiffness: 1e6,
+///     restoring_force: &f64::sin,
+///     elastic_force: &elastic_force,
+/// };
+/// let truth = assured_impact(&pendulum, &Options::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
 /// # Ok::<(), lindstedt::impact::TrueImpactError>(())
 /// ```
-pub fn assured_impact(
-    amplitude: f64,
-    barrier: f64,
-    stiffness: f64,
-    restoring_force: impl Fn(f64) -> f64,
-    elastic_force: impl Fn(f64) -> f64,
-    options: &ode::Options,
-) -> Result<TrueImpact, TrueImpactError> {
+pub fn assured_impact(collision: &Collision, options: &ode::Options) -> Result<TrueImpact, TrueImpactError> {
     let with = |tolerance: f64| {
         let options = ode::Options {
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
             ..*options
         };
-        true_impact(
-            amplitude,
-            barrier,
-            stiffness,
-            &restoring_force,
-            &elastic_force,
-            &options,
-        )
+        true_impact(collision, &options)
     };
     let mut tolerance = options.relative_tolerance;
     let mut motion = with(tolerance)?;
@@ -388,7 +368,7 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
         // As long as both last.
         let common = (to - from).min(phase.end - phase.start);
         aligned[index] = largest(0.0, common, |elapsed| {
-            phase.form.at(elapsed).0 - true_position(from + elapsed)
+            phase.at(phase.start + elapsed).0 - true_position(from + elapsed)
         });
     }
     // The contact of the closed form falls into another true phase and is short: seen there with a grid of its own.
@@ -421,7 +401,7 @@ mod tests {
     use super::*;
     use crate::impact::hertz::{Design, elastic_force};
     use crate::impact::linearisation::Rule;
-    use crate::impact::phases::{ContactSpeed, Swing, contact_speed, three_phases};
+    use crate::impact::phases::{ContactSpeed, Swing, three_phases};
     use crate::numeric::ode::Options;
     use crate::numeric::ode::root::find_root;
 
@@ -440,9 +420,18 @@ mod tests {
         }
     }
 
+    fn collision(amplitude: f64, barrier: f64, stiffness: f64) -> Collision<'static> {
+        Collision {
+            release: -amplitude,
+            barrier,
+            stiffness,
+            restoring_force: &FORCE,
+            elastic_force: &elastic_force,
+        }
+    }
+
     fn pendulum(barrier: f64, stiffness: f64) -> TrueImpact {
-        let options = Options::with_tolerance(1e-13);
-        true_impact(1.5, barrier, stiffness, f64::sin, elastic_force, &options).unwrap()
+        true_impact(&collision(1.5, barrier, stiffness), &Options::with_tolerance(1e-13)).unwrap()
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
@@ -475,7 +464,11 @@ mod tests {
         for (barrier, stiffness) in [(0.323, 1e6), (0.323, 3.0407e7), (0.0, 1e4), (-0.7, 1e5), (1.2, 1e8)] {
             let truth = pendulum(barrier, stiffness);
             near(truth.touch.v, (2.0 * (barrier.cos() - 1.5_f64.cos())).sqrt(), 1e-11);
-            near(truth.touch.v, contact_speed(1.5, barrier, f64::sin).unwrap(), 1e-11);
+            near(
+                truth.touch.v,
+                collision(1.5, barrier, stiffness).contact_speed().unwrap(),
+                1e-11,
+            );
             near(truth.exit.v, -truth.touch.v, 2e-11);
             let reached = (0.5 * barrier).sin() / 0.75_f64.sin();
             let approach = ellip::ellipk(m).unwrap() + ellip::ellipf(reached.asin(), m).unwrap();
@@ -502,9 +495,7 @@ mod tests {
     fn the_drift_tells_a_loose_run_from_a_tight_one() {
         let run = |tolerance| {
             let options = Options::with_tolerance(tolerance);
-            true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &options)
-                .unwrap()
-                .energy_drift
+            true_impact(&collision(1.5, 0.323, 1e6), &options).unwrap().energy_drift
         };
         assert!(run(1e-5) > 1e3 * run(1e-11));
     }
@@ -549,7 +540,7 @@ mod tests {
             elastic_force: &spring,
             ..swing(0.4, 1e4)
         };
-        let truth = true_impact(1.5, 0.4, 1e4, linear, spring, &Options::with_tolerance(1e-13)).unwrap();
+        let truth = true_impact(&exact.collision(), &Options::with_tolerance(1e-13)).unwrap();
         for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&exact, column).unwrap();
             let found = deviation(&motion, &truth);
@@ -563,27 +554,33 @@ mod tests {
 
     #[test]
     fn what_cannot_be_followed_is_refused() {
-        let run = |amplitude, barrier| {
-            true_impact(amplitude, barrier, 1e6, f64::sin, elastic_force, &Options::default()).unwrap_err()
-        };
+        let run =
+            |amplitude, barrier| true_impact(&collision(amplitude, barrier, 1e6), &Options::default()).unwrap_err();
         let refused = run(0.3, 0.323);
         assert!(
-            matches!(refused, TrueImpactError::NeverReaches { turn, .. } if (turn - 0.3).abs() < 1e-8),
+            matches!(refused, TrueImpactError::Collision(CollisionError::NeverReaches { furthest, .. }) if (furthest - 0.3).abs() < 1e-8),
             "{refused}"
         );
-        assert!(matches!(run(1.5, -1.5), TrueImpactError::ReleasedBehindBarrier { .. }));
+        assert!(matches!(
+            run(1.5, -1.5),
+            TrueImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
+        ));
         assert!(matches!(run(f64::NAN, 0.3), TrueImpactError::Integration(_)));
         let few = Options {
             maximum_steps: 5,
             ..Options::default()
         };
-        let refused = true_impact(1.5, 0.323, 1e6, f64::sin, elastic_force, &few).unwrap_err();
+        let refused = true_impact(&collision(1.5, 0.323, 1e6), &few).unwrap_err();
         assert!(
             matches!(refused, TrueImpactError::Stopped(StopReason::MaximumSteps { .. })),
             "{refused}"
         );
         // At rest on top: it never gets anywhere.
-        let refused = true_impact(1.0, 0.3, 1.0, |_| 0.0, elastic_force, &Options::default()).unwrap_err();
+        let still = Collision {
+            restoring_force: &|_| 0.0,
+            ..collision(1.0, 0.3, 1.0)
+        };
+        let refused = true_impact(&still, &Options::default()).unwrap_err();
         assert!(
             matches!(refused, TrueImpactError::Stopped(StopReason::EndReached)),
             "{refused}"

@@ -1,0 +1,211 @@
+//! What hits what: a swing released from rest, and an elastic barrier in its way.
+//!
+//! ```text
+//! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0,   x(0) = x_r < x_c,  x'(0) = 0
+//! v^2/2 = V(x_r) - V(x_c) = - int_(x_r)^(x_c) f                  the speed at the touch, from the energy
+//! ```
+//!
+//! In: the two forces as closures, release and barrier in the units of the equation. Out: a [`Collision`], the question that
+//! closed forms and judge answer, and the speed at the touch; or why there is no touch. The barrier stands on the right: a
+//! motion to the left is looked at from the other side.
+
+use thiserror::Error;
+
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
+
+/// x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = release towards the barrier at x_c, to the right of it.
+#[derive(Clone, Copy)]
+pub struct Collision<'a> {
+    /// Where it is released, in the unit of x.
+    pub release: f64,
+    /// Position x_c of the barrier, in the unit of x.
+    pub barrier: f64,
+    /// Stiffness gamma > 0 of the barrier, equation (8) for a pendulum.
+    pub stiffness: f64,
+    /// f(x), the force of the swing without the barrier.
+    pub restoring_force: &'a dyn Fn(f64) -> f64,
+    /// F(depth), the elastic force of the barrier per unit of gamma, such as
+    /// [`hertz::elastic_force`](super::hertz::elastic_force); asked for depths of at least zero only.
+    pub elastic_force: &'a dyn Fn(f64) -> f64,
+}
+
+/// Why nothing hits the barrier.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CollisionError {
+    /// The amplitude is not a positive number.
+    #[error("the amplitude must be a positive number, not {0}: the release is at x = -amplitude")]
+    Amplitude(f64),
+    /// The release is not a finite number.
+    #[error("the release must be a finite number, not {0}")]
+    Release(f64),
+    /// A swing whose energy is no number.
+    #[error(
+        "the amplitude {0:e} is too small: its energy, A^2, underflows; below 1e-8 or so the swing is linear, scale it up"
+    )]
+    TooSmall(f64),
+    /// The barrier is not a finite number.
+    #[error("the position of the barrier must be a finite number, not {0}")]
+    Barrier(f64),
+    /// The barrier has no stiffness.
+    #[error(
+        "the stiffness gamma of the contact must be a positive number, not {0}: without a barrier the motion is the \
+         free swing"
+    )]
+    Stiffness(f64),
+    /// The swing does not go as far as the barrier.
+    #[error(
+        "the pendulum never reaches the barrier: released at x = {release} it swings no further than {furthest}, and \
+         the barrier stands at {barrier}: raise the amplitude or move the barrier"
+    )]
+    NeverReaches {
+        /// Where it is released.
+        release: f64,
+        /// The furthest point.
+        furthest: f64,
+        /// Where the barrier is.
+        barrier: f64,
+    },
+    /// The release is at or beyond the barrier.
+    #[error(
+        "the release at x = {release} lies at or behind the barrier at {barrier}: raise the amplitude or move the \
+         barrier"
+    )]
+    ReleasedBehindBarrier {
+        /// Where it is released.
+        release: f64,
+        /// Where the barrier is.
+        barrier: f64,
+    },
+    /// At the release, or on the way, the force does not drive the pendulum towards the barrier.
+    #[error(
+        "released at rest at x = {release}, the pendulum does not swing to the barrier: the force turns it back at \
+         x = {at}; the amplitude must stay inside the well (below pi for sin x)"
+    )]
+    OutsideTheWell {
+        /// Where it is released.
+        release: f64,
+        /// Where the kinetic energy would be negative or the force points the wrong way.
+        at: f64,
+    },
+    /// The energy of the swing could not be integrated.
+    #[error("the potential of the restoring force could not be integrated: {0}")]
+    Potential(#[from] QuadratureError),
+}
+
+impl CollisionError {
+    /// The same with places as seen from outside: x = origin + sign z.
+    pub(super) fn seen_from(self, sign: f64, origin: f64) -> Self {
+        let x = |z: f64| origin + sign * z;
+        match self {
+            Self::NeverReaches {
+                release,
+                furthest,
+                barrier,
+            } => Self::NeverReaches {
+                release: x(release),
+                furthest: x(furthest),
+                barrier: x(barrier),
+            },
+            Self::ReleasedBehindBarrier { release, barrier } => Self::ReleasedBehindBarrier {
+                release: x(release),
+                barrier: x(barrier),
+            },
+            Self::OutsideTheWell { release, at } => Self::OutsideTheWell {
+                release: x(release),
+                at: x(at),
+            },
+            other => other,
+        }
+    }
+}
+
+/// The square of it, and the square of the depth that belongs to it, are numbers still.
+const SMALLEST_AMPLITUDE: f64 = 1e-120;
+
+impl Collision<'_> {
+    /// Refuses numbers that describe no collision, before anything is computed from them.
+    ///
+    /// # Errors
+    /// [`CollisionError`].
+    pub(super) fn check(&self) -> Result<(), CollisionError> {
+        let &Collision {
+            release,
+            barrier,
+            stiffness,
+            ..
+        } = self;
+        if !release.is_finite() {
+            return Err(CollisionError::Release(release));
+        }
+        if release.abs() < SMALLEST_AMPLITUDE {
+            return Err(CollisionError::TooSmall(release.abs()));
+        }
+        if !barrier.is_finite() {
+            return Err(CollisionError::Barrier(barrier));
+        }
+        // As far as a symmetric swing goes, or for a release on the way to the barrier no further than that.
+        let furthest = release.abs();
+        if barrier >= furthest && release < 0.0 || release > 0.0 && barrier > release {
+            return Err(CollisionError::NeverReaches {
+                release,
+                furthest,
+                barrier,
+            });
+        }
+        if barrier <= release {
+            return Err(CollisionError::ReleasedBehindBarrier { release, barrier });
+        }
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return Err(CollisionError::Stiffness(stiffness));
+        }
+        Ok(())
+    }
+
+    /// The speed sqrt(2 (V(x_r) - V(x_c))) at the barrier, from the energy, in the units of x and time of the equation.
+    ///
+    /// # Errors
+    /// [`CollisionError::OutsideTheWell`] where the released pendulum does not swing that far.
+    ///
+    /// ```
+    /// use lindstedt::impact::{Collision, hertz::elastic_force};
+    ///
+    /// let pendulum = Collision {
+    ///     release: -1.5,
+    ///     barrier: 0.323,
+    ///     stiffness: 1e6,
+    ///     restoring_force: &f64::sin,
+    ///     elastic_force: &elastic_force,
+    /// };
+    /// let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
+    /// assert!((pendulum.contact_speed()? - exact).abs() < 1e-14);
+    /// # Ok::<(), lindstedt::impact::CollisionError>(())
+    /// ```
+    pub fn contact_speed(&self) -> Result<f64, CollisionError> {
+        let &Collision {
+            release,
+            barrier,
+            restoring_force,
+            ..
+        } = self;
+        // It starts only if the force drives it; a force of rounding size is the unstable equilibrium itself.
+        let typical = (1..=16)
+            .map(|part| restoring_force(release + (barrier - release) * f64::from(part) / 16.0).abs())
+            .fold(0.0, f64::max);
+        if restoring_force(release) > -1e-12 * typical {
+            return Err(CollisionError::OutsideTheWell { release, at: release });
+        }
+        let parts = 32;
+        let mut gained = 0.0;
+        let mut from = release;
+        for part in 1..=parts {
+            let to = release + (barrier - release) * f64::from(part) / f64::from(parts);
+            gained -= integrate_smooth(restoring_force, from, to, 1e-13)?.0;
+            if gained <= 0.0 {
+                return Err(CollisionError::OutsideTheWell { release, at: to });
+            }
+            from = to;
+        }
+        Ok((2.0 * gained).sqrt())
+    }
+}

@@ -1,0 +1,242 @@
+//! The derived reading: approach and return are a derived motion with all its harmonics, and the joins follow from it.
+//!
+//! In: the swing and its values, a release, a barrier, a method with its order. Out: three phases, continuous at every join in
+//! place and speed. With X the derived displacement from its turning point at t = 0, even in t:
+//!
+//! ```text
+//! approach   x = X(t)                X(t1) = x_c, the first root         v = |X'(t1)|
+//! contact    x = x_c + d(t - t1)     d by a contact law entered at v     d(t2 - t1) = 0
+//! return     x = X(t - t3)           t3 = t2 + t1, the turning point after the impact and the period
+//! ```
+//!
+//! The swing is derived as it is released, from its upper turning point: where the release is the lower one, it is the equation
+//! of -x that is derived.
+
+use std::f64::consts::PI;
+
+use num_complex::Complex64;
+
+use super::collision::Collision;
+use super::contact::{ContactError, ExactContact};
+use super::phases::{Form, Phase, ThreePhases};
+use super::setup::Equations;
+use crate::exact::{Doubles, from_f64};
+use crate::expr::{Equation, Expr, ExprError};
+use crate::method::motion::{Motion, NoMotion};
+use crate::method::{self, Refusal, is_odd};
+use crate::numeric::ode::root::find_root;
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Solution};
+use crate::values::ValueError;
+
+/// Why a method gives no flight.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoFlight {
+    /// The method refuses.
+    #[error(transparent)]
+    Refusal(#[from] Refusal),
+    /// It has no motion at these numbers.
+    #[error(transparent)]
+    Motion(#[from] NoMotion),
+    /// A value that is none.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// The equation could not be turned round.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// The equation could not be read.
+    #[error(transparent)]
+    Oscillator(#[from] OscillatorError),
+    /// The contact could not be computed.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// No amplitude of the law belongs to the release.
+    #[error("no amplitude of the law turns round at the release")]
+    Amplitude,
+    /// The derived motion does not touch the barrier.
+    #[error("the derived motion does not reach the barrier: it swings from {from} to {to}")]
+    NeverReaches {
+        /// Where it starts.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+    /// The derived motion does not start at the release.
+    #[error("the derived motion starts at {start}, not at the release {release}")]
+    Start {
+        /// Where it starts.
+        start: f64,
+        /// Where it should.
+        release: f64,
+    },
+}
+
+/// The derived swing, x(t) = sign X(t) with X released from its upper turning point.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Flight {
+    /// The answer of the method, for X.
+    pub solution: Solution,
+    /// The value of its amplitude symbol, in the unit of x.
+    pub amplitude: f64,
+    /// 1, or -1 where the release is the lower turning point: X = -x.
+    pub sign: f64,
+    /// Whether that is an equation of its own: not where the force is odd.
+    pub is_turned: bool,
+    /// X in numbers.
+    pub motion: Motion,
+}
+
+impl Flight {
+    /// Derives the swing released at rest from `release`; `sign` is 1 where that is its upper turning point, -1 where it is the
+    /// lower one. `equilibrium` is that of `swing` at these values.
+    ///
+    /// # Errors
+    /// [`NoFlight`].
+    pub(super) fn derive(
+        equations: &Equations,
+        [release, sign]: [f64; 2],
+        options: &method::Options,
+    ) -> Result<Self, NoFlight> {
+        let swing = &equations.swing;
+        let turned = if sign < 0.0 { turned(swing)? } else { None };
+        let solution = method::solve(turned.as_ref().unwrap_or(swing), options)?;
+        let symbol = solution.amplitude.symbol();
+        let (from, distance) = (sign * release, sign * (release - equations.equilibrium));
+        let motion_at = |amplitude: f64| -> Result<Motion, NoFlight> {
+            let (_, mut values) = equations.values.split(&[symbol]);
+            let exact = from_f64(amplitude).ok_or(NoFlight::Amplitude)?;
+            values.insert(symbol, Expr::number(exact))?;
+            Ok(solution.motion_at(&values)?)
+        };
+        let amplitude = match solution.amplitude {
+            AmplitudeConvention::Initial => distance,
+            AmplitudeConvention::FirstHarmonic => {
+                // Of the size of the distance: the other harmonics are smaller than the first.
+                let short = |amplitude| motion_at(amplitude).map_or(f64::NAN, |motion| motion.at(0.0) - from);
+                find_root(short, 0.25 * distance, 2.0 * distance).map_err(|_| NoFlight::Amplitude)?
+            }
+        };
+        let motion = motion_at(amplitude)?;
+        let start = motion.at(0.0);
+        // An answer that is no number fails as well.
+        let starts_there = (start - from).abs() <= 1e-6 * distance.abs();
+        match starts_there {
+            true => Ok(Self {
+                solution,
+                amplitude,
+                sign,
+                is_turned: turned.is_some(),
+                motion,
+            }),
+            false => Err(NoFlight::Start {
+                start: sign * start,
+                release,
+            }),
+        }
+    }
+
+    /// The time from the release to this place, and the speed there.
+    ///
+    /// # Errors
+    /// [`NoFlight::NeverReaches`].
+    pub fn touch(&self, barrier: f64) -> Result<(f64, f64), NoFlight> {
+        let half = PI / self.motion.frequency();
+        let place = self.sign * barrier;
+        let never = |_| NoFlight::NeverReaches {
+            from: self.sign * self.motion.at(0.0),
+            to: self.sign * self.motion.at(half),
+        };
+        // One wave has its root in closed form, but for the last bits, which the bracketed root gives in any case.
+        let time = find_root(|t| self.motion.at(t) - place, 0.0, half).map_err(never)?;
+        Ok((time, self.motion.velocity(time).abs()))
+    }
+
+    /// The motion as a closed form, its clock at a turning point.
+    pub fn form(&self) -> Form {
+        let displacement = self.motion.displacement();
+        let part = |series: FourierSeries<Doubles>| self.sign * series.mean().0;
+        let wave = |k: usize| {
+            let amplitude = Complex64::new(part(displacement.cosine(k)), -part(displacement.sine(k)));
+            (amplitude != Complex64::ZERO).then_some((k as u32, amplitude))
+        };
+        Form::Harmonics {
+            centre: part(displacement.cosine(0)),
+            frequency: self.motion.frequency(),
+            harmonics: (1..=displacement.highest_harmonic()).filter_map(wave).collect(),
+        }
+    }
+}
+
+/// The equation of -x; `None` where it is that of x.
+fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, NoFlight> {
+    let x = swing.coordinate;
+    if is_odd(&swing.force, x)? {
+        return Ok(None);
+    }
+    let acceleration = x.derivative().derivative();
+    let turned = swing
+        .residual
+        .substitute_all(&[x, acceleration].map(|name| (name, -&Expr::from(name))).into())?;
+    let equation = Equation {
+        left: -&turned,
+        right: Expr::zero(),
+        ..swing.equation()
+    };
+    let about = swing.about.as_ref().map(|about| -about);
+    Ok(Some(Oscillator {
+        about,
+        ..Oscillator::from_equation(&equation)?
+    }))
+}
+
+/// How close the printed series of a contact comes to its motion, as a part of the depth.
+const SERIES: f64 = 1e-6;
+
+/// The exact contact of this collision entered at this speed, the force of the swing included.
+pub(super) fn contact(collision: &Collision, speed: f64) -> Result<ExactContact, NoFlight> {
+    let &Collision {
+        barrier,
+        stiffness,
+        restoring_force,
+        elastic_force,
+        ..
+    } = collision;
+    let force = |depth: f64| restoring_force(barrier + depth) + stiffness * elastic_force(depth);
+    Ok(ExactContact::new(force, speed)?)
+}
+
+/// The three phases: the flight, the contact on that side of the barrier, the flight backwards.
+pub(super) fn phases_of(flight: &Flight, barrier: f64, touch: f64, contact: &ExactContact) -> ThreePhases {
+    let exit = touch + contact.duration;
+    let end = exit + touch;
+    let depth = contact.sine_series(SERIES);
+    let velocity_jump = depth.at(0.0).1 - contact.speed;
+    let pressed = Form::Contact {
+        barrier,
+        inward: -flight.sign,
+        depth,
+    };
+    let phase = |name, [start, end, clock]: [f64; 3], form| Phase {
+        name,
+        start,
+        end,
+        clock,
+        form,
+    };
+    ThreePhases {
+        phases: [
+            phase("approach", [0.0, touch, 0.0], flight.form()),
+            phase("contact", [touch, exit, touch], pressed),
+            phase("return", [exit, end, end], flight.form()),
+        ],
+        speed: contact.speed,
+        penetration: contact.depth,
+        duration: contact.duration,
+        period: end,
+        velocity_jump,
+        fitted: None,
+    }
+}

@@ -1,0 +1,275 @@
+//! What an impact is asked with: a swing, a barrier in its way, and which closed forms.
+//!
+//! In: an equation of the swing with the values of its parameters, a release, a barrier and the law of its force. Out: the
+//! equation that is judged,
+//!
+//! ```text
+//! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0,   x(0) = x_r, x'(0) = 0       a barrier on the right
+//! x'' + f(x) - gamma F(x_c - x) H(x_c - x) = 0                                on the left
+//! ```
+//!
+//! and its two forces as functions, in the coordinate z = s (x - x_e) that runs from the equilibrium x_e towards the barrier.
+
+use super::hertz::DEFAULT_STIFFNESS;
+use super::linearisation::Rule;
+use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
+use crate::equilibrium::{centred, with_numbers_where_needed};
+use crate::exact::rational::ratio;
+use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function};
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::solution::{AmplitudeConvention, Method};
+use crate::symbol::{Symbol, fresh};
+use crate::values::Values;
+use crate::verify::DEFAULT_TOLERANCE;
+
+/// The swing without barrier, where none is given.
+const FREE_SWING: &str = "x'' + sin(x) = 0";
+
+/// The numbers of an impact, and what is to be derived.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The swing without the barrier, a force of the position alone; the pendulum where none is given.
+    pub swing: Option<Oscillator>,
+    /// Values of the parameters of the swing and of the law of the barrier.
+    pub values: Values,
+    /// Released from rest here, in the unit of x: rad for a pendulum.
+    pub release: f64,
+    /// Position x_c of the barrier, in the unit of x.
+    pub barrier: f64,
+    /// On which side of x_c the barrier is.
+    pub side: Side,
+    /// Stiffness gamma of the barrier, positive; dimensionless for a pendulum in units of 1/omega.
+    pub stiffness: f64,
+    /// Where gamma comes from, in words.
+    pub stiffness_source: String,
+    /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma` among them; without it that of
+    /// Hertz, `gamma*d^(3/2)`.
+    pub force: Option<Expr>,
+    /// Who derives the swing of the derived column; without it the first of a few that passes.
+    pub method: Option<Method>,
+    /// Order of the law; without it 2 for the paper's reading, and for the derived column the lowest that passes.
+    pub order: Option<u32>,
+    /// Degrees of numerator and denominator, for a Pade approximant.
+    pub degrees: Option<(u32, u32)>,
+    /// What the amplitude of the derived law measures.
+    pub amplitude_convention: Option<AmplitudeConvention>,
+    /// How the line is fitted in the paper's reading.
+    pub rule: Rule,
+    /// The relative error up to which a closed form passes.
+    pub tolerance: f64,
+    /// Error per step of Runge-Kutta, relative; between 1e-15 and 0.1.
+    pub integrator_tolerance: f64,
+    /// Steps after which Runge-Kutta gives up, which is an error.
+    pub step_limit: u32,
+}
+
+/// The paper's pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            swing: None,
+            values: Values::default(),
+            release: -DEFAULT_AMPLITUDE,
+            barrier: DEFAULT_BARRIER,
+            side: Side::Right,
+            stiffness: DEFAULT_STIFFNESS,
+            stiffness_source: "equation (8)".to_owned(),
+            force: None,
+            method: None,
+            order: None,
+            degrees: None,
+            amplitude_convention: None,
+            rule: Rule::default(),
+            tolerance: DEFAULT_TOLERANCE,
+            integrator_tolerance: 1e-10,
+            step_limit: 250_000,
+        }
+    }
+}
+
+/// Why there is no equation of an impact.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// The swing is no oscillator.
+    #[error(transparent)]
+    Oscillator(#[from] OscillatorError),
+    /// The force of the swing is not one of the position alone.
+    #[error(
+        "an impact in closed form needs a swing that keeps its energy, a force of the position alone, but `{term}` is more: \
+         leave it out, or follow the motion by `lindstedt simulate`"
+    )]
+    NotOfPosition {
+        /// The term.
+        term: String,
+    },
+    /// A parameter without a value.
+    #[error("a value is needed for `{name}`")]
+    NoValue {
+        /// The parameter.
+        name: Symbol,
+    },
+    /// A swing about which the paper says nothing.
+    #[error("it is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`")]
+    NotOdd {
+        /// The force.
+        force: String,
+    },
+    /// A value for nothing.
+    #[error("there is no parameter `{name}`, neither in the swing nor in the force of the barrier")]
+    Unknown {
+        /// The name.
+        name: Symbol,
+    },
+    /// A force that cannot be evaluated.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+}
+
+/// The letters of an equation with a barrier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Letters {
+    /// The coordinate.
+    pub coordinate: Symbol,
+    /// The place of the barrier: `xc`.
+    pub barrier: Symbol,
+    /// Its stiffness: `gamma`.
+    pub stiffness: Symbol,
+    /// The depth in it, in the law of its force: `d`.
+    pub depth: Symbol,
+}
+
+/// The equations of an impact, and their forces as functions.
+pub(super) struct Equations {
+    /// The swing alone, as methods are asked: with numbers in it where its equilibrium needs them.
+    pub(super) swing: Oscillator,
+    /// The values of its parameters.
+    pub(super) values: Values,
+    /// x_e in numbers; zero where there is none.
+    pub(super) equilibrium: f64,
+    /// The letters.
+    pub(super) letters: Letters,
+    /// The equation that is judged.
+    pub(super) judged: String,
+    /// The stiffness that multiplies the elastic force: gamma, or one where the force was given whole.
+    pub(super) stiffness: f64,
+    /// f(x), f'(x) and F(depth), each with gamma beside it.
+    forces: [CompiledFunction; 3],
+    gamma: f64,
+}
+
+impl Equations {
+    /// f(x).
+    pub(super) fn restoring_force(&self, x: f64) -> f64 {
+        self.forces[0].call(&[x, self.gamma])
+    }
+
+    /// f'(x).
+    pub(super) fn slope(&self, x: f64) -> f64 {
+        self.forces[1].call(&[x, self.gamma])
+    }
+
+    /// F(depth) per unit of the stiffness.
+    pub(super) fn elastic_force(&self, depth: f64) -> f64 {
+        self.forces[2].call(&[depth, self.gamma])
+    }
+}
+
+impl Setup {
+    /// The equations and their forces.
+    ///
+    /// # Errors
+    /// A swing that is none or whose force depends on more than the position; a parameter without a value.
+    pub(super) fn equations(&self) -> Result<Equations, SetupError> {
+        let swing = match &self.swing {
+            Some(swing) => swing.clone(),
+            None => Oscillator::parse(FREE_SWING)?,
+        };
+        let parts = swing.parts()?;
+        if let Some(term) = [&parts.damping, &parts.inertia, &parts.forcing]
+            .into_iter()
+            .find(|part| !part.is_zero())
+        {
+            return Err(SetupError::NotOfPosition {
+                term: term.terms().first().unwrap_or(term).to_string(),
+            });
+        }
+        let x = swing.coordinate;
+        let acceleration = x.derivative().derivative();
+        let mass = swing.residual.differentiate(acceleration)?;
+        if mass.contains(x) {
+            return Err(SetupError::NotOfPosition {
+                term: (&mass * &Expr::from(acceleration)).to_string(),
+            });
+        }
+        let letters = Letters {
+            coordinate: x,
+            barrier: fresh(&format!("{x}c"), &swing.parameters),
+            stiffness: fresh("gamma", &swing.parameters),
+            depth: fresh("d", &swing.parameters),
+        };
+        let own = |name: &Symbol| {
+            let of_force = self.force.as_ref().is_some_and(|force| force.contains(*name));
+            swing.parameters.contains(name) || of_force && *name != letters.stiffness && *name != letters.depth
+        };
+        if let Some((name, _)) = self.values.iter().find(|(name, _)| !own(name)) {
+            return Err(SetupError::Unknown { name });
+        }
+        let depth = Expr::from(letters.depth);
+        let hertz = Expr::power(&depth, &Expr::number(ratio(3, 2)))?;
+        let written = match &self.force {
+            None => &Expr::from(letters.stiffness) * &hertz,
+            Some(force) => force.clone(),
+        };
+        let (per_unit, stiffness) = match &self.force {
+            None => (hertz, self.stiffness),
+            Some(force) => (force.clone(), 1.0),
+        };
+        let sign = Expr::from(match self.side {
+            Side::Left => -1,
+            Side::Right => 1,
+        });
+        let inside = &sign * &(&Expr::from(x) - &Expr::from(letters.barrier));
+        let pressed = written.substitute(letters.depth, &inside)?;
+        let pressed = &(&sign * &pressed) * &Expr::function(Function::Step, vec![inside])?;
+        let judged = Equation {
+            left: &swing.residual + &pressed,
+            right: Expr::zero(),
+            ..swing.equation()
+        };
+        let function = |expression: &Expr, argument: Symbol| {
+            let mut expression = expression.clone();
+            for (name, value) in self.values.iter() {
+                expression = expression.substitute(name, value)?;
+            }
+            let known = [argument, letters.stiffness, Symbol::new("pi")];
+            match expression.symbols().into_iter().find(|name| !known.contains(name)) {
+                Some(name) => Err(SetupError::NoValue { name }),
+                None => Ok(CompiledFunction::new(&expression, &[argument, letters.stiffness])?),
+            }
+        };
+        let (known, rest) = self.values.split(&swing.parameters);
+        let numerical = with_numbers_where_needed(&swing, &known)?;
+        let in_numbers = swing.with_values(&known)?;
+        let position = centred(&in_numbers, None).ok().map(|centred| centred.position);
+        Ok(Equations {
+            equilibrium: position
+                .and_then(|position| position.evaluate(&[].into()).ok())
+                .unwrap_or(0.0),
+            forces: [
+                function(&swing.force, x)?,
+                function(&swing.force.differentiate(x)?, x)?,
+                function(&Expr::divide(&per_unit, &mass)?, letters.depth)?,
+            ],
+            gamma: self.stiffness,
+            judged: judged.to_string(),
+            values: if numerical.is_some() { rest } else { self.values.clone() },
+            swing: numerical.unwrap_or(swing),
+            letters,
+            stiffness,
+        })
+    }
+}

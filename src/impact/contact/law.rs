@@ -31,6 +31,7 @@ use thiserror::Error;
 use super::super::hertz::{self, DEFAULT_STIFFNESS, positive};
 use super::super::linearisation::{self, Rule};
 use super::{ContactError, CorrectedPowerLaw, ExactContact, PowerLaw, SineSeries, finite, in_range, within};
+use crate::decimal::significant;
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 
@@ -449,6 +450,44 @@ impl ContactMotion {
         self.at(time).1
     }
 
+    /// The formula as people write it, so many significant digits: s is the time since touch. The exact motion is written as sines
+    /// that stay within `tolerance` of D, as far as 64 of them do; of the power law stands the time as a function of the depth, with I
+    /// the regularised incomplete beta function, for the way in.
+    ///
+    /// ```
+    /// use lindstedt::impact::contact::{ContactLaw, Touch};
+    ///
+    /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
+    /// let formula = |law| touch.by(law).map(|motion| motion.closed_form(4, 1e-3));
+    /// assert_eq!(formula(ContactLaw::Homotopy)?, "d(s) = 0.004122 sin(242.6 s)");
+    /// assert_eq!(formula(ContactLaw::PowerLaw)?, "s = 0.006406 I(x; 0.4, 0.5), x = (d/0.004353)^2.5");
+    /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
+    /// ```
+    pub fn closed_form(&self, digits: usize, tolerance: f64) -> String {
+        let text = |value: f64| significant(value, digits);
+        match &self.form {
+            Form::Line(line) => {
+                let frequency = text(line.frequency);
+                let swing = format!("d(s) = {} sin({frequency} s)", text(line.speed / line.frequency));
+                match line.centre {
+                    0.0 => swing,
+                    centre => {
+                        let sign = if centre > 0.0 { '-' } else { '+' };
+                        format!("{swing} {sign} {} (1 - cos({frequency} s))", text(centre.abs()))
+                    }
+                }
+            }
+            Form::Sines(sines) => sines.closed_form(digits),
+            Form::PowerLaw(contact) => {
+                let m = contact.exponent + 1.0;
+                let (half, depth) = (text(0.5 * contact.duration), text(contact.depth));
+                format!("s = {half} I(x; {}, 0.5), x = (d/{depth})^{}", text(1.0 / m), text(m))
+            }
+            Form::Corrected(contact) => contact.closed_form(digits),
+            Form::Exact(contact) => contact.sine_series(tolerance).closed_form(digits),
+        }
+    }
+
     /// How far it is from another contact, the exact one: value over that value less one.
     pub fn errors(&self, exact: &Self) -> ContactErrors {
         let deviation = (0..=200).map(|part| {
@@ -789,6 +828,37 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn formulas_are_those_of_the_motion() {
+        let touch = Touch {
+            stiffness: 1e4,
+            speed: 1.0,
+            ..Touch::default()
+        };
+        for row in comparison(&touch).unwrap() {
+            let (motion, _) = row.outcome.unwrap();
+            let formula = motion.closed_form(5, 1e-3);
+            let waves = formula.matches("sin(").count();
+            let expected = match row.law {
+                ContactLaw::Line(_) | ContactLaw::Homotopy => 1,
+                ContactLaw::TwoHarmonics => 2,
+                ContactLaw::ThreeHarmonics | ContactLaw::Exact => 3,
+                ContactLaw::Iteration | ContactLaw::SecondHomotopy => HARMONICS,
+                ContactLaw::PowerLaw | ContactLaw::CorrectedPowerLaw => 0,
+            };
+            assert_eq!(waves, expected, "{}: {formula}", row.law);
+            assert!(!formula.contains("NaN") && formula.contains("s"), "{formula}");
+        }
+        let line = touch.by(ContactLaw::Line(Rule::LeastSquares)).unwrap();
+        let Form::Line(turn) = &line.form else { panic!("a line") };
+        assert!(turn.centre < 0.0 && line.closed_form(5, 1e-3).contains(" + "));
+        let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap().closed_form(4, 1e-3);
+        assert!(
+            corrected.starts_with("d(s) = 0.1587 s (0.0") && corrected.contains(" Y(s/0.0"),
+            "{corrected}"
+        );
     }
 
     #[test]

@@ -36,6 +36,7 @@ use spec_math::cephes64::{beta, gamma, incbet, rgamma};
 
 use super::super::hertz::{DEFAULT_STIFFNESS, positive};
 use super::{ContactError, finite, in_range, within};
+use crate::decimal::significant;
 use crate::numeric::ode::root::find_root;
 
 /// One contact by d'' = -gamma d^n, entered with speed v. Made by [`PowerLaw::new`], so that all fields belong together.
@@ -245,6 +246,20 @@ impl CorrectedPowerLaw {
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
         self.at(time).1
+    }
+
+    /// The formula as people write it, so many significant digits: s is the time since touch, Y the motion of the power law.
+    pub fn closed_form(&self, digits: usize) -> String {
+        let duration = significant(self.duration, digits);
+        let rest = self.depth - 0.125 * self.preload * self.duration * self.duration;
+        let shape = format!("{} Y(s/{duration})", significant(rest, digits));
+        if self.preload == 0.0 {
+            return format!("d(s) = {shape}");
+        }
+        format!(
+            "d(s) = {} s ({duration} - s) + {shape}",
+            significant(0.5 * self.preload, digits)
+        )
     }
 
     /// By how much the motion misses the speed of touch, relative to it: a measure of how far its shape is from the true one, whose

@@ -7,8 +7,8 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, CatalogDocument, ComparisonDocument, ImpactDocument, Kind, SimulationDocument, SolutionDocument,
-    SweepDocument,
+    self, CatalogDocument, ComparisonDocument, ImpactComparisonDocument, ImpactDocument, Kind, SimulationDocument,
+    SolutionDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -96,6 +96,7 @@ fn reads_back(document: &Value) {
         Kind::Solution => again::<SolutionDocument>(document),
         Kind::Comparison => again::<ComparisonDocument>(document),
         Kind::Impact => again::<ImpactDocument>(document),
+        Kind::ImpactComparison => again::<ImpactComparisonDocument>(document),
         Kind::Simulation => again::<SimulationDocument>(document),
         Kind::Sweep => again::<SweepDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
@@ -119,6 +120,7 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/simulate", ".toml") {
         add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
     }
+    add(&["impact", "--compare"]);
     add(&["simulate", "--integrator", "both"]);
     add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
     add(&["catalog"]);
@@ -176,6 +178,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/solution/1") => "/equilibrium",
         Some("lindstedt/comparison/1") => "/methods/0",
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",
+        Some("lindstedt/impact-comparison/1") => "/methods/0/speed",
         Some("lindstedt/simulation/1") => "/parameters/barrier",
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         _ => "/entries/0/methods/0",

@@ -135,6 +135,41 @@ fn every_comparison_prints_what_it_printed() {
     });
 }
 
+/// The table of every method on one impact, in text, LaTeX and JSON: one for a page, one for a narrow terminal.
+#[test]
+fn every_method_on_one_impact_prints_what_it_printed() {
+    let preloaded = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact-preloaded.toml");
+    let of_own = [
+        "impact",
+        "x'' + x + x^2 = 0",
+        "--at",
+        "A=0.3",
+        "--at",
+        "xc=0.1",
+        "--at",
+        "gamma=1e4",
+        "--compare",
+    ];
+    let refused = run(&["impact", preloaded, "--compare"]);
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        refused.status.code() == Some(2) && words.contains("leave out --method"),
+        "{words}"
+    );
+    snapshots(|| {
+        insta::assert_snapshot!("impact-compare-text", output(&["impact", "--compare"]));
+        insta::assert_snapshot!("impact-compare-own", output(&of_own));
+        insta::assert_snapshot!(
+            "impact-compare-latex",
+            output(&["impact", "--compare", "--format", "latex"])
+        );
+        let mut document: Value =
+            serde_json::from_str(&output(&["impact", "--compare", "--format", "json"])).expect("the output is JSON");
+        rounded(&mut document);
+        insta::assert_json_snapshot!("json@impact-compare", document);
+    });
+}
+
 #[test]
 fn every_example_reads_back_to_the_same_solution() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");

@@ -325,6 +325,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--amplitude", "first-harmonic"]),
         ("impact", vec![], vec!["--force", "gamma*d^2"]),
         ("impact", vec![], vec!["--left"]),
+        ("impact", vec![], vec!["--compare"]),
         ("impact", vec![], vec!["--format", "csv"]),
         ("impact", vec![], vec!["--format", "latex"]),
         ("impact", vec![], vec!["--output", file]),

@@ -3,10 +3,11 @@
 use clap::Args;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
-use lindstedt::impact::{Impact, Setup, solve};
+use lindstedt::impact::{Impact, Setup, compare, solve};
 use lindstedt::problem::{BarrierSide, Problem};
 use lindstedt::verify::Verdict;
 
+use super::files::width;
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
@@ -32,6 +33,9 @@ pub struct Arguments {
     /// The barrier is on the left of xc, and the release at x = A
     #[arg(long)]
     left: bool,
+    /// Every method in one table, each at its lowest order that passes
+    #[arg(long)]
+    compare: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -40,7 +44,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = asked(arguments)?;
     let tolerance = tolerance(&arguments.common);
     let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;
-    let impact = solve(Setup { tolerance, ..setup }).map_err(|error| Failure::refused(&error, None))?;
+    let setup = Setup { tolerance, ..setup };
+    if arguments.compare {
+        return every_method(setup, &arguments.common);
+    }
+    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
     let text = match arguments.common.format {
         Format::Text => text::impact(&impact, tolerance),
         Format::Latex => latex::impact(&impact, tolerance),
@@ -56,6 +64,36 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
         result: whole(text),
         picture,
+        note: None,
+        verdict: Some(Verdict::of(passes)),
+        partial: false,
+    })
+}
+
+/// The table of methods.
+fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
+    if setup.method.is_some() {
+        return Err(Failure::Usage(
+            "--compare takes every method: leave out --method, or `method` in the file".to_owned(),
+        ));
+    }
+    if common.plot.is_some() {
+        return Err(Failure::Usage(
+            "--compare draws no picture: leave out --plot, or --compare".to_owned(),
+        ));
+    }
+    let tolerance = tolerance(common);
+    let table = compare(setup).map_err(|error| Failure::refused(&error, None))?;
+    let text = match common.format {
+        Format::Text => text::impact_comparison(&table, tolerance, width(common.output.as_deref())),
+        Format::Latex => latex::impact_comparison(&table, tolerance),
+        Format::Csv => return super::no_table(),
+        Format::Json => json_text(&json::impact_comparison(&table, tolerance))?,
+    };
+    let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
+    Ok(Outcome {
+        result: whole(text),
+        picture: None,
         note: None,
         verdict: Some(Verdict::of(passes)),
         partial: false,

@@ -18,7 +18,7 @@ use num_traits::Zero;
 use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
-use crate::impact::Impact;
+use crate::impact::{Impact, ImpactComparison};
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -107,6 +107,19 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
 /// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     document(&report::impact(impact, tolerance))
+}
+
+/// Every method on one impact in one table.
+///
+/// ```
+/// use lindstedt::impact::{Setup, compare};
+///
+/// let table = compare(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// assert!(lindstedt::export::latex::impact_comparison(&table, 0.01).contains(r"\begin{tabular}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> String {
+    document(&report::impact_comparison(table, tolerance))
 }
 
 /// Every method in one table; those that do not apply stand in comments below it.
@@ -236,6 +249,7 @@ impl Page {
             }
             Block::Phase { phase, letters, .. } => self.rows.extend(impact::phase(phase, *letters)),
             Block::Quantities { columns, rows, .. } => self.table(&impact::quantities(columns, rows)),
+            Block::ImpactMethods { rows, truth, .. } => self.table(&impact::methods(rows, *truth)),
             Block::Verdicts { verdicts, .. } => {
                 let each: Vec<String> = verdicts
                     .iter()

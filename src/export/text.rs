@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 pub use super::steps::text as steps;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
-use crate::impact::Impact;
+use crate::impact::{Impact, ImpactComparison};
 use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::Solution;
@@ -82,6 +82,19 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
 /// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> String {
     document(&report::impact(impact, tolerance), usize::MAX)
+}
+
+/// Every method on one impact in a table, in lines of at most `width` characters where words allow it.
+///
+/// ```
+/// use lindstedt::impact::{Setup, compare};
+///
+/// let table = compare(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// assert!(lindstedt::export::text::impact_comparison(&table, 0.01, 80).contains("Harmonic balance"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn impact_comparison(table: &ImpactComparison, tolerance: f64, width: usize) -> String {
+    document(&report::impact_comparison(table, tolerance), width)
 }
 
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.
@@ -183,6 +196,7 @@ impl Page {
                 deviations,
                 shapes,
             } => impact::quantities(columns, rows, deviations, shapes),
+            Block::ImpactMethods { rows, truth, tolerance } => impact::methods(rows, *truth, *tolerance, self.width),
             Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
             Block::Shortcoming { reading, errors, cause } => impact::shortcoming(*reading, errors, cause),
         }

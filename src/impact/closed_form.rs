@@ -12,14 +12,12 @@
 //! harmonics and the best contact law; each judged by Runge-Kutta on the equation as it stands. Without an order or a method the
 //! derived column has the first of a ladder that passes: what it tried is told.
 
-use super::collision::{Collision, CollisionError};
-use super::derived::{Flight, NoFlight, contact, phases_of};
-use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
+use super::derived::Flight;
+use super::judge::{Deviation, TrueImpact};
 use super::phases::{ContactSpeed, Form, PhasesError, Swing, ThreePhases, three_phases};
-use super::setup::{Equations, Letters, Setup, SetupError};
-use crate::method::table::{Choice, Entry};
-use crate::method::{self, Refusal, is_odd};
-use crate::numeric::ode::Options;
+use super::setup::{Letters, Setup, SetupError};
+use super::trial::{Attempt, ImpactError, Trial};
+use crate::method::{self, is_odd};
 use crate::solution::{Method, Solution};
 use crate::verify::Verdict;
 
@@ -85,59 +83,6 @@ pub struct Column {
     pub deviation: Deviation,
 }
 
-/// A method that was tried for the derived column.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Attempt {
-    /// The method.
-    pub method: Method,
-    /// Its order, where it was given one.
-    pub order: Option<u32>,
-    /// Its degrees, where it was given some.
-    pub degrees: Option<(u32, u32)>,
-    /// The largest error, relative, or why there is none.
-    pub error: Result<f64, String>,
-}
-
-/// Why there is no impact to report.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ImpactError {
-    /// There is no equation of an impact.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// Nothing hits the barrier.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
-    /// The law could not be derived.
-    #[error(transparent)]
-    Law(#[from] Refusal),
-    /// There are no three phases.
-    #[error(transparent)]
-    Phases(#[from] PhasesError),
-    /// The swing of the derived column could not be derived.
-    #[error(transparent)]
-    Flight(#[from] NoFlight),
-    /// The true motion could not be followed.
-    #[error(transparent)]
-    Truth(#[from] TrueImpactError),
-    /// No reading applies.
-    #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
-    NoReading {
-        /// Why not the paper's.
-        paper: String,
-        /// What else was tried.
-        tried: Vec<Attempt>,
-    },
-}
-
-fn attempts(tried: &[Attempt]) -> String {
-    let reason = |attempt: &Attempt| {
-        let reason = attempt.error.as_ref().err()?;
-        Some(format!("{}: {reason}", attempt.method.title()))
-    };
-    tried.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
-}
-
 /// Derives the law, builds every column and follows the true motion.
 ///
 /// # Errors
@@ -154,98 +99,67 @@ fn attempts(tried: &[Attempt]) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
-    let equations = setup.equations()?;
-    let (sign, origin) = (setup.side.sign(), equations.equilibrium);
-    // z = sign (x - x_e) runs from the equilibrium towards the barrier.
-    let z = |x: f64| sign * (x - origin);
-    let restoring_force = |z: f64| sign * equations.restoring_force(origin + sign * z);
-    let elastic_force = |depth: f64| equations.elastic_force(depth);
-    let collision = Collision {
-        release: z(setup.release),
-        barrier: z(setup.barrier),
-        stiffness: equations.stiffness,
-        restoring_force: &restoring_force,
-        elastic_force: &elastic_force,
-    };
-    let seen = |error: CollisionError| error.seen_from(sign, origin);
-    collision.check().map_err(seen)?;
-    let paper = paper(&setup, &equations, &collision);
-    let energy_speed = collision.contact_speed().map_err(seen)?;
-    let options = Options {
-        maximum_steps: setup.step_limit as usize,
-        ..Options::with_tolerance(setup.integrator_tolerance)
-    };
-    let truth = assured_impact(&collision, &options).map_err(|error| match error {
-        TrueImpactError::Collision(error) => seen(error).into(),
-        other => ImpactError::from(other),
-    })?;
-    let column = |reading, phases: ThreePhases| Column {
-        reading,
-        deviation: deviation(&phases, &truth),
-        phases: phases.moved(sign, origin),
-    };
-    let errors = |phases: &ThreePhases| {
-        let seen = phases.moved(sign, -sign * origin);
-        worst(&errors_of(
-            &seen,
-            &deviation(&seen, &truth),
-            &truth,
-            collision.release.abs(),
-        ))
-    };
-    let (derived, tried) = derived(&setup, &equations, &collision, &errors);
-    let (free_swing, paper, no_paper) = match paper {
-        Ok((law, phases)) => (Some(law), phases, None),
-        Err(error) => {
-            if derived.is_none() && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_)) {
-                return Err(error);
+    Trial::run(&setup, |trial| {
+        let (derived, tried) = trial.derived(&methods_to_try(&setup));
+        let (free_swing, paper, no_paper) = match paper(trial) {
+            Ok((law, phases)) => (Some(law), phases, None),
+            Err(error) => {
+                if derived.is_none() && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_)) {
+                    return Err(error);
+                }
+                (None, vec![], Some(error.to_string()))
             }
-            (None, vec![], Some(error.to_string()))
+        };
+        let column = |(reading, phases)| Column {
+            reading,
+            deviation: trial.deviation(&phases),
+            phases,
+        };
+        let mut columns: Vec<Column> = paper.into_iter().map(column).collect();
+        let flight = derived.map(|derived| {
+            columns.push(column((Reading::Derived, derived.phases)));
+            derived.flight
+        });
+        if columns.is_empty() {
+            let paper = no_paper.unwrap_or_default();
+            return Err(ImpactError::NoReading { paper, tried });
         }
-    };
-    let mut columns: Vec<Column> = paper
-        .into_iter()
-        .map(|(reading, phases)| column(reading, phases))
-        .collect();
-    let flight = match derived {
-        None => None,
-        Some((flight, phases)) => {
-            columns.push(Column {
-                reading: Reading::Derived,
-                deviation: deviation(&phases.moved(sign, -sign * origin), &truth),
-                phases,
-            });
-            Some(flight)
-        }
-    };
-    if columns.is_empty() {
-        let paper = no_paper.unwrap_or_default();
-        return Err(ImpactError::NoReading { paper, tried });
-    }
-    Ok(Impact {
-        equation: equations.judged.clone(),
-        letters: equations.letters,
-        equilibrium: origin,
-        setup,
-        free_swing,
-        columns,
-        flight,
-        tried,
-        energy_speed,
-        no_paper,
-        truth,
+        Ok(Impact {
+            setup: setup.clone(),
+            equation: trial.equations.judged.clone(),
+            letters: trial.equations.letters,
+            equilibrium: trial.equations.equilibrium,
+            free_swing,
+            columns,
+            flight,
+            tried,
+            energy_speed: trial.energy_speed,
+            no_paper,
+            truth: trial.truth.clone(),
+        })
     })
+}
+
+/// The methods of the derived column: the one asked for, or the first of these that passes.
+fn methods_to_try(setup: &Setup) -> Vec<Method> {
+    match (setup.method, setup.order) {
+        (Some(method), _) => vec![method],
+        (None, Some(_)) => vec![Method::LindstedtPoincare],
+        (None, None) => vec![Method::LindstedtPoincare, Method::HarmonicBalance, Method::Exact],
+    }
 }
 
 /// The order of the law in the paper's reading, where none is given.
 const PAPERS_ORDER: u32 = 2;
 
 /// The paper's law and its two readings: of a swing whose force is odd, by one cosine.
-fn paper(
-    setup: &Setup,
-    equations: &Equations,
-    collision: &Collision,
-) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
+pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
+    let Trial {
+        setup,
+        equations,
+        collision,
+        ..
+    } = trial;
     let swing = &equations.swing;
     if equations.equilibrium != 0.0 || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)? {
         return Err(SetupError::NotOdd {
@@ -285,113 +199,9 @@ fn paper(
         (Reading::Paper, ContactSpeed::Paper),
         (Reading::Energy, ContactSpeed::Energy),
     ];
-    let phases = readings.map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?)));
+    let side = setup.side.sign();
+    let phases = readings.map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
     Ok((law, phases.into_iter().collect::<Result<_, PhasesError>>()?))
-}
-
-/// What a method is asked for: an order, or two degrees.
-type Rung = (Option<u32>, Option<(u32, u32)>);
-
-/// The highest order that is tried where none is asked for.
-const LADDER: u32 = 16;
-
-/// The derived column: as asked, or the first of a ladder of orders and methods that passes; where none passes, the best. `error` is
-/// the largest error of three phases.
-fn derived(
-    setup: &Setup,
-    equations: &Equations,
-    collision: &Collision,
-    error: &dyn Fn(&ThreePhases) -> f64,
-) -> (Option<(Flight, ThreePhases)>, Vec<Attempt>) {
-    let methods = match (setup.method, setup.order) {
-        (Some(method), _) => vec![method],
-        (None, Some(_)) => vec![Method::LindstedtPoincare],
-        (None, None) => vec![Method::LindstedtPoincare, Method::HarmonicBalance, Method::Exact],
-    };
-    let mut tried: Vec<Attempt> = Vec::new();
-    let mut best: Option<(f64, Flight, ThreePhases)> = None;
-    for method in methods {
-        let takes = |choice| Entry::of(method).takes(choice);
-        let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
-            (None, None) if takes(Choice::Degrees) => (1..=LADDER / 4).map(|n| (None, Some((n, n)))).collect(),
-            (None, None) if takes(Choice::Order) => (1..=LADDER).map(|order| (Some(order), None)).collect(),
-            chosen => vec![chosen],
-        };
-        let mut last: Option<Solution> = None;
-        for (order, degrees) in rungs {
-            let options = method::Options {
-                method: Some(method),
-                order,
-                pade: degrees,
-                amplitude: setup.amplitude_convention,
-                ..Default::default()
-            };
-            let found = Flight::derive(equations, [setup.release, -setup.side.sign()], &options);
-            // An order that adds nothing is passed over.
-            let same = |flight: &Flight| {
-                let of = |solution: &Solution| (solution.law.clone(), solution.displacement.clone());
-                last.as_ref().is_some_and(|last| of(last) == of(&flight.solution))
-            };
-            if found.as_ref().is_ok_and(same) && !matches!(method, Method::HarmonicBalance) {
-                continue;
-            }
-            let refused = matches!(found, Err(NoFlight::Refusal(_)));
-            let phases = found.and_then(|flight| {
-                last = Some(flight.solution.clone());
-                let (touch, speed) = flight.touch(setup.barrier)?;
-                let contact = contact(collision, speed)?;
-                let phases = phases_of(&flight, setup.barrier, touch, &contact);
-                Ok((error(&phases), flight, phases))
-            });
-            let outcome = match &phases {
-                Ok((error, ..)) => Ok(*error),
-                Err(reason) => Err(reason.to_string()),
-            };
-            let passes = outcome.as_ref().is_ok_and(|error| *error <= setup.tolerance);
-            tried.push(Attempt {
-                method,
-                order,
-                degrees,
-                error: outcome,
-            });
-            if let Ok(found) = phases
-                && best.as_ref().is_none_or(|best| found.0 < best.0)
-            {
-                best = Some(found);
-            }
-            if passes {
-                return (best.map(|(_, flight, phases)| (flight, phases)), tried);
-            }
-            if refused {
-                break;
-            }
-        }
-    }
-    (best.map(|(_, flight, phases)| (flight, phases)), tried)
-}
-
-/// The relative errors of three phases: time to contact, speed, penetration, duration, period, and the largest deviation in each
-/// phase on its own clock, of the flights over the amplitude and of the contact over the depth.
-fn errors_of(phases: &ThreePhases, deviation: &Deviation, truth: &TrueImpact, amplitude: f64) -> [f64; 8] {
-    let [approach, contact, back] = deviation.aligned;
-    [
-        phases.phases[0].end / truth.touch.t - 1.0,
-        phases.speed / truth.touch.v - 1.0,
-        phases.penetration / truth.penetration - 1.0,
-        phases.duration / truth.duration - 1.0,
-        phases.period / truth.period - 1.0,
-        approach / amplitude,
-        contact / truth.penetration,
-        back / amplitude,
-    ]
-}
-
-/// The largest of them; what is no number is the largest.
-fn worst(errors: &[f64]) -> f64 {
-    errors.iter().fold(0.0, |worst: f64, error| match error.is_nan() {
-        true => f64::INFINITY,
-        false => worst.max(error.abs()),
-    })
 }
 
 /// One number of an impact: by Runge-Kutta and by every column.

@@ -27,7 +27,7 @@ use crate::method::{self, Refusal, is_odd};
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Solution};
+use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::values::ValueError;
 
 /// Why a method gives no flight.
@@ -71,6 +71,16 @@ pub enum NoFlight {
         /// Where it should.
         release: f64,
     },
+}
+
+impl NoFlight {
+    /// The message without the name of the method at its head, for lists that name it already.
+    pub fn of(&self, method: Method) -> String {
+        match self {
+            Self::Refusal(refusal) => refusal.reason(method),
+            other => other.to_string(),
+        }
+    }
 }
 
 /// The derived swing, x(t) = sign X(t) with X released from its upper turning point.

@@ -21,7 +21,9 @@
 //! - `judge`: Runge-Kutta on the equations as they stand, for one impact and for a whole motion.
 //! - `setup`: a [`Setup`], the whole question, and the equations and forces that it means.
 //! - `derived`: a [`Flight`], any derived motion as approach and return.
+//! - `trial`: the question with its true motion, and what methods are tried in turn.
 //! - `closed_form`: [`solve`], every reading of the three phases and the judge together.
+//! - `compare`: [`compare`], every method in one table.
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
 //! - [`sweep`]: parameters over a range, on all cores.
 //!
@@ -49,6 +51,7 @@
 mod case;
 mod closed_form;
 mod collision;
+mod compare;
 pub mod contact;
 mod derived;
 pub mod hertz;
@@ -63,10 +66,12 @@ mod simulate;
 mod simulation;
 pub mod sweep;
 mod taylor;
+mod trial;
 
 pub use case::{Case, CaseError, ContactDamping};
-pub use closed_form::{Attempt, Column, Impact, ImpactError, Quantity, Reading, SampledMotion, Shortcoming, solve};
+pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};
+pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{Flight, NoFlight};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
@@ -79,3 +84,4 @@ pub use simulation::{
     Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime, Rest,
     Settings, Simulation, Stop, Turn,
 };
+pub use trial::{Attempt, ImpactError};

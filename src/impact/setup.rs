@@ -110,7 +110,7 @@ pub enum SetupError {
         name: Symbol,
     },
     /// A swing about which the paper says nothing.
-    #[error("it is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`")]
+    #[error("the paper's cosine is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`")]
     NotOdd {
         /// The force.
         force: String,

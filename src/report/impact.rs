@@ -3,7 +3,7 @@
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::decimal::decimal;
-use crate::impact::{Attempt, Column, Flight, Form, Impact, Reading, Side};
+use crate::impact::{Attempt, Column, Flight, Form, Impact, Letters, Reading, Setup, Side};
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
@@ -21,7 +21,7 @@ use crate::symbol::Symbol;
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
-        asked(impact),
+        asked(&impact.setup, impact.letters, impact.equilibrium),
     ];
     sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
     for column in &impact.columns {
@@ -46,13 +46,13 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
 }
 
 /// The symbol of the release, where it is that of the paper.
-fn is_minus_amplitude(impact: &Impact) -> bool {
-    impact.equilibrium == 0.0 && impact.setup.side == Side::Right
+fn is_minus_amplitude(setup: &Setup, equilibrium: f64) -> bool {
+    equilibrium == 0.0 && setup.side == Side::Right
 }
 
 /// Where a flight begins and ends, in words.
 fn release(impact: &Impact) -> String {
-    match is_minus_amplitude(impact) {
+    match is_minus_amplitude(&impact.setup, impact.equilibrium) {
         true => "-A".to_owned(),
         false => decimal(impact.setup.release),
     }
@@ -70,15 +70,14 @@ fn start(impact: &Impact) -> String {
     )
 }
 
-fn asked(impact: &Impact) -> Vec<Block<'_>> {
-    let setup = &impact.setup;
+pub(super) fn asked(setup: &Setup, letters: Letters, equilibrium: f64) -> Vec<Block<'_>> {
     let value = |name: Symbol, value, source| Block::Value { name, value, source };
     let mut blocks = Vec::new();
-    if is_minus_amplitude(impact) {
+    if is_minus_amplitude(setup, equilibrium) {
         blocks.push(value(AmplitudeConvention::Initial.symbol(), -setup.release, None));
     }
-    blocks.push(value(impact.letters.barrier, setup.barrier, None));
-    let gamma = impact.letters.stiffness;
+    blocks.push(value(letters.barrier, setup.barrier, None));
+    let gamma = letters.stiffness;
     if setup.force.as_ref().is_none_or(|force| force.contains(gamma)) {
         blocks.push(value(gamma, setup.stiffness, Some(setup.stiffness_source.as_str())));
     }

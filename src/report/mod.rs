@@ -6,15 +6,17 @@
 
 mod comparison;
 mod impact;
+mod impact_comparison;
 mod solution;
 
 pub use comparison::comparison;
 pub use impact::impact;
+pub use impact_comparison::impact_comparison;
 pub use solution::solution;
 
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
-use crate::impact::{FittedLine, Letters, Phase, Quantity, Reading, Rule};
+use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Definition, Solution, Sum};
 use crate::symbol::Symbol;
@@ -174,6 +176,15 @@ pub enum Block<'a> {
         /// The largest deviation of each column in approach, contact and return, each on its own clock: of the flights over the
         /// amplitude, of the contact over the depth.
         shapes: Vec<[f64; 3]>,
+    },
+    /// A table of methods on one impact.
+    ImpactMethods {
+        /// A row each.
+        rows: &'a [ImpactRow],
+        /// Time to contact, speed, penetration, duration and period of the true motion.
+        truth: [f64; 5],
+        /// The error up to which they pass.
+        tolerance: f64,
     },
     /// The verdicts on an impact.
     Verdicts {

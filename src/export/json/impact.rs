@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
 use crate::impact::contact::SineSeries;
-use crate::impact::{self, Form, Impact, Reading, Rule, Side};
+use crate::impact::{self, Form, Impact, Reading, Rule, Setup, Side};
 use crate::verify::Verdict;
 
 /// A swing released from rest that hits an elastic barrier: approach, contact and return in closed form, beside Runge-Kutta on the
@@ -331,28 +331,11 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
     ImpactDocument {
         schema: Kind::Impact.schema().to_owned(),
         equation: impact.equation.clone(),
-        parameters: Parameters {
-            amplitude: impact.amplitude(),
-            release: setup.release,
-            barrier: setup.barrier,
-            side: match setup.side {
-                Side::Left => "left",
-                Side::Right => "right",
-            }
-            .to_owned(),
-            force: setup.force.as_ref().map(ToString::to_string),
-            values: setup
-                .values
-                .numbers()
-                .into_iter()
-                .map(|(name, value)| (name.name().to_owned(), value))
-                .collect(),
-            gamma: setup.stiffness,
-            gamma_source: setup.stiffness_source.clone(),
-            order: impact.free_swing.as_ref().map(|law| law.order),
-            linearisation: setup.rule.name().to_owned(),
-            integrator_tolerance: setup.integrator_tolerance,
-        },
+        parameters: Parameters::of(
+            setup,
+            impact.equilibrium,
+            impact.free_swing.as_ref().map(|law| law.order),
+        ),
         law: impact.free_swing.as_ref().map(|law| solution(law, None)),
         frequency: impact.frequency(),
         derived_law: impact.flight.as_ref().map(|flight| DerivedLaw {
@@ -379,6 +362,34 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             derived,
             verdict: first.unwrap_or_else(|| Verdict::Fail.name().to_owned()),
         },
+    }
+}
+
+impl Parameters {
+    /// The numbers of a setup whose swing has this equilibrium, and the order of `law`.
+    pub(super) fn of(setup: &Setup, equilibrium: f64, order: Option<u32>) -> Self {
+        Self {
+            amplitude: (setup.release - equilibrium).abs(),
+            release: setup.release,
+            barrier: setup.barrier,
+            side: match setup.side {
+                Side::Left => "left",
+                Side::Right => "right",
+            }
+            .to_owned(),
+            force: setup.force.as_ref().map(ToString::to_string),
+            values: setup
+                .values
+                .numbers()
+                .into_iter()
+                .map(|(name, value)| (name.name().to_owned(), value))
+                .collect(),
+            gamma: setup.stiffness,
+            gamma_source: setup.stiffness_source.clone(),
+            order,
+            linearisation: setup.rule.name().to_owned(),
+            integrator_tolerance: setup.integrator_tolerance,
+        }
     }
 }
 

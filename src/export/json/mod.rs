@@ -15,6 +15,7 @@
 pub mod catalog;
 pub mod comparison;
 pub mod impact;
+pub mod impact_comparison;
 pub mod number;
 mod schema;
 pub mod simulation;
@@ -29,6 +30,7 @@ use serde_json::Value;
 pub use catalog::{CatalogDocument, catalog};
 pub use comparison::{ComparisonDocument, comparison};
 pub use impact::{ImpactDocument, impact};
+pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};
 pub use number::{Constant, Map, Polynomial, Term};
 pub use schema::Kind;
 pub use simulation::{SimulationDocument, simulation};

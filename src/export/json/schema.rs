@@ -5,8 +5,8 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    CatalogDocument, ComparisonDocument, ImpactDocument, JsonError, SimulationDocument, SolutionDocument,
-    SweepDocument, unexpected,
+    CatalogDocument, ComparisonDocument, ImpactComparisonDocument, ImpactDocument, JsonError, SimulationDocument,
+    SolutionDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -19,6 +19,8 @@ pub enum Kind {
     Comparison,
     /// `impact`.
     Impact,
+    /// `impact --compare`.
+    ImpactComparison,
     /// `simulate`.
     Simulation,
     /// `simulate --sweep`.
@@ -29,10 +31,11 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
+        Self::ImpactComparison,
         Self::Simulation,
         Self::Sweep,
         Self::Catalog,
@@ -44,6 +47,7 @@ impl Kind {
             Self::Solution => "lindstedt/solution/1",
             Self::Comparison => "lindstedt/comparison/1",
             Self::Impact => "lindstedt/impact/1",
+            Self::ImpactComparison => "lindstedt/impact-comparison/1",
             Self::Simulation => "lindstedt/simulation/1",
             Self::Sweep => "lindstedt/sweep/1",
             Self::Catalog => "lindstedt/catalog/1",
@@ -75,6 +79,7 @@ impl Kind {
             Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
             Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
+            Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
             Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),

@@ -1,9 +1,9 @@
 //! The blocks of an impact as LaTeX.
 
-use super::scientific;
+use super::{scientific, scientific_text};
 use crate::decimal::significant;
 use crate::export::latex::symbol;
-use crate::impact::{FittedLine, Form, Letters, Phase, Quantity, Reading, Rule, Term};
+use crate::impact::{FittedLine, Form, ImpactRow, Letters, Phase, Quantity, Reading, Rule, Term};
 
 /// Of what the phases that follow are.
 pub(super) fn reading(reading: Reading) -> String {
@@ -51,6 +51,24 @@ pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> String {
     let rows: String = rows.iter().map(row).collect();
     let places = "r".repeat(1 + 2 * columns.len());
     format!("\\begin{{tabular}}{{l{places}}}\n{head}{rows}\\end{{tabular}}\n")
+}
+
+/// A table of methods: the errors of each in percent.
+pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> String {
+    let percent = |value: f64| match value.abs() < 1e-9 {
+        true => "$< 10^{-7}$".to_owned(),
+        false => format!("${}$", scientific_text(&significant(100.0 * value, 3))),
+    };
+    let known = truth.map(|value| format!(" & ${}$", scientific(value))).concat();
+    let row = |row: &ImpactRow| {
+        let cells = row.errors.iter().chain(&row.deviations);
+        let cells: String = cells.map(|value| format!(" & {}", percent(*value))).collect();
+        format!("{}{cells} \\\\\n", row.title())
+    };
+    let rows: String = rows.iter().map(row).collect();
+    let head =
+        "errors in \\% & $t_1$ & speed & penetration & duration & period & approach & contact & return \\\\\n\\hline\n";
+    format!("\\begin{{tabular}}{{lrrrrrrrr}}\n{head}Runge--Kutta{known} & & & \\\\\n{rows}\\end{{tabular}}\n")
 }
 
 fn signed(value: f64) -> String {

@@ -1,8 +1,9 @@
 //! The blocks of an impact as text.
 
+use super::comparison::wrapped;
 use super::percent;
 use crate::decimal::{decimal, significant};
-use crate::impact::{FittedLine, Letters, Phase, Quantity, Reading, Rule};
+use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
 use crate::verify::Verdict;
 
 /// The line in place of the force of the barrier.
@@ -67,6 +68,65 @@ pub(super) fn quantities(columns: &[Reading], rows: &[Quantity], deviations: &[f
         lines.push(line(&format!("  {name}"), first(shapes, String::new())));
     }
     lines.join("\n") + "\n"
+}
+
+/// A table of methods: the errors of each in percent, the numbers of the true motion above them.
+pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5], tolerance: f64, width: usize) -> String {
+    const HEAD: [&str; 8] = [
+        "to contact",
+        "speed",
+        "depth",
+        "duration",
+        "period",
+        "approach",
+        "contact",
+        "return",
+    ];
+    let titles: Vec<String> = rows.iter().map(ImpactRow::title).collect();
+    let longest = titles.iter().map(|title| title.chars().count()).max().unwrap_or(0);
+    // Names stand on lines of their own where the numbers leave no room beside them.
+    let beside = longest + 88 <= width;
+    let line = |name: &str, cells: [String; 8], last: &str| {
+        let widths = [11, 11, 11, 11, 11, 9, 9, 9];
+        let cells: String = cells
+            .iter()
+            .zip(widths)
+            .map(|(cell, width)| format!("{cell:>width$}"))
+            .collect();
+        let cells = format!("{cells}  {last}");
+        match (beside, name) {
+            (true, _) => format!("{name:<longest$}{}\n", cells.trim_end()),
+            (false, "") => format!("{}\n", cells.trim_end()),
+            (false, _) => format!("{name}\n{}\n", cells.trim_end()),
+        }
+    };
+    let mut text = line("", HEAD.map(str::to_owned), "");
+    let known = truth.map(decimal);
+    let cells = std::array::from_fn(|index| known.get(index).cloned().unwrap_or_default());
+    text += &line("Runge-Kutta", cells, "");
+    let percent = |error: f64, digits: usize| match error.abs() < 1e-9 {
+        true => "< 1e-7".to_owned(),
+        false => significant(100.0 * error, digits),
+    };
+    for (row, title) in rows.iter().zip(&titles) {
+        let cells = std::array::from_fn(|index| match index {
+            0..5 => percent(row.errors[index], 3),
+            _ => percent(row.deviations[index - 5], 2),
+        });
+        text += &line(title, cells, row.verdict(tolerance).name());
+    }
+    let tolerance = significant(100.0 * tolerance, 3);
+    text + "\n"
+        + &wrapped(
+            &format!(
+                "Of each method the errors of the five numbers and the largest deviation in each phase, on its own clock, of the amplitude or \
+             of the depth, all in percent; pass: all within {tolerance} %."
+            ),
+            width,
+            "",
+            "",
+        )
+        + "\n"
 }
 
 pub(super) fn verdicts(verdicts: &[(Reading, Verdict)], tolerance: f64) -> String {

@@ -1,0 +1,181 @@
+//! Every method on one impact: a row each, judged against the same true motion.
+//!
+//! In: a [`Setup`] without a method. Out: the paper's two readings, then each method of `derive` at its lowest order that passes,
+//! else at its best, and the reason of each that has no row.
+
+use super::closed_form::{Reading, paper};
+use super::judge::TrueImpact;
+use super::phases::ThreePhases;
+use super::setup::{Letters, Setup};
+use super::trial::{ImpactError, Trial};
+use crate::solution::Method;
+use crate::verify::Verdict;
+
+/// A table of methods.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ImpactComparison {
+    /// What was asked.
+    pub setup: Setup,
+    /// The equation as it is judged.
+    pub equation: String,
+    /// Its letters.
+    pub letters: Letters,
+    /// The equilibrium of the swing, in the unit of x.
+    pub equilibrium: f64,
+    /// The rows that have numbers: the paper's readings first, then the methods in the order of [`Method::ALL`].
+    pub rows: Vec<ImpactRow>,
+    /// The others, with the reason of each.
+    pub refused: Vec<(ImpactMethod, String)>,
+    /// Runge-Kutta on the original equation.
+    pub truth: TrueImpact,
+}
+
+/// Who derives the three phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImpactMethod {
+    /// A reading of the paper.
+    Reading(Reading),
+    /// A method of `derive`.
+    Derived(Method),
+}
+
+impl ImpactMethod {
+    /// The name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reading(reading) => reading.name(),
+            Self::Derived(method) => method.name(),
+        }
+    }
+
+    /// The name in tables.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Reading(Reading::Paper) => "Paper",
+            Self::Reading(_) => "Paper, speed by energy",
+            Self::Derived(method) => method.title(),
+        }
+    }
+}
+
+/// A row of the table.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ImpactRow {
+    /// Whose it is.
+    pub method: ImpactMethod,
+    /// The order of the law, where it has one.
+    pub order: Option<u32>,
+    /// The degrees of an approximant.
+    pub degrees: Option<(u32, u32)>,
+    /// The closed forms.
+    pub phases: ThreePhases,
+    /// The relative errors of time to contact, speed, penetration, duration and period.
+    pub errors: [f64; 5],
+    /// The largest deviation in approach, contact and return, each on its own clock: of the flights over the amplitude, of the
+    /// contact over the depth.
+    pub deviations: [f64; 3],
+}
+
+impl ImpactRow {
+    /// The method with its order, as tables have it.
+    pub fn title(&self) -> String {
+        let title = self.method.title();
+        match (self.degrees, self.order) {
+            (Some((numerator, denominator)), _) => format!("{title} [{numerator}/{denominator}]"),
+            (None, Some(order)) => format!("{title}, order {order}"),
+            (None, None) => title.to_owned(),
+        }
+    }
+
+    /// Time to contact, speed, penetration, duration, period.
+    pub fn values(&self) -> [f64; 5] {
+        let phases = &self.phases;
+        [
+            phases.phases[0].end,
+            phases.speed,
+            phases.penetration,
+            phases.duration,
+            phases.period,
+        ]
+    }
+
+    /// The largest of its errors and deviations, in size.
+    pub fn worst(&self) -> f64 {
+        let all = self.errors.iter().chain(&self.deviations);
+        all.fold(0.0, |worst: f64, error| match error.is_nan() {
+            true => f64::INFINITY,
+            false => worst.max(error.abs()),
+        })
+    }
+
+    /// Whether every number and every phase is within the tolerance.
+    pub fn verdict(&self, tolerance: f64) -> Verdict {
+        Verdict::of(self.worst() <= tolerance)
+    }
+}
+
+/// Every method on one impact.
+///
+/// # Errors
+/// As [`solve`](super::solve()), but a method that does not apply is a row of its own.
+///
+/// ```
+/// use lindstedt::impact::{Setup, compare};
+///
+/// let table = compare(Setup { tolerance: 1e-3, ..Setup::default() })?;
+/// let best = table.rows.iter().map(|row| row.worst()).fold(f64::INFINITY, f64::min);
+/// assert!(best < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
+    Trial::run(&setup, |trial| {
+        let (mut rows, mut refused) = (Vec::new(), Vec::new());
+        let row = |method, order, degrees, phases: ThreePhases| {
+            let [t, v, d, duration, period, approach, contact, back] = trial.errors(&phases);
+            ImpactRow {
+                method,
+                order,
+                degrees,
+                phases,
+                errors: [t, v, d, duration, period],
+                deviations: [approach, contact, back],
+            }
+        };
+        match paper(trial) {
+            Ok((law, phases)) => {
+                for (reading, phases) in phases {
+                    let order = (reading == Reading::Paper).then_some(law.order);
+                    rows.push(row(ImpactMethod::Reading(reading), order, None, phases));
+                }
+            }
+            Err(error) => refused.push((ImpactMethod::Reading(Reading::Paper), error.to_string())),
+        }
+        for method in Method::ALL {
+            let name = ImpactMethod::Derived(method);
+            match trial.derived(&[method]) {
+                (Some(found), tried) => {
+                    let solution = &found.flight.solution;
+                    // The order that was chosen among several.
+                    let several = tried.iter().filter(|attempt| attempt.error.is_ok()).count() > 1;
+                    let order = (several || setup.order.is_some()).then_some(solution.order);
+                    rows.push(row(name, order, solution.degrees, found.phases));
+                }
+                (None, tried) => {
+                    let reason = tried.iter().find_map(|attempt| attempt.error.as_ref().err());
+                    refused.push((name, reason.cloned().unwrap_or_default()));
+                }
+            }
+        }
+        Ok(ImpactComparison {
+            setup: setup.clone(),
+            equation: trial.equations.judged.clone(),
+            letters: trial.equations.letters,
+            equilibrium: trial.equations.equilibrium,
+            rows,
+            refused,
+            truth: trial.truth.clone(),
+        })
+    })
+}

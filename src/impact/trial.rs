@@ -1,0 +1,258 @@
+//! A trial: the question of an impact, its true motion, and derived phases that are judged against it.
+//!
+//! In: a [`Setup`](super::Setup) and the methods to try. Out: the derived phases of the first order and method that pass, and an
+//! [`Attempt`] for each that was tried. Everything that is judged is so in z = s (x - x_e), which runs from the equilibrium
+//! towards the barrier.
+
+use super::collision::{Collision, CollisionError};
+use super::derived::{Flight, NoFlight, contact, phases_of};
+use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
+use super::phases::{PhasesError, ThreePhases};
+use super::setup::{Equations, Setup, SetupError};
+use crate::method::table::{Choice, Entry};
+use crate::method::{self, Refusal};
+use crate::numeric::ode::Options;
+use crate::solution::{Method, Solution};
+
+/// A method that was tried for the derived column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// The method.
+    pub method: Method,
+    /// Its order, where it was given one.
+    pub order: Option<u32>,
+    /// Its degrees, where it was given some.
+    pub degrees: Option<(u32, u32)>,
+    /// The largest error, relative, or why there is none.
+    pub error: Result<f64, String>,
+}
+
+/// Why there is no impact to report.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImpactError {
+    /// There is no equation of an impact.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Nothing hits the barrier.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
+    /// The law could not be derived.
+    #[error(transparent)]
+    Law(#[from] Refusal),
+    /// There are no three phases.
+    #[error(transparent)]
+    Phases(#[from] PhasesError),
+    /// The swing of the derived column could not be derived.
+    #[error(transparent)]
+    Flight(#[from] NoFlight),
+    /// The true motion could not be followed.
+    #[error(transparent)]
+    Truth(#[from] TrueImpactError),
+    /// No reading applies.
+    #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
+    NoReading {
+        /// Why not the paper's.
+        paper: String,
+        /// What else was tried.
+        tried: Vec<Attempt>,
+    },
+}
+
+fn attempts(tried: &[Attempt]) -> String {
+    let reason = |attempt: &Attempt| {
+        let reason = attempt.error.as_ref().err()?;
+        Some(format!("{}: {reason}", attempt.method.title()))
+    };
+    tried.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
+}
+
+/// The question of an impact with its true motion.
+pub(super) struct Trial<'a> {
+    pub(super) setup: &'a Setup,
+    pub(super) equations: &'a Equations,
+    /// What is judged, in z.
+    pub(super) collision: Collision<'a>,
+    pub(super) truth: TrueImpact,
+    /// The speed at the touch from the energy.
+    pub(super) energy_speed: f64,
+}
+
+/// Three phases that a method derives.
+pub(super) struct Derived {
+    /// The swing.
+    pub(super) flight: Flight,
+    /// The phases, in x.
+    pub(super) phases: ThreePhases,
+    /// Their largest error.
+    error: f64,
+}
+
+/// What a method is asked for: an order, or two degrees.
+type Rung = (Option<u32>, Option<(u32, u32)>);
+
+/// The highest order of a method that is tried where none is asked for: expansions and balances go on for long, the others become
+/// slow.
+fn highest_order(method: Method) -> u32 {
+    match method {
+        Method::LindstedtPoincare | Method::HarmonicBalance => 16,
+        _ => 4,
+    }
+}
+
+impl Trial<'_> {
+    /// Follows the true motion and hands the trial on.
+    ///
+    /// # Errors
+    /// A barrier out of reach, a release from which nothing swings to it, numbers that are none.
+    pub(super) fn run<R>(setup: &Setup, body: impl FnOnce(&Trial) -> Result<R, ImpactError>) -> Result<R, ImpactError> {
+        let equations = setup.equations()?;
+        let (sign, origin) = (setup.side.sign(), equations.equilibrium);
+        let z = |x: f64| sign * (x - origin);
+        let collision = Collision {
+            release: z(setup.release),
+            barrier: z(setup.barrier),
+            stiffness: equations.stiffness,
+            restoring_force: &|z: f64| sign * equations.restoring_force(origin + sign * z),
+            elastic_force: &|depth: f64| equations.elastic_force(depth),
+        };
+        let seen = |error: CollisionError| error.seen_from(sign, origin);
+        collision.check().map_err(seen)?;
+        let energy_speed = collision.contact_speed().map_err(seen)?;
+        let options = Options {
+            maximum_steps: setup.step_limit as usize,
+            ..Options::with_tolerance(setup.integrator_tolerance)
+        };
+        let truth = assured_impact(&collision, &options).map_err(|error| match error {
+            TrueImpactError::Collision(error) => seen(error).into(),
+            other => ImpactError::from(other),
+        })?;
+        body(&Trial {
+            setup,
+            equations: &equations,
+            collision,
+            truth,
+            energy_speed,
+        })
+    }
+
+    /// The largest deviation of these phases, in x, from the true motion.
+    pub(super) fn deviation(&self, phases: &ThreePhases) -> Deviation {
+        let sign = self.setup.side.sign();
+        let seen = phases.moved(sign, -sign * self.equations.equilibrium);
+        deviation(&seen, &self.truth)
+    }
+
+    /// The derived phases of the first of these methods that passes, else the best; and what was tried.
+    pub(super) fn derived(&self, methods: &[Method]) -> (Option<Derived>, Vec<Attempt>) {
+        let mut tried: Vec<Attempt> = Vec::new();
+        let mut best: Option<Derived> = None;
+        for &method in methods {
+            let (found, attempts) = self.climb(method);
+            tried.extend(attempts);
+            best = closer(best, found);
+            if best.as_ref().is_some_and(|best| best.error <= self.setup.tolerance) {
+                break;
+            }
+        }
+        (best, tried)
+    }
+
+    /// The derived phases of a method: at the order asked for, or at the lowest that passes, else at the best.
+    fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
+        let setup = self.setup;
+        let takes = |choice| Entry::of(method).takes(choice);
+        let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
+            (None, None) if takes(Choice::Degrees) => {
+                (1..=highest_order(method)).map(|n| (None, Some((n, n)))).collect()
+            }
+            (None, None) if takes(Choice::Order) => {
+                (1..=highest_order(method)).map(|order| (Some(order), None)).collect()
+            }
+            chosen => vec![chosen],
+        };
+        let mut tried: Vec<Attempt> = Vec::new();
+        let mut best: Option<Derived> = None;
+        let mut last: Option<Solution> = None;
+        for (order, degrees) in rungs {
+            let options = method::Options {
+                method: Some(method),
+                order,
+                pade: degrees,
+                amplitude: setup.amplitude_convention,
+                ..Default::default()
+            };
+            let flight = Flight::derive(self.equations, [setup.release, -setup.side.sign()], &options);
+            // An order that adds nothing to a formula is passed over.
+            let solution = flight.as_ref().ok().map(|flight| &flight.solution);
+            let same = |last: &Solution, new: &Solution| {
+                last.law == new.law && last.displacement == new.displacement && !new.displacement.is_zero()
+            };
+            if let (Some(last), Some(new)) = (&last, solution)
+                && same(last, new)
+            {
+                continue;
+            }
+            last = solution.cloned();
+            // What refuses an order refuses those above it; the first may be too low.
+            let refused = matches!(flight, Err(NoFlight::Refusal(_))) && order.is_none_or(|order| order > 2);
+            let found = flight.and_then(|flight| self.with_contact(flight));
+            tried.push(Attempt {
+                method,
+                order,
+                degrees,
+                error: found
+                    .as_ref()
+                    .map(|found| found.error)
+                    .map_err(|reason| reason.of(method)),
+            });
+            best = closer(best, found.ok());
+            if refused || best.as_ref().is_some_and(|best| best.error <= setup.tolerance) {
+                break;
+            }
+        }
+        (best, tried)
+    }
+
+    /// The phases of this swing, and how far they are from the truth.
+    fn with_contact(&self, flight: Flight) -> Result<Derived, NoFlight> {
+        let (touch, speed) = flight.touch(self.setup.barrier)?;
+        let contact = contact(&self.collision, speed)?;
+        let phases = phases_of(&flight, self.setup.barrier, touch, &contact);
+        let error = worst(&self.errors(&phases));
+        Ok(Derived { flight, phases, error })
+    }
+
+    /// The relative errors of three phases in x: time to contact, speed, penetration, duration, period, and the largest deviation in
+    /// each phase on its own clock, of the flights over the amplitude and of the contact over the depth.
+    pub(super) fn errors(&self, phases: &ThreePhases) -> [f64; 8] {
+        let (truth, amplitude) = (&self.truth, self.collision.release.abs());
+        let [approach, contact, back] = self.deviation(phases).aligned;
+        [
+            phases.phases[0].end / truth.touch.t - 1.0,
+            phases.speed / truth.touch.v - 1.0,
+            phases.penetration / truth.penetration - 1.0,
+            phases.duration / truth.duration - 1.0,
+            phases.period / truth.period - 1.0,
+            approach / amplitude,
+            contact / truth.penetration,
+            back / amplitude,
+        ]
+    }
+}
+
+/// That of two with the smaller error.
+fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
+    match (one, other) {
+        (Some(one), Some(other)) if other.error < one.error => Some(other),
+        (one, other) => one.or(other),
+    }
+}
+
+/// The largest of them; what is no number is the largest.
+fn worst(errors: &[f64]) -> f64 {
+    errors.iter().fold(0.0, |worst: f64, error| match error.is_nan() {
+        true => f64::INFINITY,
+        false => worst.max(error.abs()),
+    })
+}

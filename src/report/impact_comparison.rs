@@ -1,0 +1,44 @@
+//! Every method on one impact: the equation, a row each, and why the others have none.
+
+use super::impact::asked;
+use super::{Block, Document};
+use crate::impact::ImpactComparison;
+
+/// The document of a table of methods on one impact.
+///
+/// ```
+/// use lindstedt::impact::{Setup, compare};
+///
+/// let table = compare(Setup { stiffness: 1e6, ..Setup::default() })?;
+/// let document = lindstedt::report::impact_comparison(&table, 0.01);
+/// assert!(lindstedt::export::text::document(&document, 120).contains("Lindstedt-Poincare"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'_> {
+    let truth = &table.truth;
+    let mut sections = vec![
+        vec![Block::QuestionAsTyped(&table.equation)],
+        asked(&table.setup, table.letters, table.equilibrium),
+        vec![Block::ImpactMethods {
+            rows: &table.rows,
+            truth: [
+                truth.touch.t,
+                truth.touch.v,
+                truth.penetration,
+                truth.duration,
+                truth.period,
+            ],
+            tolerance,
+        }],
+    ];
+    if !table.refused.is_empty() {
+        let entries = table.refused.iter();
+        sections.push(vec![Block::Entries {
+            heading: "Not applicable",
+            entries: entries
+                .map(|(method, reason)| (method.title().to_owned(), reason.clone()))
+                .collect(),
+        }]);
+    }
+    Document { sections }
+}

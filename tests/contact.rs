@@ -422,3 +422,33 @@ fn a_swing_and_a_barrier_of_the_users_own() {
     .unwrap();
     assert!((doubled.truth.period / found.truth.period - 1.0).abs() < 1e-12);
 }
+
+/// The table of `docs/impact.md` is what is computed.
+#[test]
+fn the_page_says_what_is_computed() {
+    let page = include_str!("../docs/impact.md");
+    let table = impact::compare(Setup {
+        tolerance: 1e-3,
+        ..Setup::default()
+    })
+    .unwrap();
+    let mut found = 0;
+    for line in page
+        .lines()
+        .filter(|line| line.starts_with("| ") && line.ends_with(" |"))
+    {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let Some(row) = table.rows.iter().find(|row| row.title() == cells[0]) else {
+            continue;
+        };
+        for (cell, error) in cells[1..].iter().zip(row.errors) {
+            let computed = match error.abs() < 1e-9 {
+                true => "< 1e-7".to_owned(),
+                false => lindstedt::export::significant(100.0 * error, 3),
+            };
+            assert_eq!(*cell, computed, "{line}");
+        }
+        found += 1;
+    }
+    assert_eq!(found, 5);
+}

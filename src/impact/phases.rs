@@ -630,11 +630,23 @@ impl Form {
                 centre,
                 frequency,
                 harmonics,
-            } => harmonics.iter().fold((*centre, 0.0), |(x, v), &(number, amplitude)| {
-                let frequency = f64::from(number) * frequency;
-                let turned = amplitude * Complex64::cis(frequency * elapsed);
-                (x + turned.re, v - frequency * turned.im)
-            }),
+            } => {
+                // exp(i k phi) by turns of phi: one sine and cosine for all.
+                let turn = Complex64::cis(frequency * elapsed);
+                let (mut wave, mut reached) = (Complex64::ONE, 0);
+                let (mut x, mut v) = (*centre, 0.0);
+                for &(number, amplitude) in harmonics {
+                    wave = match number.checked_sub(reached) {
+                        Some(more) => wave * turn.powu(more),
+                        None => turn.powu(number),
+                    };
+                    reached = number;
+                    let turned = amplitude * wave;
+                    x += turned.re;
+                    v -= f64::from(number) * frequency * turned.im;
+                }
+                (x, v)
+            }
             Self::Contact { barrier, inward, depth } => {
                 let (depth, rate) = depth.at(elapsed);
                 (barrier + inward * depth, inward * rate)

@@ -23,7 +23,7 @@ pub struct Attempt {
     pub order: Option<u32>,
     /// Its degrees, where it was given some.
     pub degrees: Option<(u32, u32)>,
-    /// The largest error, relative, or why there is none.
+    /// The largest error, relative; of the five numbers alone where one of them is beyond the tolerance already. Or why there is none.
     pub error: Result<f64, String>,
 }
 
@@ -99,6 +99,9 @@ fn highest_order(method: Method) -> u32 {
         _ => 4,
     }
 }
+
+/// So many orders in a row that are no closer end the search.
+const PATIENCE: usize = 4;
 
 impl Trial<'_> {
     /// Follows the true motion and hands the trial on.
@@ -207,7 +210,14 @@ impl Trial<'_> {
                     .map_err(|reason| reason.of(method)),
             });
             best = closer(best, found.ok());
-            if refused || best.as_ref().is_some_and(|best| best.error <= setup.tolerance) {
+            // Orders that bring nothing closer for long: an expansion beyond its radius.
+            let error = |attempt: &Attempt| attempt.error.clone().unwrap_or(f64::INFINITY);
+            let stalls = tried.len() > PATIENCE && {
+                let (before, lately) = tried.split_at(tried.len() - PATIENCE);
+                let least = |attempts: &[Attempt]| attempts.iter().map(error).fold(f64::INFINITY, f64::min);
+                least(lately) >= least(before)
+            };
+            if refused || stalls || best.as_ref().is_some_and(|best| best.error <= setup.tolerance) {
                 break;
             }
         }
@@ -219,24 +229,42 @@ impl Trial<'_> {
         let (touch, speed) = flight.touch(self.setup.barrier)?;
         let contact = contact(&self.collision, speed)?;
         let phases = phases_of(&flight, self.setup.barrier, touch, &contact);
-        let error = worst(&self.errors(&phases));
+        // What misses a number is not followed through its phases.
+        let numbers = worst(&self.number_errors(&phases));
+        let error = match numbers <= self.setup.tolerance {
+            true => worst(&self.errors(&phases)),
+            false => numbers,
+        };
         Ok(Derived { flight, phases, error })
     }
 
     /// The relative errors of three phases in x: time to contact, speed, penetration, duration, period, and the largest deviation in
     /// each phase on its own clock, of the flights over the amplitude and of the contact over the depth.
     pub(super) fn errors(&self, phases: &ThreePhases) -> [f64; 8] {
-        let (truth, amplitude) = (&self.truth, self.collision.release.abs());
+        let amplitude = self.collision.release.abs();
         let [approach, contact, back] = self.deviation(phases).aligned;
+        let [time, speed, penetration, duration, period] = self.number_errors(phases);
+        [
+            time,
+            speed,
+            penetration,
+            duration,
+            period,
+            approach / amplitude,
+            contact / self.truth.penetration,
+            back / amplitude,
+        ]
+    }
+
+    /// The first five of them.
+    fn number_errors(&self, phases: &ThreePhases) -> [f64; 5] {
+        let truth = &self.truth;
         [
             phases.phases[0].end / truth.touch.t - 1.0,
             phases.speed / truth.touch.v - 1.0,
             phases.penetration / truth.penetration - 1.0,
             phases.duration / truth.duration - 1.0,
             phases.period / truth.period - 1.0,
-            approach / amplitude,
-            contact / truth.penetration,
-            back / amplitude,
         ]
     }
 }

@@ -175,13 +175,15 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
         reading: column.reading,
         words: format!("Derived, with all harmonics: {}", solution.title()),
     }];
-    let chosen = match (impact.setup.method, impact.setup.order) {
-        (_, Some(_)) => None,
-        _ if impact.tried.len() == 1 => Some("the first that was tried passes".to_owned()),
-        _ => Some(format!(
-            "chosen among {} that were tried: the first that passes, or the best",
-            impact.tried.len()
-        )),
+    let setup = &impact.setup;
+    let passes = |attempt: &Attempt| attempt.error.as_ref().is_ok_and(|error| *error <= setup.tolerance);
+    let chosen = match (setup.order.is_some() || setup.degrees.is_some(), impact.tried.last()) {
+        (true, _) | (_, None) => None,
+        (false, Some(last)) if passes(last) => Some(match impact.tried.len() {
+            1 => "the first that was tried, and it passes".to_owned(),
+            count => format!("the first of {count} tried that passes"),
+        }),
+        (false, Some(_)) => Some(format!("the closest of {} tried; none passes", impact.tried.len())),
     };
     blocks.extend(chosen.map(Block::Detail));
     let x = solution.coordinate();

@@ -31,6 +31,8 @@
 
 use std::f64::consts::PI;
 
+use num_complex::Complex64;
+
 use super::super::hertz::positive;
 use super::time::{Panel, expand, invert, length};
 use super::{ContactError, in_range, within};
@@ -236,11 +238,14 @@ impl SineSeries {
         let time = within(time, self.duration);
         let mut depth = self.parabola * time * (self.duration - time);
         let mut velocity = self.parabola * (self.duration - 2.0 * time);
+        // exp(i k phi) for the odd k, one turn by 2 phi after the other: one sine and cosine for all.
+        let first = PI / self.duration;
+        let mut wave = Complex64::cis(first * time);
+        let turn = wave * wave;
         for (number, coefficient) in self.harmonics.iter().enumerate() {
-            let wave = (2 * number + 1) as f64 * PI / self.duration;
-            let (sine, cosine) = (wave * time).sin_cos();
-            depth += coefficient * sine;
-            velocity += coefficient * wave * cosine;
+            depth += coefficient * wave.im;
+            velocity += coefficient * (2 * number + 1) as f64 * first * wave.re;
+            wave *= turn;
         }
         (depth, velocity)
     }

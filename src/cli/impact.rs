@@ -180,10 +180,15 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         impact.letters.coordinate,
         decimal(setup.barrier),
     );
+    let displacement = format!("displacement {}", impact.letters.coordinate);
     let place = |side| (setup.side == side).then_some(setup.barrier);
     let figure = ImpactFigure {
         left_barrier: place(Side::Left),
         right_barrier: place(Side::Right),
+        axes: match &setup.swing {
+            None => ["displacement x (rad)", "time t (units of 1/ω)"],
+            Some(_) => [&displacement, "time t"],
+        },
         motions: &motions,
         caption: &caption,
     };

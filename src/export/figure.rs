@@ -136,19 +136,21 @@ pub struct ImpactMotion<'a> {
     pub label: &'a str,
     /// Colour, dash and width.
     pub style: CurveStyle,
-    /// Samples (t, x, x'): t in units of 1/omega, x in rad, x' = dx/d(omega t).
+    /// Samples (t, x, x'): for the pendulum t in units of 1/omega, x in rad, x' = dx/d(omega t).
     pub samples: &'a [(f64, f64, f64)],
-    /// One contact: (time since touch in units of 1/omega, penetration x - x_c in rad); empty where there is none.
+    /// One contact: (time since touch, depth), in the same units; empty where there is none.
     pub contact: &'a [(f64, f64)],
 }
 
 /// What [`impact_figure`] draws.
 #[derive(Clone, Copy, Debug)]
 pub struct ImpactFigure<'a> {
-    /// Barrier on the left, in rad.
+    /// Barrier on the left, in the unit of x.
     pub left_barrier: Option<f64>,
-    /// Barrier on the right, x_c in rad.
+    /// Barrier on the right, in the unit of x.
     pub right_barrier: Option<f64>,
+    /// The coordinate with its unit, `displacement x (rad)`, and time with its own, `time t (units of 1/ω)`.
+    pub axes: [&'a str; 2],
     /// The motions, drawn in this order: Runge-Kutta first, formulas over it.
     pub motions: &'a [ImpactMotion<'a>],
     /// Words below the figure, or empty.
@@ -173,21 +175,29 @@ pub struct ImpactFigure<'a> {
 /// });
 /// let motions: Vec<_> = motions.collect();
 /// let right_barrier = Some(impact.setup.barrier);
-/// let svg = impact_figure(&ImpactFigure { left_barrier: None, right_barrier, motions: &motions, caption: "One impact." })?;
+/// let axes = ["displacement x (rad)", "time t (units of 1/ω)"];
+/// let svg = impact_figure(&ImpactFigure { left_barrier: None, right_barrier, axes, motions: &motions, caption: "One impact." })?;
 /// assert!(svg.starts_with("<svg") && svg.contains("closed form"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
+    const LEFT: &str = "left barrier";
+    const RIGHT: &str = "barrier x_c";
     let motions = data.motions.iter();
     let phase: Vec<_> = motions.clone().map(|motion| phase_points(motion.samples)).collect();
     let time: Vec<_> = motions.map(|motion| time_points(motion.samples)).collect();
     let barriers = |guide: fn(f64, &'static str) -> Guide<'static>| {
-        let left = data.left_barrier.map(|at| guide(at, "left barrier"));
-        let right = data.right_barrier.map(|at| guide(at, "barrier x_c"));
+        let left = data.left_barrier.map(|at| guide(at, LEFT));
+        let right = data.right_barrier.map(|at| guide(at, RIGHT));
         left.into_iter().chain(right).collect()
     };
     let (orbits, motions) = (curves(data.motions, &phase), curves(data.motions, &time));
-    let [time, displacement] = ["time t (units of 1/ω)", "displacement x (rad)"];
+    let [displacement, time] = data.axes;
+    let with_unit = |words: &str, axis: &str| match axis.find('(') {
+        Some(unit) => format!("{words} {}", &axis[unit..]),
+        None => words.to_owned(),
+    };
+    let enlarged = [with_unit("time since touch", time), with_unit("depth", displacement)];
     let mut panels = vec![
         panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(Guide::X)),
         panel("Motion in time", [time, displacement], motions, barriers(Guide::Y)),
@@ -195,8 +205,8 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     let touching = data.motions.iter().filter(|motion| !motion.contact.is_empty());
     let contacts: Vec<_> = touching.map(|m| curve(m.label, m.contact, m.style)).collect();
     if !contacts.is_empty() {
-        let labels = ["time since touch (units of 1/ω)", "penetration x − x_c (rad)"];
-        let touch = vec![Guide::Y(0.0, "barrier x_c")];
+        let labels = enlarged.each_ref().map(String::as_str);
+        let touch = vec![Guide::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
         panels.push(panel("Contact, enlarged", labels, contacts, touch));
     }
     figure(&panels, data.caption)
@@ -661,6 +671,7 @@ mod tests {
         impact_figure(&ImpactFigure {
             left_barrier: None,
             right_barrier,
+            axes: ["displacement x (rad)", "time t (units of 1/ω)"],
             motions,
             caption: "End.",
         })

@@ -452,3 +452,44 @@ fn the_page_says_what_is_computed() {
     }
     assert_eq!(found, 5);
 }
+
+/// Released pressed into the barrier: the same cycle, from its deepest point.
+#[test]
+fn a_release_inside_the_barrier_is_the_deepest_point_of_its_cycle() {
+    let (release, barrier, stiffness) = (0.4, 0.323, 1e3_f64);
+    let found = impact::solve(Setup {
+        release,
+        barrier,
+        stiffness,
+        ..Setup::default()
+    })
+    .unwrap();
+    // cos(tp) = cos(0.4) - (2/5) gamma d^(5/2), the energy of the pendulum.
+    let turning_point = -(release.cos() - 0.4 * stiffness * (release - barrier).powf(2.5)).acos();
+    assert!(
+        (found.turning_point - turning_point).abs() < 1e-10,
+        "{}",
+        found.turning_point
+    );
+    assert!((found.truth.deepest.x - release).abs() < 1e-8);
+    let derived = found.column(Reading::Derived).unwrap();
+    let deepest = derived.phases.position_at(0.5 * derived.phases.period);
+    assert!(
+        (deepest - release).abs() < 1e-3 * (release - barrier) + 1e-6,
+        "{deepest}"
+    );
+    // Too much of a push throws it over the top, and a tiny one against gravity does not free it.
+    for (release, barrier, stiffness, words) in [
+        (1.5, 0.323, 1e7, "does not come to rest on the other side"),
+        (-1.0, -1.2, 1e-6, "is not pushed out of it"),
+    ] {
+        let refused = impact::solve(Setup {
+            release,
+            barrier,
+            stiffness,
+            ..Setup::default()
+        })
+        .unwrap_err();
+        assert!(refused.to_string().contains(words), "{refused}");
+    }
+}

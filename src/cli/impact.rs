@@ -168,8 +168,8 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         Some(_) => impact.equation.clone(),
     };
     let release = match setup.side {
-        Side::Right if impact.equilibrium == 0.0 => format!("A = {}", decimal(-setup.release)),
-        _ => format!("{}(0) = {}", impact.letters.coordinate, decimal(setup.release)),
+        Side::Right if impact.equilibrium == 0.0 => format!("A = {}", decimal(-impact.turning_point)),
+        _ => format!("{}(0) = {}", impact.letters.coordinate, decimal(impact.turning_point)),
     };
     let stiffness = match &setup.force {
         None => format!(", γ = {}", decimal(setup.stiffness)),

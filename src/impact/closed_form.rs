@@ -33,6 +33,8 @@ pub struct Impact {
     pub letters: Letters,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
+    /// Where the cycle starts: the release, or the turning point of a motion released inside the barrier.
+    pub turning_point: f64,
     /// The derived law of the free swing in the paper's reading, where there is one.
     pub free_swing: Option<Solution>,
     /// The closed forms, the paper's first.
@@ -129,6 +131,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             equation: trial.equations.judged.clone(),
             letters: trial.equations.letters,
             equilibrium: trial.equations.equilibrium,
+            turning_point: trial.turning_point,
             free_swing,
             columns,
             flight,
@@ -240,9 +243,9 @@ impl Impact {
         self.columns.iter().find(|column| column.reading == reading)
     }
 
-    /// The distance of the release from the equilibrium, in the unit of x.
+    /// The distance of the turning point from the equilibrium, in the unit of x.
     pub fn amplitude(&self) -> f64 {
-        (self.setup.release - self.equilibrium).abs()
+        (self.turning_point - self.equilibrium).abs()
     }
 
     /// Runge-Kutta and then every column, with so many points a phase.

@@ -11,7 +11,9 @@
 
 use thiserror::Error;
 
+use super::linearisation::work;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::root::find_root;
 
 /// x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = release towards the barrier at x_c, to the right of it.
 #[derive(Clone, Copy)]
@@ -77,6 +79,19 @@ pub enum CollisionError {
         /// Where the barrier is.
         barrier: f64,
     },
+    /// Released inside the barrier, it does not leave it, or does not come back.
+    #[error(
+        "released at rest at x = {release}, inside the barrier at {barrier}, it {what}: move the release, or follow the motion by \
+         `lindstedt simulate`"
+    )]
+    Inside {
+        /// Where it is released.
+        release: f64,
+        /// Where the barrier is.
+        barrier: f64,
+        /// What becomes of it.
+        what: &'static str,
+    },
     /// At the release, or on the way, the force does not drive the pendulum towards the barrier.
     #[error(
         "released at rest at x = {release}, the pendulum does not swing to the barrier: the force turns it back at \
@@ -110,6 +125,11 @@ impl CollisionError {
             Self::ReleasedBehindBarrier { release, barrier } => Self::ReleasedBehindBarrier {
                 release: x(release),
                 barrier: x(barrier),
+            },
+            Self::Inside { release, barrier, what } => Self::Inside {
+                release: x(release),
+                barrier: x(barrier),
+                what,
             },
             Self::OutsideTheWell { release, at } => Self::OutsideTheWell {
                 release: x(release),
@@ -160,6 +180,51 @@ impl Collision<'_> {
             return Err(CollisionError::Stiffness(stiffness));
         }
         Ok(())
+    }
+
+    /// The turning point on the free side of a motion released at rest at `inside`, beyond the barrier: where
+    /// V(x) - V(x_c) = V(inside) - V(x_c) + gamma int_0^(inside - x_c) F. The release of this collision is not asked.
+    ///
+    /// # Errors
+    /// [`CollisionError::Inside`] where the barrier does not push it out, or the swing does not bring it back.
+    pub(super) fn turning_point(&self, inside: f64) -> Result<f64, CollisionError> {
+        let &Collision {
+            barrier,
+            stiffness,
+            restoring_force,
+            elastic_force,
+            ..
+        } = self;
+        let stays = |what| CollisionError::Inside {
+            release: inside,
+            barrier,
+            what,
+        };
+        let depth = inside - barrier;
+        let stored = stiffness * work(elastic_force, depth)?;
+        let energy = stored + integrate_smooth(restoring_force, barrier, inside, 1e-13)?.0;
+        if energy.is_nan() || energy <= 0.0 {
+            return Err(stays("is not pushed out of it"));
+        }
+        let missing = |x: f64| match integrate_smooth(restoring_force, x, barrier, 1e-13) {
+            Ok((gained, _)) => -gained - energy,
+            Err(_) => f64::NAN,
+        };
+        // In steps that grow slowly: a hill lower than the energy must not be stepped over.
+        let mut step = 1e-6 * depth.max(barrier.abs());
+        let (mut near, mut far) = (barrier, barrier - step);
+        for _ in 0..400 {
+            let value = missing(far);
+            if value.is_nan() {
+                break;
+            }
+            if value >= 0.0 {
+                return find_root(missing, far, near).map_err(|_| stays("does not come to rest on the other side"));
+            }
+            step *= 1.1;
+            (near, far) = (far, far - step);
+        }
+        Err(stays("does not come to rest on the other side"))
     }
 
     /// The speed sqrt(2 (V(x_r) - V(x_c))) at the barrier, from the energy, in the units of x and time of the equation.

@@ -23,6 +23,8 @@ pub struct ImpactComparison {
     pub letters: Letters,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
+    /// Where the cycle starts: the release, or the turning point of a motion released inside the barrier.
+    pub turning_point: f64,
     /// The rows that have numbers: the paper's readings first, then the methods in the order of [`Method::ALL`].
     pub rows: Vec<ImpactRow>,
     /// The others, with the reason of each.
@@ -173,6 +175,7 @@ pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
             equation: trial.equations.judged.clone(),
             letters: trial.equations.letters,
             equilibrium: trial.equations.equilibrium,
+            turning_point: trial.turning_point,
             rows,
             refused,
             truth: trial.truth.clone(),

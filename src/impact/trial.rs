@@ -71,6 +71,8 @@ fn attempts(tried: &[Attempt]) -> String {
 pub(super) struct Trial<'a> {
     pub(super) setup: &'a Setup,
     pub(super) equations: &'a Equations,
+    /// Where the cycle starts, in x: the release, or the turning point of a motion released inside the barrier.
+    pub(super) turning_point: f64,
     /// What is judged, in z.
     pub(super) collision: Collision<'a>,
     pub(super) truth: TrueImpact,
@@ -120,6 +122,14 @@ impl Trial<'_> {
             elastic_force: &|depth: f64| equations.elastic_force(depth),
         };
         let seen = |error: CollisionError| error.seen_from(sign, origin);
+        let inside = collision.release > collision.barrier && collision.barrier.is_finite();
+        let collision = Collision {
+            release: match inside {
+                true => collision.turning_point(collision.release).map_err(seen)?,
+                false => collision.release,
+            },
+            ..collision
+        };
         collision.check().map_err(seen)?;
         let energy_speed = collision.contact_speed().map_err(seen)?;
         let options = Options {
@@ -133,6 +143,10 @@ impl Trial<'_> {
         body(&Trial {
             setup,
             equations: &equations,
+            turning_point: match inside {
+                true => origin + sign * collision.release,
+                false => setup.release,
+            },
             collision,
             truth,
             energy_speed,
@@ -185,7 +199,7 @@ impl Trial<'_> {
                 amplitude: setup.amplitude_convention,
                 ..Default::default()
             };
-            let flight = Flight::derive(self.equations, [setup.release, -setup.side.sign()], &options);
+            let flight = Flight::derive(self.equations, [self.turning_point, -setup.side.sign()], &options);
             // An order that adds nothing to a formula is passed over.
             let solution = flight.as_ref().ok().map(|flight| &flight.solution);
             let same = |last: &Solution, new: &Solution| {

@@ -21,7 +21,11 @@ use crate::symbol::Symbol;
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
-        asked(&impact.setup, impact.letters, impact.equilibrium),
+        asked(
+            &impact.setup,
+            impact.letters,
+            [impact.equilibrium, impact.turning_point],
+        ),
     ];
     sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
     for column in &impact.columns {
@@ -54,7 +58,7 @@ fn is_minus_amplitude(setup: &Setup, equilibrium: f64) -> bool {
 fn release(impact: &Impact) -> String {
     match is_minus_amplitude(&impact.setup, impact.equilibrium) {
         true => "-A".to_owned(),
-        false => decimal(impact.setup.release),
+        false => decimal(impact.turning_point),
     }
 }
 
@@ -64,17 +68,22 @@ fn start(impact: &Impact) -> String {
         Side::Right => "",
         Side::Left => " on the left,",
     };
-    format!(
-        "{x}(0) = {}, {x}'(0) = 0: released from rest, towards a barrier{side} at {barrier}",
-        release(impact)
-    )
+    let start = release(impact);
+    if impact.turning_point != impact.setup.release {
+        let inside = decimal(impact.setup.release);
+        return format!(
+            "released from rest at {x} = {inside}, inside the barrier{side} at {barrier}: the deepest point of the cycle below, whose \
+             clock starts at its turning point {x} = {start}"
+        );
+    }
+    format!("{x}(0) = {start}, {x}'(0) = 0: released from rest, towards a barrier{side} at {barrier}")
 }
 
-pub(super) fn asked(setup: &Setup, letters: Letters, equilibrium: f64) -> Vec<Block<'_>> {
+pub(super) fn asked(setup: &Setup, letters: Letters, [equilibrium, turning_point]: [f64; 2]) -> Vec<Block<'_>> {
     let value = |name: Symbol, value, source| Block::Value { name, value, source };
     let mut blocks = Vec::new();
     if is_minus_amplitude(setup, equilibrium) {
-        blocks.push(value(AmplitudeConvention::Initial.symbol(), -setup.release, None));
+        blocks.push(value(AmplitudeConvention::Initial.symbol(), -turning_point, None));
     }
     blocks.push(value(letters.barrier, setup.barrier, None));
     let gamma = letters.stiffness;

@@ -18,7 +18,7 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'
     let truth = &table.truth;
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&table.equation)],
-        asked(&table.setup, table.letters, table.equilibrium),
+        asked(&table.setup, table.letters, [table.equilibrium, table.turning_point]),
         vec![Block::ImpactMethods {
             rows: &table.rows,
             truth: [

@@ -65,10 +65,12 @@ pub struct DerivedLaw {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Parameters {
-    /// The distance of the release from the equilibrium, in radians.
+    /// The distance of the turning point from the equilibrium, in radians.
     pub amplitude: f64,
     /// The place of the release, from rest, in radians.
     pub release: f64,
+    /// Where the cycle starts, in radians: the release, or the turning point of a motion released inside the barrier.
+    pub turning_point: f64,
     /// The place of the barrier, in radians.
     pub barrier: f64,
     /// On which side of its place the barrier is.
@@ -333,7 +335,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         equation: impact.equation.clone(),
         parameters: Parameters::of(
             setup,
-            impact.equilibrium,
+            [impact.equilibrium, impact.turning_point],
             impact.free_swing.as_ref().map(|law| law.order),
         ),
         law: impact.free_swing.as_ref().map(|law| solution(law, None)),
@@ -366,11 +368,12 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
 }
 
 impl Parameters {
-    /// The numbers of a setup whose swing has this equilibrium, and the order of `law`.
-    pub(super) fn of(setup: &Setup, equilibrium: f64, order: Option<u32>) -> Self {
+    /// The numbers of a setup whose swing has this equilibrium and turns at this point, and the order of `law`.
+    pub(super) fn of(setup: &Setup, [equilibrium, turning_point]: [f64; 2], order: Option<u32>) -> Self {
         Self {
-            amplitude: (setup.release - equilibrium).abs(),
+            amplitude: (turning_point - equilibrium).abs(),
             release: setup.release,
+            turning_point,
             barrier: setup.barrier,
             side: match setup.side {
                 Side::Left => "left",

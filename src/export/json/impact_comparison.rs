@@ -121,7 +121,7 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
     ImpactComparisonDocument {
         schema: Kind::ImpactComparison.schema().to_owned(),
         equation: table.equation.clone(),
-        parameters: Parameters::of(&table.setup, table.equilibrium, None),
+        parameters: Parameters::of(&table.setup, [table.equilibrium, table.turning_point], None),
         runge_kutta: TrueNumbers {
             time_to_contact: touch.t,
             speed: touch.v,

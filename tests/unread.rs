@@ -43,7 +43,7 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 30] = [
+const LINES: [(&str, &str, &str); 40] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -56,6 +56,9 @@ const LINES: [(&str, &str, &str); 30] = [
     ("[pendulum] side", "[pendulum]\nside = \"left\"", ""),
     ("[pendulum] start", "[pendulum]\nstart = 0.25", ""),
     ("[pendulum] speed", "[pendulum]\nspeed = 0.25", ""),
+    ("[pendulum] mass", "[pendulum]\nmass = 0.02", ""),
+    ("[pendulum] length", "[pendulum]\nlength = 0.1", ""),
+    ("[pendulum] gravity", "[pendulum]\ngravity = 1.6", ""),
     ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
     ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
@@ -87,6 +90,17 @@ const LINES: [(&str, &str, &str); 30] = [
     ("[design] length", "[design]\nlength = 0.1", ""),
     ("[design] modulus", "[design]\nmodulus = 1e8", ""),
     ("[design] gravity", "[design]\ngravity = 1.6", ""),
+    ("[sphere] radius", "[sphere]\nradius = 0.02", ""),
+    (
+        "[sphere] modulus",
+        "[sphere]\nmodulus = 2e11\npoisson = 0.3\n[barrier]\npoisson = 0.3",
+        "",
+    ),
+    ("[sphere] poisson", "[sphere]\npoisson = 0.3", ""),
+    ("[sphere] yield", "[sphere]\nyield = 1e7", ""),
+    ("[barrier] modulus", "[barrier]\nmodulus = 1e8", ""),
+    ("[barrier] poisson", "[barrier]\npoisson = 0.3", ""),
+    ("[barrier] yield", "[barrier]\nyield = 1e7", ""),
     ("[run] duration", "[run]\nduration = 25", ""),
     ("[run] integrator_tolerance", "[run]\nintegrator_tolerance = 1e-6", ""),
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),

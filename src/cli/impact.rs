@@ -77,6 +77,11 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             "--compare takes every method: leave out --method, or `method` in the file".to_owned(),
         ));
     }
+    if setup.units.is_some_and(|units| units.yield_limits().next().is_some()) {
+        return Err(Failure::Usage(
+            "--compare has no pressures: leave out `yield` in the file, or --compare".to_owned(),
+        ));
+    }
     if common.plot.is_some() {
         return Err(Failure::Usage(
             "--compare draws no picture: leave out --plot, or --compare".to_owned(),

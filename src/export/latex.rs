@@ -250,6 +250,14 @@ impl Page {
             Block::Phase { phase, letters, .. } => self.rows.extend(impact::phase(phase, *letters)),
             Block::Quantities { columns, rows, .. } => self.table(&impact::quantities(columns, rows)),
             Block::ImpactMethods { rows, truth, .. } => self.table(&impact::methods(rows, *truth)),
+            Block::SiValue {
+                name,
+                formula,
+                value,
+                unit,
+                ..
+            } => self.rows.push(impact::si_value(name, *formula, *value, unit)),
+            Block::SiQuantities { columns, rows } => self.table(&impact::si_quantities(columns, rows)),
             Block::Verdicts { verdicts, .. } => {
                 let each: Vec<String> = verdicts
                     .iter()

@@ -197,6 +197,14 @@ impl Page {
                 shapes,
             } => impact::quantities(columns, rows, deviations, shapes),
             Block::ImpactMethods { rows, truth, tolerance } => impact::methods(rows, *truth, *tolerance, self.width),
+            Block::SiValue {
+                name,
+                formula,
+                value,
+                unit,
+                words,
+            } => impact::si_value(name, *formula, *value, unit, words),
+            Block::SiQuantities { columns, rows } => impact::si_quantities(columns, rows),
             Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
             Block::Shortcoming { reading, errors, cause } => impact::shortcoming(*reading, errors, cause),
         }

@@ -8,6 +8,7 @@
 //! Each file uses only those above it:
 //!
 //! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and modulus, equation (8).
+//! - `units`: the pendulum in SI units: [`Units`], the [`Modulus`] of two bodies, force and pressure.
 //! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
 //! - [`contact`]: the contact by other laws, the exact one among them, side by side.
 //! - `collision`: a [`Collision`], the question: two forces, a release and a barrier; the speed at the touch.
@@ -23,6 +24,7 @@
 //! - `derived`: a [`Flight`], any derived motion as approach and return.
 //! - `trial`: the question with its true motion, and what methods are tried in turn.
 //! - `closed_form`: [`solve`], every reading of the three phases and the judge together.
+//! - `si`: the numbers of an impact in SI units, an [`SiImpact`].
 //! - `compare`: [`compare`], every method in one table.
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
 //! - [`sweep`]: parameters over a range, on all cores.
@@ -62,11 +64,13 @@ mod parameter;
 mod phases;
 mod polynomial;
 mod setup;
+mod si;
 mod simulate;
 mod simulation;
 pub mod sweep;
 mod taylor;
 mod trial;
+mod units;
 
 pub use case::{Case, CaseError, ContactDamping};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
@@ -79,9 +83,11 @@ pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError,
 pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, Form, Phase, PhasesError, Swing, Term, ThreePhases, three_phases};
 pub use setup::{Letters, Setup, SetupError};
+pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{
     Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime, Rest,
     Settings, Simulation, Stop, Turn,
 };
 pub use trial::{Attempt, ImpactError};
+pub use units::{Elastic, FIRST_YIELD, Modulus, PRINTED_CONTACT_TIME, Units};

@@ -13,6 +13,7 @@
 use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
+use super::units::Units;
 use crate::equilibrium::{centred, with_numbers_where_needed};
 use crate::exact::rational::ratio;
 use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function};
@@ -42,6 +43,8 @@ pub struct Setup {
     pub stiffness: f64,
     /// Where gamma comes from, in words.
     pub stiffness_source: String,
+    /// The pendulum in SI units, which must agree with `stiffness`; without it the answer is dimensionless alone.
+    pub units: Option<Units>,
     /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma` among them; without it that of
     /// Hertz, `gamma*d^(3/2)`.
     pub force: Option<Expr>,
@@ -74,6 +77,7 @@ impl Default for Setup {
             side: Side::Right,
             stiffness: DEFAULT_STIFFNESS,
             stiffness_source: "equation (8)".to_owned(),
+            units: None,
             force: None,
             method: None,
             order: None,

@@ -33,6 +33,10 @@ pub struct Problem {
     pub excitation: Excitation,
     /// Mass, radius, length, modulus, gravity.
     pub design: DesignSection,
+    /// The sphere that meets the barrier.
+    pub sphere: SphereSection,
+    /// The barrier as a body.
+    pub barrier: BarrierSection,
     /// Duration and accuracy of integrations.
     pub run: Run,
     /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
@@ -64,6 +68,40 @@ pub struct Pendulum {
     pub start: Option<f64>,
     /// x'(0), rad times omega, where it is not 0.
     pub speed: Option<f64>,
+    /// Mass, kg: the same as `[design] mass`.
+    pub mass: Option<f64>,
+    /// Length, m: the same as `[design] length`.
+    pub length: Option<f64>,
+    /// Acceleration of gravity, m/s^2: the same as `[design] gravity`.
+    pub gravity: Option<f64>,
+}
+
+/// `[sphere]`, SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SphereSection {
+    /// Radius, m: the same as `[design] radius`.
+    pub radius: Option<f64>,
+    /// Young's modulus, Pa; rigid without it.
+    pub modulus: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// Yield limit, Pa.
+    #[serde(rename = "yield")]
+    pub yield_limit: Option<f64>,
+}
+
+/// `[barrier]`, SI units: the body; its place is `[pendulum] barrier`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct BarrierSection {
+    /// Young's modulus, Pa: the same as `[design] modulus`.
+    pub modulus: Option<f64>,
+    /// Poisson's ratio; without it the modulus stands alone, as in the paper.
+    pub poisson: Option<f64>,
+    /// Yield limit, Pa.
+    #[serde(rename = "yield")]
+    pub yield_limit: Option<f64>,
 }
 
 /// The side of its place on which a barrier is.
@@ -168,6 +206,9 @@ impl Default for Pendulum {
             side: None,
             start: None,
             speed: None,
+            mass: None,
+            length: None,
+            gravity: None,
         }
     }
 }

@@ -190,7 +190,7 @@ impl TryFrom<&Problem> for Setup {
         };
         let (stiffness, source) = match number(2)? {
             Some(stiffness) => (stiffness, "given"),
-            None => problem.stiffness().map_err(ProblemError::from)?,
+            None => problem.stiffness()?,
         };
         let gives_stiffness = contact.gamma.is_some() || number(2)?.is_some();
         if let Some(force) = &force
@@ -199,6 +199,10 @@ impl TryFrom<&Problem> for Setup {
         {
             return Err(ImpactFileError::UnusedStiffness(force.to_string()));
         }
+        let is_hertz = swing.is_none() && force.is_none();
+        let has_stiffness = |force: &Expr| force.contains(Symbol::new("gamma"));
+        let gamma_follows = !gives_stiffness && force.as_ref().is_none_or(has_stiffness);
+        let units = problem.units(is_hertz, gamma_follows).map_err(ProblemError::from)?;
         let (order, degrees) = match problem.order {
             None => (None, None),
             Some(Order::Power(order)) => (Some(order), None),
@@ -212,6 +216,7 @@ impl TryFrom<&Problem> for Setup {
             side,
             stiffness,
             stiffness_source: source.to_owned(),
+            units,
             force,
             method: method(problem)?,
             order,

@@ -33,7 +33,7 @@ impl fmt::Display for Reader {
 }
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 30] = [
+pub const KEYS: [(&str, &[Reader]); 40] = [
     ("equation", &[Derive, Compare, Impact, Simulate]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
@@ -46,6 +46,9 @@ pub const KEYS: [(&str, &[Reader]); 30] = [
     ("[pendulum] side", &[Impact]),
     ("[pendulum] start", &[Impact, Simulate]),
     ("[pendulum] speed", &[Impact, Simulate]),
+    ("[pendulum] mass", &[Impact, Simulate]),
+    ("[pendulum] length", &[Impact, Simulate]),
+    ("[pendulum] gravity", &[Impact, Simulate]),
     ("[contact] gamma", &[Impact, Simulate]),
     ("[contact] force", &[Impact]),
     ("[contact] mu", &[Impact, Simulate]),
@@ -61,6 +64,13 @@ pub const KEYS: [(&str, &[Reader]); 30] = [
     ("[design] length", &[Impact, Simulate]),
     ("[design] modulus", &[Impact, Simulate]),
     ("[design] gravity", &[Impact, Simulate]),
+    ("[sphere] radius", &[Impact, Simulate]),
+    ("[sphere] modulus", &[Impact]),
+    ("[sphere] poisson", &[Impact]),
+    ("[sphere] yield", &[Impact]),
+    ("[barrier] modulus", &[Impact, Simulate]),
+    ("[barrier] poisson", &[Impact]),
+    ("[barrier] yield", &[Impact]),
     ("[run] duration", &[Simulate]),
     ("[run] integrator_tolerance", &[Impact, Simulate]),
     ("[run] step_limit", &[Impact, Simulate]),
@@ -151,6 +161,8 @@ mod tests {
             ("damping", "[damping] "),
             ("excitation", "[excitation] "),
             ("design", "[design] "),
+            ("sphere", "[sphere] "),
+            ("barrier", "[barrier] "),
             ("run", "[run] "),
         ] {
             let text = match section {

@@ -1,13 +1,14 @@
 //! Problem files: one document, in TOML, and what each command reads in it.
 //!
 //! In: the text of a file: every key optional, the paper's value the default, an unknown key an error. Angles in radians,
-//! `[design]` in SI units, the rest dimensionless as in the paper's equation (7), time in units of 1/omega, omega^2 = g/L.
+//! masses, lengths and materials in SI units, the rest dimensionless as in the paper's equation (7), time in units of 1/omega, omega^2 = g/L.
 //! Out: a [`Problem`], and from it, with the keys that a command would ignore refused by name:
 //!
 //! - [`Problem::formula`], what `derive` and `compare` read;
 //! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
 //! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept.
 
+mod design;
 mod document;
 mod formula;
 mod impact;
@@ -22,7 +23,11 @@ use crate::impact::UnknownRule;
 use crate::impact::hertz::{Design, NotPositive};
 use crate::values::ValueError;
 
-pub use document::{Barrier, BarrierSide, Contact, Damping, DesignSection, Excitation, Order, Pendulum, Problem, Run};
+pub use design::DesignError;
+pub use document::{
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, Order, Pendulum, Problem, Run,
+    SphereSection,
+};
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
 pub use keys::{KEYS, Reader, UnreadKey};
@@ -63,6 +68,9 @@ pub enum ProblemError {
     /// A design that has no stiffness.
     #[error("[design]: {0}")]
     Design(#[from] NotPositive),
+    /// Bodies that are none.
+    #[error(transparent)]
+    Bodies(#[from] DesignError),
     /// An unknown rule.
     #[error("[contact]: {0}")]
     Rule(#[from] UnknownRule),
@@ -97,17 +105,19 @@ impl Problem {
     ///
     /// # Errors
     /// A design with a quantity that is not positive.
-    fn stiffness(&self) -> Result<(f64, &'static str), NotPositive> {
+    fn stiffness(&self) -> Result<(f64, &'static str), ProblemError> {
+        let design = self.design()?;
+        let source = self.stiffness_source(&design);
         match self.contact.gamma {
-            Some(gamma) => Ok((gamma, self.stiffness_source())),
-            None => Ok((Design::from(self.design).stiffness()?, self.stiffness_source())),
+            Some(gamma) => Ok((gamma, source)),
+            None => Ok((design.stiffness()?, source)),
         }
     }
 
-    /// Where the stiffness of the contact comes from.
-    fn stiffness_source(&self) -> &'static str {
+    /// Where the stiffness of the contact comes from, with this design.
+    fn stiffness_source(&self, design: &Design) -> &'static str {
         if self.contact.gamma.is_none() {
-            return match self.design == DesignSection::default() {
+            return match *design == Design::default() {
                 true => "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma",
                 false => "equation (8) with the given design and l = L",
             };
@@ -139,6 +149,9 @@ mod tests {
                 side: None,
                 start: None,
                 speed: None,
+                mass: None,
+                length: None,
+                gravity: None,
             }
         );
         let (gamma, source) = problem.stiffness().unwrap();

@@ -138,14 +138,14 @@ impl Problem {
         let settings = self.settings()?;
         self.check_pairs(gives)?;
         Ok(Simulate {
-            case,
             settings,
-            gamma_source: self.stiffness_source(),
+            gamma_source: self.stiffness_source(&case.design),
             mu_source: match (self.contact.mu, self.contact.lambda) {
                 (Some(_), _) => "given",
                 (None, Some(_)) => "gamma*lambda*sqrt(g*L)",
                 (None, None) => "default",
             },
+            case,
         })
     }
 
@@ -176,7 +176,7 @@ impl Problem {
             friction,
             beta: self.excitation.beta,
             frequency_ratio: self.excitation.frequency_ratio,
-            design: self.design.into(),
+            design: self.design().map_err(ProblemError::from)?,
         })
     }
 

@@ -2,8 +2,11 @@
 
 use super::solution::law_blocks;
 use super::{Block, Document};
-use crate::decimal::decimal;
-use crate::impact::{Attempt, Column, Flight, Form, Impact, Letters, Reading, Setup, Side};
+use crate::decimal::{decimal, significant};
+use crate::impact::{
+    Attempt, Column, Flight, Form, Impact, Letters, Modulus, PRINTED_CONTACT_TIME, Quantity, Reading, Setup, SiImpact,
+    Side, YieldCheck,
+};
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
@@ -46,6 +49,14 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
         sections.push(std::iter::once(heading).chain(tried).collect());
     }
     sections.push(judged(impact, tolerance));
+    if impact.setup.units.is_some() {
+        sections.push(match impact.si() {
+            Some(si) => in_si_units(impact, &si, tolerance),
+            None => vec![Block::Heading(
+                "No SI units: a number would be beyond the range of floating point".to_owned(),
+            )],
+        });
+    }
     Document { sections }
 }
 
@@ -263,4 +274,149 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
         blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming { reading, errors, cause }));
     }
     blocks
+}
+
+/// The units with their numbers, every quantity in them, and what they say of the bodies and of the paper.
+fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<'a>> {
+    let (sign, inside) = match impact.setup.side {
+        Side::Right => ('+', "x - xc"),
+        Side::Left => ('-', "xc - x"),
+    };
+    let mut blocks = vec![Block::Heading(format!(
+        "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2) H({inside}) = 0"
+    ))];
+    blocks.extend(formulas(impact, si));
+    let mut rows: Vec<(Quantity, &str)> = si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
+    let over_the_printed = si.over_the_printed();
+    rows.push((over_the_printed.clone(), ""));
+    blocks.push(Block::SiQuantities {
+        columns: impact.columns.iter().map(|column| column.reading).collect(),
+        rows,
+    });
+    let peak = match si.peak_pressure {
+        Some(_) => {
+            "peak force F = m g gamma d^(3/2) at the greatest depth d, peak pressure 3 F/(2 pi R L d), energy m v^2/2"
+        }
+        None => {
+            "peak force F = m g gamma d^(3/2) at the greatest depth d, energy m v^2/2; a pressure needs [sphere] radius"
+        }
+    };
+    blocks.push(Block::Detail(peak.to_owned()));
+    blocks.push(Block::Note(printed(impact, &over_the_printed, tolerance)));
+    blocks.extend(si.yield_checks().iter().map(|check| Block::Note(yielding(check))));
+    blocks
+}
+
+/// Mass to gamma, each with its formula.
+fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
+    let units = &si.units;
+    let value = |name, formula, value, unit, words| Block::SiValue {
+        name,
+        formula,
+        value,
+        unit,
+        words,
+    };
+    let mut blocks = vec![
+        value("m", None, units.mass, "kg", "the mass"),
+        value(
+            "L",
+            None,
+            units.length,
+            "m",
+            "the length, and the lever arm l of the contact",
+        ),
+        value("g", None, units.gravity, "m/s^2", "gravity"),
+    ];
+    blocks.extend(
+        units
+            .radius
+            .map(|radius| value("R", None, radius, "m", "the radius of the sphere")),
+    );
+    if let Some(modulus) = units.modulus {
+        let (bodies, formula, words) = match modulus {
+            Modulus::BarrierAlone(_) => (vec![], None, "the modulus of the barrier alone, equation (3)"),
+            Modulus::RigidSphere(barrier) => (
+                vec![
+                    ("E1", barrier.modulus, "Pa", "the barrier"),
+                    ("nu1", barrier.poisson, "", "the barrier"),
+                ],
+                Some("E1/(1 - nu1^2)"),
+                "the modulus of the barrier under a rigid sphere",
+            ),
+            Modulus::Both { barrier, sphere } => (
+                vec![
+                    ("E1", barrier.modulus, "Pa", "the barrier"),
+                    ("nu1", barrier.poisson, "", "the barrier"),
+                    ("E2", sphere.modulus, "Pa", "the sphere"),
+                    ("nu2", sphere.poisson, "", "the sphere"),
+                ],
+                Some("1/((1 - nu1^2)/E1 + (1 - nu2^2)/E2)"),
+                "the modulus of both bodies",
+            ),
+        };
+        blocks.extend(
+            bodies
+                .into_iter()
+                .map(|(name, number, unit, words)| value(name, None, number, unit, words)),
+        );
+        blocks.push(value("E", formula, modulus.value(), "Pa", words));
+    }
+    let (stiffness, of_gamma, source) = match units.modulus {
+        Some(_) => ("4/3*E*sqrt(R)", Some("k*L^(3/2)/(m*g)"), "equation (8)"),
+        None => ("gamma*m*g/L^(3/2)", None, "given"),
+    };
+    blocks.extend([
+        value(
+            "k",
+            Some(stiffness),
+            si.contact_stiffness,
+            "N/m^(3/2)",
+            "the stiffness of the contact",
+        ),
+        value("T", Some("sqrt(L/g)"), units.time(), "s", "the unit of time"),
+        value("V", Some("sqrt(g*L)"), units.speed(), "m/s", "the unit of speed"),
+        value("gamma", of_gamma, impact.setup.stiffness, "", source),
+    ]);
+    blocks
+}
+
+/// How the contact time that the paper prints stands beside every reading.
+fn printed(impact: &Impact, over_the_printed: &Quantity, tolerance: f64) -> String {
+    let readings = impact.columns.iter().map(|column| column.reading.name());
+    let each: Vec<(&str, f64)> = std::iter::once(("Runge-Kutta", over_the_printed.runge_kutta))
+        .chain(readings.zip(over_the_printed.closed_forms.iter().copied()))
+        .collect();
+    let ratios: Vec<String> = each
+        .iter()
+        .map(|(name, ratio)| format!("{name} {}", significant(*ratio, 4)))
+        .collect();
+    let reproduced: Vec<&str> = each
+        .iter()
+        .filter(|(_, ratio)| SiImpact::is_reproduced(*ratio, tolerance))
+        .map(|(name, _)| *name)
+        .collect();
+    let verdict = match reproduced.is_empty() {
+        true => "not reproduced by any of them".to_owned(),
+        false => format!("reproduced by {}", reproduced.join(", ")),
+    };
+    format!(
+        "the paper prints a contact time of {} s; over that: {}: {verdict}",
+        decimal(PRINTED_CONTACT_TIME),
+        ratios.join(", ")
+    )
+}
+
+/// A stated yield limit beside the peak pressure.
+fn yielding(check: &YieldCheck) -> String {
+    let (body, onset, pressure) = (check.body, decimal(check.onset), decimal(check.pressure));
+    match check.is_exceeded() {
+        true => format!(
+            "warning: the {body} yields from a peak pressure of 1.6 Y = {onset} Pa on (for nu = 0.3), and it is {pressure} Pa: the \
+             theory is outside its range"
+        ),
+        false => format!(
+            "the {body} yields from a peak pressure of 1.6 Y = {onset} Pa on (for nu = 0.3), and it is {pressure} Pa: elastic"
+        ),
+    }
 }

@@ -193,6 +193,26 @@ pub enum Block<'a> {
         /// The error up to which they pass.
         tolerance: f64,
     },
+    /// A quantity in SI units: its letter, the formula that it follows from, its number.
+    SiValue {
+        /// The letter.
+        name: &'static str,
+        /// The formula, as it is typed.
+        formula: Option<&'static str>,
+        /// The number.
+        value: f64,
+        /// The unit, as it is typed.
+        unit: &'static str,
+        /// What it is, in words.
+        words: &'static str,
+    },
+    /// The numbers of an impact in SI units, with what of the paper's stands beside them.
+    SiQuantities {
+        /// The columns.
+        columns: Vec<Reading>,
+        /// A row each, with its unit as it is typed.
+        rows: Vec<(Quantity, &'static str)>,
+    },
     /// Numbers beyond the tolerance, and what they come from.
     Shortcoming {
         /// Whose numbers.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
 use crate::impact::contact::SineSeries;
-use crate::impact::{self, Form, Impact, Reading, Rule, Setup, Side};
+use crate::impact::{self, Form, Impact, Modulus, PRINTED_CONTACT_TIME, Reading, Rule, Setup, SiImpact, Side};
 use crate::verify::Verdict;
 
 /// A swing released from rest that hits an elastic barrier: approach, contact and return in closed form, beside Runge-Kutta on the
@@ -45,6 +45,100 @@ pub struct ImpactDocument {
     pub period: Quantity,
     /// What Runge-Kutta says of the phases.
     pub verification: Verification,
+    /// The same quantities in SI units: of the pendulum with the contact of Hertz, where gamma follows from the design or mass, length
+    /// and gravity are given; null elsewhere, and where a number would be beyond the range of floating point.
+    pub si: Option<Si>,
+}
+
+/// The numbers of an impact in SI units: m L^2 x'' + m g L sin x + k L (L (x - x_c))^(3/2) = 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Si {
+    /// The mass m, in kg.
+    pub mass: f64,
+    /// The length L, in m.
+    pub length: f64,
+    /// The acceleration of gravity g, in m/s^2.
+    pub gravity: f64,
+    /// The radius R of the sphere, in m; null where gamma is given and it is not.
+    pub radius: Option<f64>,
+    /// The modulus E of the contact, in Pa; null where gamma is given.
+    pub modulus: Option<f64>,
+    /// Whose modulus that is: `barrier` alone as in the paper, `rigid-sphere` for E1/(1 - nu1^2), or `both`; null where gamma is given.
+    #[schemars(extend("enum" = ["barrier", "rigid-sphere", "both", null]))]
+    pub modulus_of: Option<String>,
+    /// The stiffness k of the contact, in N/m^(3/2): gamma m g / L^(3/2).
+    pub contact_stiffness: f64,
+    /// The unit of time sqrt(L/g), in s.
+    pub time_unit: f64,
+    /// The unit of speed sqrt(g L), in m/s.
+    pub speed_unit: f64,
+    /// The unit of force m g, in N.
+    pub force_unit: f64,
+    /// The unit of energy m g L, in J.
+    pub energy_unit: f64,
+    /// The time from the release to the touch, in s.
+    pub time_to_contact: Quantity,
+    /// The speed at the touch, in m/s.
+    pub speed: Quantity,
+    /// The kinetic energy at the touch, in J.
+    pub energy: Quantity,
+    /// The greatest depth in the barrier, in m.
+    pub penetration: Quantity,
+    /// The time from touch to release, in s.
+    pub duration: Quantity,
+    /// The time from release to release, in s.
+    pub period: Quantity,
+    /// The force of the contact at the greatest depth, in N.
+    pub peak_force: Quantity,
+    /// The pressure in the middle of the contact at the greatest depth, in Pa; null without a radius.
+    pub peak_pressure: Option<Quantity>,
+    /// The contact time that the paper prints, beside that of every reading.
+    pub printed_contact_time: PrintedContactTime,
+    /// The yield limits that are stated, beside the peak pressure of Runge-Kutta.
+    pub yield_limits: Vec<YieldLimit>,
+}
+
+/// The contact time that the paper prints, compared with and never computed from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrintedContactTime {
+    /// As printed, in s.
+    pub value: f64,
+    /// By Runge-Kutta.
+    pub runge_kutta: OverPrinted,
+    /// By `phases`; null where the paper's reading does not apply.
+    pub paper: Option<OverPrinted>,
+    /// By `energy_phases`; null likewise.
+    pub energy: Option<OverPrinted>,
+    /// By `derived_phases`; null where there are none.
+    pub derived: Option<OverPrinted>,
+}
+
+/// A contact time over the printed one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct OverPrinted {
+    /// The contact time of this reading over the printed one.
+    pub ratio: f64,
+    /// Whether that is one within the tolerance.
+    #[schemars(extend("enum" = ["reproduced", "not-reproduced"]))]
+    pub verdict: String,
+}
+
+/// A yield limit that is stated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct YieldLimit {
+    /// Whose it is.
+    #[schemars(extend("enum" = ["sphere", "barrier"]))]
+    pub body: String,
+    /// The limit Y, in Pa.
+    pub limit: f64,
+    /// The peak pressure at which the body begins to yield, 1.6 Y, in Pa.
+    pub onset: f64,
+    /// Whether the peak pressure of Runge-Kutta is above that: then the theory is outside its range.
+    pub exceeded: bool,
 }
 
 /// The law of the derived phases.
@@ -364,6 +458,68 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             derived,
             verdict: first.unwrap_or_else(|| Verdict::Fail.name().to_owned()),
         },
+        si: impact.si().map(|found| si(impact, &found, tolerance)),
+    }
+}
+
+/// The numbers in SI units.
+fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
+    let units = &si.units;
+    let of = |found| quantity(impact, found);
+    let over_printed = |ratio: f64| OverPrinted {
+        ratio,
+        verdict: match SiImpact::is_reproduced(ratio, tolerance) {
+            true => "reproduced",
+            false => "not-reproduced",
+        }
+        .to_owned(),
+    };
+    let over_the_printed = si.over_the_printed();
+    let over = of(&over_the_printed);
+    Si {
+        mass: units.mass,
+        length: units.length,
+        gravity: units.gravity,
+        radius: units.radius,
+        modulus: units.modulus.map(Modulus::value),
+        modulus_of: units.modulus.map(|modulus| {
+            match modulus {
+                Modulus::BarrierAlone(_) => "barrier",
+                Modulus::RigidSphere(_) => "rigid-sphere",
+                Modulus::Both { .. } => "both",
+            }
+            .to_owned()
+        }),
+        contact_stiffness: si.contact_stiffness,
+        time_unit: units.time(),
+        speed_unit: units.speed(),
+        force_unit: units.force(),
+        energy_unit: units.energy(),
+        time_to_contact: of(&si.time_to_contact),
+        speed: of(&si.speed),
+        energy: of(&si.energy),
+        penetration: of(&si.penetration),
+        duration: of(&si.duration),
+        period: of(&si.period),
+        peak_force: of(&si.peak_force),
+        peak_pressure: si.peak_pressure.as_ref().map(of),
+        printed_contact_time: PrintedContactTime {
+            value: PRINTED_CONTACT_TIME,
+            runge_kutta: over_printed(over.runge_kutta),
+            paper: over.paper.map(over_printed),
+            energy: over.energy.map(over_printed),
+            derived: over.derived.map(over_printed),
+        },
+        yield_limits: si
+            .yield_checks()
+            .into_iter()
+            .map(|check| YieldLimit {
+                body: check.body.to_owned(),
+                limit: check.limit,
+                onset: check.onset,
+                exceeded: check.is_exceeded(),
+            })
+            .collect(),
     }
 }
 

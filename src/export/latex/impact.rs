@@ -2,7 +2,7 @@
 
 use super::{scientific, scientific_text};
 use crate::decimal::significant;
-use crate::export::latex::symbol;
+use crate::export::latex::{symbol, typed};
 use crate::impact::{FittedLine, Form, ImpactRow, Letters, Phase, Quantity, Reading, Rule, Term};
 
 /// Of what the phases that follow are.
@@ -51,6 +51,41 @@ pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> String {
     let rows: String = rows.iter().map(row).collect();
     let places = "r".repeat(1 + 2 * columns.len());
     format!("\\begin{{tabular}}{{l{places}}}\n{head}{rows}\\end{{tabular}}\n")
+}
+
+/// A quantity in SI units, with its formula.
+pub(super) fn si_value(name: &str, formula: Option<&str>, value: f64, unit: &str) -> String {
+    let formula = formula.map_or(String::new(), |formula| format!("{} = ", typed(formula)));
+    let unit = match unit {
+        "" => String::new(),
+        unit => format!("\\,{}", upright(unit)),
+    };
+    format!("{} &= {formula}{}{unit}", typed(name), scientific(value))
+}
+
+/// A unit as it is typed, set upright.
+fn upright(unit: &str) -> String {
+    match unit.bytes().all(|letter| letter.is_ascii_alphabetic()) {
+        true => format!("\\mathrm{{{unit}}}"),
+        false => format!("\\mathrm{{{}}}", typed(unit)),
+    }
+}
+
+/// A table in SI units: Runge-Kutta and every column.
+pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> String {
+    let row = |(row, unit): &(Quantity, &str)| {
+        let name = match *unit {
+            "" => row.name.to_owned(),
+            unit => format!("{}, ${}$", row.name, upright(unit)),
+        };
+        let values = std::iter::once(&row.runge_kutta).chain(&row.closed_forms);
+        let cells: String = values.map(|value| format!(" & ${}$", scientific(*value))).collect();
+        format!("{name}{cells} \\\\\n")
+    };
+    let names: String = columns.iter().map(|column| format!(" & {}", column.name())).collect();
+    let rows: String = rows.iter().map(row).collect();
+    let places = "r".repeat(1 + columns.len());
+    format!("\\begin{{tabular}}{{l{places}}}\n & Runge--Kutta{names} \\\\\n\\hline\n{rows}\\end{{tabular}}\n")
 }
 
 /// A table of methods: the errors of each in percent.

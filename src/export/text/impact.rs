@@ -129,6 +129,32 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5], tolerance: f64, width
         + "\n"
 }
 
+/// A quantity in SI units, with its formula.
+pub(super) fn si_value(name: &str, formula: Option<&str>, value: f64, unit: &str, words: &str) -> String {
+    let formula = formula.map_or(String::new(), |formula| format!("{formula} = "));
+    let number = format!("{} {unit}", decimal(value));
+    format!("  {name:<5} = {formula}{}   ({words})\n", number.trim_end())
+}
+
+/// A table in SI units: Runge-Kutta and every column.
+pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> String {
+    let line = |name: &str, cells: &mut dyn Iterator<Item = String>| {
+        let cells: String = cells.map(|cell| format!("{cell:>13}")).collect();
+        format!("  {name:<24}{cells}\n")
+    };
+    let names = std::iter::once("Runge-Kutta").chain(columns.iter().map(|reading| reading.name()));
+    let mut text = line("", &mut names.map(str::to_owned));
+    for (row, unit) in rows {
+        let name = match *unit {
+            "" => row.name.to_owned(),
+            unit => format!("{}, {unit}", row.name),
+        };
+        let values = std::iter::once(&row.runge_kutta).chain(&row.closed_forms);
+        text += &line(&name, &mut values.map(|value| decimal(*value)));
+    }
+    text
+}
+
 pub(super) fn verdicts(verdicts: &[(Reading, Verdict)], tolerance: f64) -> String {
     let each: Vec<String> = verdicts
         .iter()

@@ -1,0 +1,151 @@
+//! The numbers of an impact in SI units, and what they say: whether a body yields, and how far the paper's contact time is.
+//!
+//! In: an [`Impact`] whose [`Setup`](super::Setup) has [`Units`]. Out: an [`SiImpact`], every number by Runge-Kutta and by each
+//! closed form. The peak force is that of Hertz at the greatest depth, also where a line stood for it.
+
+use super::closed_form::{Impact, Quantity};
+use super::hertz;
+use super::units::{FIRST_YIELD, PRINTED_CONTACT_TIME, Units};
+
+/// The numbers of an impact in SI units.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SiImpact {
+    /// The units.
+    pub units: Units,
+    /// The stiffness k of the contact, N/m^(3/2).
+    pub contact_stiffness: f64,
+    /// From the release to the touch, s.
+    pub time_to_contact: Quantity,
+    /// The speed at the touch, m/s.
+    pub speed: Quantity,
+    /// The kinetic energy at the touch, J.
+    pub energy: Quantity,
+    /// The greatest depth, m.
+    pub penetration: Quantity,
+    /// From the touch to the release from the barrier, s.
+    pub duration: Quantity,
+    /// From release to release, s.
+    pub period: Quantity,
+    /// The force of the contact at its greatest depth, N.
+    pub peak_force: Quantity,
+    /// The pressure in its middle there, Pa; nothing where the radius is not known.
+    pub peak_pressure: Option<Quantity>,
+}
+
+/// A stated yield limit beside the pressure of the true motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YieldCheck {
+    /// `sphere` or `barrier`.
+    pub body: &'static str,
+    /// Its yield limit Y, Pa.
+    pub limit: f64,
+    /// The pressure at which it begins to yield, 1.6 Y, Pa.
+    pub onset: f64,
+    /// The peak pressure of the true motion, Pa.
+    pub pressure: f64,
+}
+
+impl YieldCheck {
+    /// Whether the body yields, so that the theory is outside its range.
+    pub fn is_exceeded(&self) -> bool {
+        self.pressure > self.onset
+    }
+}
+
+impl Impact {
+    /// The same numbers in SI units; nothing where no units are known, or where a number is beyond the range of doubles.
+    ///
+    /// ```
+    /// use lindstedt::impact::{Setup, solve};
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let file: Problem = "[pendulum]\nmass = 0.02\nlength = 0.25".parse()?;
+    /// let si = solve(Setup::try_from(&file)?)?.si().ok_or("no units")?;
+    /// assert!((si.units.time() - (0.25_f64 / 9.81).sqrt()).abs() < 1e-15); // s
+    /// assert!(si.peak_force.runge_kutta > 1000.0 * 0.02 * 9.81); // N
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn si(&self) -> Option<SiImpact> {
+        let units = self.setup.units?;
+        let gamma = self.setup.stiffness;
+        let [time_to_contact, speed, penetration, duration, period] = self.quantities();
+        let metres = |depth: f64| units.length * depth;
+        let force = |depth: f64| units.force() * hertz::force(gamma, depth);
+        let time = |time: f64| units.time() * time;
+        let si = SiImpact {
+            units,
+            contact_stiffness: units.contact_stiffness(gamma),
+            time_to_contact: converted("time to contact", &time_to_contact, time),
+            speed: converted("speed", &speed, |speed| units.speed() * speed),
+            energy: converted("energy at the touch", &speed, |speed| {
+                units.energy() * speed * speed / 2.0
+            }),
+            penetration: converted("penetration", &penetration, metres),
+            duration: converted("duration", &duration, time),
+            period: converted("period", &period, time),
+            peak_force: converted("peak force", &penetration, force),
+            peak_pressure: units.radius.map(|_| {
+                let pressure = |depth| units.pressure(force(depth), metres(depth)).unwrap_or(f64::NAN);
+                converted("peak pressure", &penetration, pressure)
+            }),
+        };
+        let known = si.rows().into_iter().map(|(row, _)| row.runge_kutta);
+        let in_range = known.chain([si.contact_stiffness]).all(f64::is_normal);
+        in_range.then_some(si)
+    }
+}
+
+/// A number of every reading, converted.
+fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f64) -> Quantity {
+    Quantity {
+        name,
+        runge_kutta: convert(quantity.runge_kutta),
+        closed_forms: quantity.closed_forms.iter().map(|value| convert(*value)).collect(),
+    }
+}
+
+impl SiImpact {
+    /// Every number with its unit.
+    pub fn rows(&self) -> Vec<(&Quantity, &'static str)> {
+        let rows = [
+            (&self.time_to_contact, "s"),
+            (&self.speed, "m/s"),
+            (&self.energy, "J"),
+            (&self.penetration, "m"),
+            (&self.duration, "s"),
+            (&self.period, "s"),
+            (&self.peak_force, "N"),
+        ];
+        let pressure = self.peak_pressure.iter().map(|pressure| (pressure, "Pa"));
+        rows.into_iter().chain(pressure).collect()
+    }
+
+    /// The contact time over the one that the paper prints: one, if that were reproduced.
+    pub fn over_the_printed(&self) -> Quantity {
+        converted("duration / printed", &self.duration, |duration| {
+            duration / PRINTED_CONTACT_TIME
+        })
+    }
+
+    /// Whether a contact time with this ratio to the printed one is that one, within the tolerance.
+    pub fn is_reproduced(ratio: f64, tolerance: f64) -> bool {
+        (ratio - 1.0).abs() <= tolerance
+    }
+
+    /// The stated yield limits beside the pressure of the true motion.
+    pub fn yield_checks(&self) -> Vec<YieldCheck> {
+        let Some(pressure) = &self.peak_pressure else {
+            return vec![];
+        };
+        let limits = self.units.yield_limits();
+        limits
+            .map(|(body, limit)| YieldCheck {
+                body,
+                limit,
+                onset: FIRST_YIELD * limit,
+                pressure: pressure.runge_kutta,
+            })
+            .collect()
+    }
+}

@@ -212,6 +212,15 @@ fn text_and_documents_say_so() {
         document["si"]["printed_contact_time"]["paper"]["verdict"],
         "not-reproduced"
     );
+    let compared = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["impact", example, "--compare"])
+        .output()
+        .expect("the program starts");
+    let words = String::from_utf8_lossy(&compared.stderr);
+    assert!(
+        compared.status.code() == Some(2) && words.contains("`yield`"),
+        "{words}"
+    );
     let gamma = program(&["impact", "--at", "gamma=1e6", "--format", "json"]);
     let document: Value = serde_json::from_str(&gamma).expect("JSON");
     assert!(document["si"].is_null());

@@ -127,9 +127,16 @@ impl Problem {
             // mu = gamma*lambda*sqrt(g*L)
             Some(_) => &["mass", "radius", "modulus"],
         };
-        match without_say.iter().any(|key| self.gives(&format!("[design] {key}"))) {
-            true => "given: [design] has no say in it",
-            false => "given",
+        let gives = |sections: &[&str]| {
+            let mut keys = without_say
+                .iter()
+                .flat_map(|key| sections.iter().map(move |section| format!("[{section}] {key}")));
+            keys.any(|key| self.gives(&key))
+        };
+        match (gives(&["design"]), gives(&["pendulum", "sphere", "barrier"])) {
+            (true, _) => "given: [design] has no say in it",
+            (false, true) => "given: masses, lengths and moduli have no say in it",
+            (false, false) => "given",
         }
     }
 }
@@ -156,6 +163,25 @@ mod tests {
         );
         let (gamma, source) = problem.stiffness().unwrap();
         assert!((gamma / 3.0407e7 - 1.0).abs() < 1e-4, "{gamma} by {source}");
+    }
+
+    #[test]
+    fn a_gamma_that_is_given_says_what_has_no_say() {
+        let source = |beside: &str| {
+            let file = format!("[contact]\ngamma = 1e6\n{beside}");
+            file.parse::<Problem>().unwrap().stiffness().unwrap().1
+        };
+        assert_eq!(source(""), "given");
+        assert_eq!(source("[design]\nmass = 0.02"), "given: [design] has no say in it");
+        for beside in [
+            "[pendulum]\nmass = 0.02",
+            "[sphere]\nradius = 0.02",
+            "[barrier]\nmodulus = 2e9",
+        ] {
+            assert_eq!(source(beside), "given: masses, lengths and moduli have no say in it");
+        }
+        // mu = gamma*lambda*sqrt(g*L)
+        assert_eq!(source("lambda = 0.1\n[pendulum]\nlength = 0.2"), "given");
     }
 
     #[test]

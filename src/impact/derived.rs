@@ -159,8 +159,14 @@ impl Flight {
             from: self.sign * self.motion.at(0.0),
             to: self.sign * self.motion.at(half),
         };
-        // One wave has its root in closed form, but for the last bits, which the bracketed root gives in any case.
-        let time = find_root(|t| self.motion.at(t) - place, 0.0, half).map_err(never)?;
+        let displacement = self.motion.displacement();
+        let number = |series: FourierSeries<Doubles>| series.mean().0;
+        // A single wave has the closed form of the paper, more waves have a root in the half period.
+        let cosine = (place - number(displacement.cosine(0))) / number(displacement.cosine(1));
+        let time = match displacement.highest_harmonic() {
+            1 if displacement.is_even() && cosine.abs() <= 1.0 => cosine.acos() / self.motion.frequency(),
+            _ => find_root(|t| self.motion.at(t) - place, 0.0, half).map_err(never)?,
+        };
         Ok((time, self.motion.velocity(time).abs()))
     }
 

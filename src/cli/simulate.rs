@@ -8,7 +8,7 @@ use lindstedt::Interrupt;
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
 use lindstedt::impact::sweep::{Axis, AxisError, MOST_MOTIONS, Summary, grid_values, sweep, sweep_on};
-use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, simulate};
+use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, baseline, simulate};
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
 
@@ -111,8 +111,10 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Method::Both => Some(follow(Integrator::RungeKutta)?),
         Method::Taylor | Method::RungeKutta => None,
     };
+    let others = baseline(&motion).map_err(|error| Failure::refused(&error, None))?;
     let report = Report {
         motion: &motion,
+        baseline: others.as_ref(),
         judge: judge.as_ref(),
         sources: [asked.gamma_source, asked.mu_source],
         tolerance: problem.run.integrator_tolerance,

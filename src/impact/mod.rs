@@ -27,6 +27,7 @@
 //! - `si`: the numbers of an impact in SI units, an [`SiImpact`].
 //! - `compare`: [`compare`], every method in one table.
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
+//! - `baseline`: the same swing without a barrier, and with one that loses nothing.
 //! - [`sweep`]: parameters over a range, on all cores.
 //!
 //! ```
@@ -50,6 +51,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod baseline;
 mod case;
 mod closed_form;
 mod collision;
@@ -72,6 +74,7 @@ mod taylor;
 mod trial;
 mod units;
 
+pub use baseline::{Baseline, baseline};
 pub use case::{Case, CaseError, ContactDamping};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};

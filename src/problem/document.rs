@@ -60,7 +60,7 @@ pub enum Order {
 pub struct Pendulum {
     /// A, rad.
     pub amplitude: f64,
-    /// x_c, rad, or `[left, right]`.
+    /// x_c, rad, or `[left, right]`, or `false` for none.
     pub barrier: Barrier,
     /// For an impact, on which side of its place a single barrier is: `right`, or `left` with the release at x = amplitude.
     pub side: Option<BarrierSide>,
@@ -114,10 +114,28 @@ pub enum BarrierSide {
     Right,
 }
 
+/// `false`, where a barrier would be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "bool")]
+pub struct NoBarrier;
+
+impl TryFrom<bool> for NoBarrier {
+    type Error = &'static str;
+
+    fn try_from(there: bool) -> Result<Self, &'static str> {
+        match there {
+            false => Ok(Self),
+            true => Err("a barrier needs its place"),
+        }
+    }
+}
+
 /// One barrier on the right, or one on either side.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected a number, or two: [left, right]")]
+#[serde(untagged, expecting = "expected a number, or two: [left, right], or false for none")]
 pub enum Barrier {
+    /// `false`: none at all.
+    Absent(NoBarrier),
     /// The position of the right one.
     Right(f64),
     /// The positions of both.

@@ -76,6 +76,9 @@ pub enum ImpactFileError {
         "released from rest at x = -amplitude the pendulum starts behind the left barrier: move it below -amplitude"
     )]
     LeftBarrier,
+    /// No barrier.
+    #[error("an impact needs a barrier: leave out `barrier = false`, or follow the free swing by `lindstedt simulate`")]
+    NoBarrier,
     /// A number given twice.
     #[error("`{name}` in [values] and `{key}` say the same: give one of them")]
     Twice {
@@ -182,6 +185,7 @@ impl TryFrom<&Problem> for Setup {
         let release = problem.pendulum.start.unwrap_or(-side.sign() * amplitude);
         let barrier = match (number(1)?, problem.pendulum.barrier, side) {
             (Some(barrier), ..) => barrier,
+            (None, Barrier::Absent(_), _) => return Err(ImpactFileError::NoBarrier),
             (None, Barrier::Right(position), _) => position,
             // A barrier beyond the release is never touched again.
             (None, Barrier::Both([left, right]), Side::Right) if left < release => right,

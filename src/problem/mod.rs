@@ -25,8 +25,8 @@ use crate::values::ValueError;
 
 pub use design::DesignError;
 pub use document::{
-    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, Order, Pendulum, Problem, Run,
-    SphereSection,
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, NoBarrier, Order, Pendulum,
+    Problem, Run, SphereSection,
 };
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;

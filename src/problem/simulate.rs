@@ -152,6 +152,7 @@ impl Problem {
     /// The numbers of the pendulum and its barrier, as they are given.
     fn case(&self) -> Result<Case, SimulateError> {
         let (left, right) = match self.pendulum.barrier {
+            Barrier::Absent(_) => (None, None),
             Barrier::Right(right) => (None, Some(right)),
             Barrier::Both([left, right]) => (Some(left), Some(right)),
         };

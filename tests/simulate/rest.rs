@@ -206,3 +206,54 @@ fn a_run_ends_where_its_energy_has_died_away() {
         }
     }
 }
+
+/// The same swing without a barrier and with a lossless one: the action of a lightly damped motion falls as exp(-2 zeta t), so the
+/// rest times differ by the logarithm of the ratio of the actions at the start, less that at the end.
+#[test]
+fn the_baseline_is_that_of_the_actions() {
+    let settings = Settings {
+        duration: 300.0,
+        ..Settings::default()
+    };
+    let model = Model {
+        zeta: 0.01,
+        mu: 2e6,
+        ..Model::default()
+    };
+    let motion = simulate(&model, Start::default(), Integrator::Taylor, &settings).unwrap();
+    let found = lindstedt::impact::baseline(&motion)
+        .unwrap()
+        .expect("it hits and is damped");
+    let (none, lossless) = (found.no_barrier.unwrap(), found.lossless_barrier.unwrap());
+    // The area from the far turning point to x, 2 int sqrt(2 (cos x - cos A)) dx, by the midpoint rule in the angle.
+    let area = |amplitude: f64, barrier: f64| {
+        let speed = |x: f64| (2.0 * (x.cos() - amplitude.cos())).max(0.0).sqrt();
+        let (parts, to) = (20_000, (barrier / amplitude).clamp(-1.0, 1.0).asin());
+        let half = std::f64::consts::FRAC_PI_2;
+        let step = (to + half) / f64::from(parts);
+        let at = |part: i32| -half + (f64::from(part) + 0.5) * step;
+        2.0 * (0..parts)
+            .map(|part| speed(amplitude * at(part).sin()) * amplitude * at(part).cos() * step)
+            .sum::<f64>()
+    };
+    let whole = area(1.5, 1.5);
+    let decay = |from: f64| (from / area(0.15, 0.15)).ln() / (2.0 * model.zeta);
+    assert!((none / decay(whole) - 1.0).abs() < 0.01, "{none} and {}", decay(whole));
+    // Cut at the barrier until its amplitude is that of the barrier, whole from there on.
+    let barrier = model.right.unwrap();
+    let cut = (area(1.5, barrier) / area(barrier, barrier)).ln() / (2.0 * model.zeta);
+    let rest = cut + decay(area(barrier, barrier));
+    assert!((lossless / rest - 1.0).abs() < 0.01, "{lossless} and {rest}");
+    assert!(motion.rest().time.unwrap() < lossless && lossless < none);
+    // Nothing to compare where nothing damps the swing, or nothing is hit.
+    for model in [
+        Model { zeta: 0.0, ..model },
+        Model {
+            right: Some(1.6),
+            ..model
+        },
+    ] {
+        let motion = simulate(&model, Start::default(), Integrator::Taylor, &settings).unwrap();
+        assert_eq!(lindstedt::impact::baseline(&motion).unwrap(), None);
+    }
+}

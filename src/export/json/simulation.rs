@@ -32,6 +32,8 @@ pub struct SimulationDocument {
     pub rest_reason: Option<String>,
     /// The last time at which |x| is a tenth of the first swing, in units of time; null where it never is.
     pub last_crossing: Option<f64>,
+    /// The rest times of the same swing; null where nothing damps it, where it hits nothing, or where the pivot moves.
+    pub baseline: Option<Baseline>,
     /// The energy and the work of each force.
     pub energy: Energy,
     /// The largest energy that no work accounts for, as a fraction of the largest energy met.
@@ -46,6 +48,18 @@ pub struct SimulationDocument {
     pub judge: Option<Judge>,
     /// What should be known beside the numbers, in words.
     pub notes: Vec<String>,
+}
+
+/// Rest times of the same swing, in units of time; null where it does not come to rest in four times the duration of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Baseline {
+    /// Without a barrier.
+    pub no_barrier: Option<f64>,
+    /// With the same barrier, elastic.
+    pub lossless_barrier: Option<f64>,
+    /// With the barrier of the run: `rest_time`.
+    pub this_barrier: Option<f64>,
 }
 
 /// The numbers of a run: dimensionless unless another unit is given.
@@ -201,7 +215,7 @@ const INTEGRATORS: [Integrator; 2] = [Integrator::Taylor, Integrator::RungeKutta
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0] };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None };
 /// let document = json::simulation(&report);
 /// assert_eq!((document.samples.len(), document.impacts.len()), (1, motion.impacts.len()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -245,6 +259,11 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         rest_time: rest.time.ok(),
         rest_reason: rest.time.err().map(|reason| reason.to_string()),
         last_crossing: rest.last_crossing,
+        baseline: report.baseline.map(|baseline| Baseline {
+            no_barrier: baseline.no_barrier.ok(),
+            lossless_barrier: baseline.lossless_barrier.ok(),
+            this_barrier: rest.time.ok(),
+        }),
         energy: Energy {
             start: book.start,
             end: book.end,

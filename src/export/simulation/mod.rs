@@ -14,7 +14,7 @@ pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::decimal::decimal;
 use crate::impact::sweep::{Axis, Summary, grid_values};
-use crate::impact::{Friction, Simulation};
+use crate::impact::{Baseline, Friction, Simulation};
 
 /// What is handed on of one run.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +29,8 @@ pub struct Report<'a> {
     pub tolerance: f64,
     /// Times at which the state is wanted, all within the duration.
     pub samples: &'a [f64],
+    /// The rest times of the same swing without a barrier and with a lossless one, where there is something to compare.
+    pub baseline: Option<&'a Baseline>,
 }
 
 /// What is handed on of a sweep.
@@ -61,7 +63,7 @@ pub(super) fn friction(friction: Friction) -> &'static str {
 pub(super) fn notes(report: &Report) -> Vec<String> {
     let motion = report.motion;
     let mut notes = Vec::new();
-    if !motion.touches() {
+    if !motion.touches() && motion.model.left.or(motion.model.right).is_some() {
         let barriers: Vec<String> = [motion.model.left, motion.model.right]
             .into_iter()
             .flatten()

@@ -5,7 +5,7 @@ use std::io;
 
 use super::{COMPARED, Report, SweepReport, friction, notes};
 use crate::decimal::{decimal, significant};
-use crate::impact::{Integrator, Model, Simulation};
+use crate::impact::{Baseline, Integrator, Model, NoRest, Simulation};
 
 /// Impacts that are listed; a long run has thousands.
 const LISTED: usize = 24;
@@ -18,7 +18,7 @@ const LISTED: usize = 24;
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0] };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None };
 /// assert!(text(&report).contains("\nImpacts: "));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -26,7 +26,7 @@ pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
     let mut text = header(report);
     impacts(&mut text, motion);
-    rest(&mut text, motion);
+    rest(&mut text, report);
     energy(&mut text, motion);
     if !report.samples.is_empty() {
         let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
@@ -116,8 +116,13 @@ fn header(report: &Report) -> String {
     };
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let drive = if beta == 0.0 { "" } else { " - beta*sin(eta*t)*cos(x)" };
-    let contact = if mu == 0.0 { "gamma" } else { "(gamma + mu*x')" };
-    let mut text = format!("x''{viscous}{dry}{drive} + sin(x) + {contact}*(x - xc)^(3/2)*H(x - xc) = 0\n");
+    let free = left.or(right).is_none();
+    let contact = match mu == 0.0 {
+        _ if free => "",
+        true => " + gamma*(x - xc)^(3/2)*H(x - xc)",
+        false => " + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc)",
+    };
+    let mut text = format!("x''{viscous}{dry}{drive} + sin(x){contact} = 0\n");
     if left.is_some() {
         text.push_str("and the mirror image of the contact on the left\n");
     }
@@ -138,8 +143,10 @@ fn header(report: &Report) -> String {
         (Some(only), None) | (None, Some(only)) => entry("xc", typed(only)),
         (None, None) => {}
     }
-    entry("gamma", format!("{}   ({gamma_source})", decimal(gamma)));
-    if mu != 0.0 {
+    if !free {
+        entry("gamma", format!("{}   ({gamma_source})", decimal(gamma)));
+    }
+    if mu != 0.0 && !free {
         entry("mu", format!("{}   ({mu_source})", decimal(mu)));
     }
     if zeta != 0.0 {
@@ -199,8 +206,8 @@ fn impacts(text: &mut String, motion: &Simulation) {
     }
 }
 
-fn rest(text: &mut String, motion: &Simulation) {
-    let rest = motion.rest();
+fn rest(text: &mut String, report: &Report) {
+    let rest = report.motion.rest();
     let _ = match rest.amplitude {
         0.0 => writeln!(text, "\nRest"),
         amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}", decimal(amplitude)),
@@ -215,6 +222,28 @@ fn rest(text: &mut String, motion: &Simulation) {
     };
     if let Some(last) = rest.last_crossing {
         let _ = writeln!(text, "  last crossing  {}", decimal(last));
+    }
+    let Some(Baseline {
+        no_barrier,
+        lossless_barrier,
+    }) = report.baseline
+    else {
+        return;
+    };
+    let written = |time: &Result<f64, NoRest>| match time {
+        Ok(time) => decimal(*time),
+        Err(reason) => format!("none: {reason}"),
+    };
+    let _ = writeln!(text, "  no barrier     {}", written(no_barrier));
+    let _ = writeln!(text, "  lossless       {}   (mu = 0)", written(lossless_barrier));
+    if let (Ok(none), Ok(lossless), Ok(this)) = (no_barrier, lossless_barrier, rest.time) {
+        let _ = writeln!(
+            text,
+            "  of the {} that the barrier saves, {} by the shorter swing and {} by the loss in contact",
+            decimal(none - this),
+            decimal(none - lossless),
+            decimal(lossless - this)
+        );
     }
 }
 

@@ -4,12 +4,16 @@
 use std::f64::consts::PI;
 
 use lindstedt::Oscillator;
+use lindstedt::expr::parse_expression;
 use lindstedt::impact::Rule;
+use lindstedt::impact::contact::ContactLaw;
 use lindstedt::impact::hertz::{self, Design, elastic_force};
 use lindstedt::impact::{self, Reading, Setup, Side};
+use lindstedt::impact::{ContactLoss, DerivedContact, Integrator, Model, Settings, Start};
 use lindstedt::impact::{ContactSpeed, Form, Swing, ThreePhases, three_phases};
 use lindstedt::impact::{TrueImpact, deviation, true_impact};
 use lindstedt::numeric::ode::Options;
+use lindstedt::verify::Verdict;
 use proptest::prelude::*;
 
 const SINE: fn(f64) -> f64 = f64::sin;
@@ -492,4 +496,193 @@ fn a_release_inside_the_barrier_is_the_deepest_point_of_its_cycle() {
         .unwrap_err();
         assert!(refused.to_string().contains(words), "{refused}");
     }
+}
+
+/// The paper's pendulum at a barrier of this stiffness.
+fn pendulum(stiffness: f64) -> Setup {
+    Setup {
+        stiffness,
+        ..Setup::default()
+    }
+}
+
+#[test]
+fn the_derived_phases_join_by_every_law_of_the_contact() {
+    for law in ContactLaw::ALL {
+        for stiffness in [1e3, 1e6] {
+            let setup = Setup {
+                contact_law: law,
+                ..pendulum(stiffness)
+            };
+            let impact = impact::solve(setup).unwrap_or_else(|error| panic!("{law}: {error}"));
+            let phases = &impact.column(Reading::Derived).expect("derived phases").phases;
+            let [approach, contact, back] = &phases.phases;
+            // Of the corrected law the depth is exact at touch, the speed nearly.
+            let speed_kept = if law == ContactLaw::CorrectedPowerLaw {
+                1e-2
+            } else {
+                1e-4
+            };
+            for (left, right) in [(approach, contact), (contact, back)] {
+                let (before, after) = (left.at(left.end), right.at(right.start));
+                assert!((before.0 - after.0).abs() < 1e-12, "{law}: {before:?} and {after:?}");
+                let jump = (before.1 - after.1).abs() / phases.speed;
+                assert!(jump < speed_kept, "{law}: the speed jumps by {jump} of itself");
+            }
+            let Form::Contact { depth, .. } = &contact.form else {
+                panic!("{law}: {:?}", contact.form)
+            };
+            assert!(depth.deviation <= 1e-6, "{law}: {}", depth.deviation);
+            let deepest = depth.at(0.5 * phases.duration).0;
+            assert!((deepest / phases.penetration - 1.0).abs() < 3e-6, "{law}: {deepest}");
+            // The swing is the same by every law: none makes up for the error of another.
+            assert!(
+                (phases.speed / impact.truth.touch.v - 1.0).abs() < 1e-3,
+                "{law}: {}",
+                phases.speed
+            );
+        }
+    }
+}
+
+/// The numbers of a table of docs/contact.md that begins after these words: duration, depth, peak force and motion, in percent.
+fn table_of_the_page(words: &str) -> Vec<(String, [f64; 4])> {
+    let page = include_str!("../docs/contact.md");
+    let (_, rest) = page.split_once(words).expect("the words are there");
+    let lines = rest.lines().skip_while(|line| !line.starts_with("| `"));
+    lines
+        .take_while(|line| line.starts_with('|'))
+        .map(|line| {
+            let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+            let number = |index: usize| cells[index].parse().expect("a number");
+            (cells[0].trim_matches('`').to_owned(), [1, 2, 3, 4].map(number))
+        })
+        .collect()
+}
+
+#[test]
+fn the_table_of_an_impact_is_that_of_the_page() {
+    let impact = impact::solve(Setup {
+        every_contact_law: true,
+        ..pendulum(1e3)
+    })
+    .expect("an impact");
+    let page = table_of_the_page("pendulum at a soft barrier, gamma = 1000");
+    assert_eq!(page.len(), ContactLaw::ALL.len());
+    assert_eq!(impact.contact_laws.len(), ContactLaw::ALL.len());
+    for (row, (law, printed)) in impact.contact_laws.iter().zip(page) {
+        assert_eq!(row.law.name(), law);
+        let (motion, errors) = row.outcome.as_ref().expect("every law applies");
+        let found = [errors.duration, errors.depth, errors.peak_force, errors.motion];
+        for (found, printed) in found.into_iter().zip(printed) {
+            assert!((100.0 * found - printed).abs() < 2e-4, "{law}: {found} and {printed}");
+        }
+        if row.law == ContactLaw::Exact {
+            let truth = &impact.truth;
+            assert!((motion.duration / truth.duration - 1.0).abs() < 1e-7);
+            assert!((motion.depth / truth.penetration - 1.0).abs() < 1e-7);
+        }
+    }
+    assert!(impact::solve(pendulum(1e3)).expect("an impact").contact_laws.is_empty());
+}
+
+#[test]
+fn laws_of_a_power_are_refused_where_there_is_none() {
+    let setup = |force: &str, law| Setup {
+        force: Some(parse_expression(force).expect("a force")),
+        contact_law: law,
+        every_contact_law: true,
+        ..Setup::default()
+    };
+    let refused = impact::solve(setup("1e6*d + 1e9*d^3", ContactLaw::PowerLaw)).expect("the paper's reading");
+    assert!(
+        refused.flight.is_none() && refused.tried.len() == 3,
+        "{:?}",
+        refused.tried
+    );
+    let reason = refused.tried[0].error.as_ref().expect_err("a reason");
+    assert!(reason.contains("not given as a power"), "{reason}");
+    let applies = |impact: &impact::Impact, law| {
+        let row = impact.contact_laws.iter().find(|row| row.law == law).expect("a row");
+        row.outcome.is_ok()
+    };
+    assert!(!applies(&refused, ContactLaw::PowerLaw) && applies(&refused, ContactLaw::Homotopy));
+    // The exponent is found, whatever stands before the power.
+    for (force, exponent) in [("3*gamma*d^2/7", 2.0), ("1e8*d^(7/3)", 7.0 / 3.0), ("gamma*d", 1.0)] {
+        let found = impact::solve(setup(force, ContactLaw::PowerLaw)).expect("an impact");
+        let Some(DerivedContact::Elastic(contact)) = &found.contact else {
+            panic!("{force}: no contact")
+        };
+        let n = contact.exponent().expect("a power");
+        assert!((n - exponent).abs() < 1e-12, "{force}: {n}");
+        // Hard barriers: gravity is small beside them.
+        assert!((contact.duration / found.truth.duration - 1.0).abs() < 2e-3, "{force}");
+    }
+}
+
+#[test]
+fn the_restitution_asked_for_is_the_one_that_is_simulated() {
+    for wanted in [0.05, 0.2, 0.5, 0.8, 0.95, 0.999] {
+        let setup = Setup {
+            loss: Some(ContactLoss::Restitution(wanted)),
+            stiffness: 1e10,
+            tolerance: 1e-3,
+            ..Setup::default()
+        };
+        let found = impact::solve(setup).unwrap_or_else(|error| panic!("{wanted}: {error}"));
+        assert!(found.no_paper.is_some());
+        let phases = &found.column(Reading::Derived).expect("derived phases").phases;
+        // By the closed form, by Runge-Kutta on the equation, and by the simulation of equation (7) with its mu.
+        let allowed = 3e-3 * wanted;
+        assert!(
+            (phases.exit_speed / phases.speed - wanted).abs() < allowed,
+            "{wanted}: {}",
+            phases.exit_speed
+        );
+        assert!(
+            (found.truth.restitution() - wanted).abs() < allowed,
+            "{wanted}: {}",
+            found.truth.restitution()
+        );
+        let model = Model {
+            gamma: 1e10,
+            mu: 1e10 * found.damping,
+            ..Model::default()
+        };
+        let settings = Settings {
+            duration: 5.0,
+            ..Settings::default()
+        };
+        let motion = impact::simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
+        let simulated = motion.impacts[0].restitution.expect("it bounces");
+        assert!(
+            (simulated - found.truth.restitution()).abs() < 1e-6,
+            "{wanted}: {simulated}"
+        );
+        // The joins, and where it turns.
+        let [approach, contact, back] = &phases.phases;
+        assert!((contact.at(contact.end).1 - back.at(back.start).1).abs() < 1e-3);
+        assert!((approach.at(approach.end).0 - contact.at(contact.start).0).abs() < 1e-12);
+        assert!(back.at(back.end).1.abs() < 1e-12);
+        let turn = back.at(back.end).0;
+        assert!((turn - found.place_of_turn()).abs() < 2e-3, "{wanted}: turns at {turn}");
+        let verdict = found.verdicts(0.01);
+        assert_eq!(verdict, [Verdict::Pass], "{wanted}: {:?}", found.shortcomings(0, 0.01));
+    }
+}
+
+#[test]
+fn hardly_damped_is_undamped() {
+    let damped = impact::solve(Setup {
+        loss: Some(ContactLoss::Damping(1e-12)),
+        ..pendulum(1e6)
+    })
+    .expect("an impact");
+    let undamped = impact::solve(pendulum(1e6)).expect("an impact");
+    let numbers = |impact: &impact::Impact| impact.quantities().map(|quantity| quantity.runge_kutta);
+    for (one, other) in numbers(&damped).into_iter().zip(numbers(&undamped)) {
+        assert!((one / other - 1.0).abs() < 1e-7, "{one} and {other}");
+    }
+    assert_eq!(damped.verdicts(0.01), [Verdict::Pass]);
+    assert!(damped.truth.back.is_some() && undamped.truth.back.is_none());
 }

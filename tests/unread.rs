@@ -43,7 +43,7 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 40] = [
+const LINES: [(&str, &str, &str); 42] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -63,6 +63,8 @@ const LINES: [(&str, &str, &str); 40] = [
     ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
     ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
+    ("[contact] restitution", "[contact]\nrestitution = 0.75", ""),
+    ("[contact] law", "[contact]\nlaw = \"homotopy\"", ""),
     (
         "[contact] linearisation",
         "[contact]\nlinearisation = \"equal-energy\"",
@@ -338,6 +340,10 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--order", "6"]),
         ("impact", vec![], vec!["--amplitude", "first-harmonic"]),
         ("impact", vec![], vec!["--force", "gamma*d^2"]),
+        ("impact", vec![], vec!["--contact", "power-law"]),
+        ("impact", vec![], vec!["--contact", "all"]),
+        ("impact", vec!["--compare"], vec!["--contact", "equal-energy"]),
+        ("impact", vec!["--compare"], vec!["--contact", "all"]),
         ("impact", vec![], vec!["--left"]),
         ("impact", vec![], vec!["--compare"]),
         ("impact", vec![], vec!["--format", "csv"]),

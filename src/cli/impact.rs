@@ -30,6 +30,9 @@ pub struct Arguments {
     /// The whole force of the barrier in the depth d, such as "k*d^2"; without it gamma*d^(3/2)
     #[arg(long, value_name = "FORCE")]
     force: Option<String>,
+    /// The law of the contact in the derived phases, such as power-law; without it exact; all for a table of every law
+    #[arg(long, value_name = "LAW")]
+    contact: Option<String>,
     /// The barrier is on the left of xc, and the release at x = A
     #[arg(long)]
     left: bool,
@@ -82,6 +85,12 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             "--compare has no pressures: leave out `yield` in the file, or --compare".to_owned(),
         ));
     }
+    if setup.every_contact_law {
+        return Err(Failure::Usage(
+            "--compare is a table of methods, that of every contact law another one: leave out --compare, or `all`"
+                .to_owned(),
+        ));
+    }
     if common.plot.is_some() {
         return Err(Failure::Usage(
             "--compare draws no picture: leave out --plot, or --compare".to_owned(),
@@ -123,6 +132,7 @@ fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
         (&arguments.method, &mut asked.method),
         (&arguments.amplitude, &mut asked.amplitude),
         (&arguments.force, &mut asked.contact.force),
+        (&arguments.contact, &mut asked.contact.law),
     ];
     for (given, place) in words {
         if given.is_some() {

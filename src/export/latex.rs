@@ -249,6 +249,7 @@ impl Page {
             }
             Block::Phase { phase, letters, .. } => self.rows.extend(impact::phase(phase, *letters)),
             Block::Quantities { columns, rows, .. } => self.table(&impact::quantities(columns, rows)),
+            Block::ContactLaws { rows } => self.table(&impact::contact_laws(rows)),
             Block::ImpactMethods { rows, truth, .. } => self.table(&impact::methods(rows, *truth)),
             Block::SiValue {
                 name,

@@ -196,6 +196,7 @@ impl Page {
                 deviations,
                 shapes,
             } => impact::quantities(columns, rows, deviations, shapes),
+            Block::ContactLaws { rows } => impact::contact_laws(rows),
             Block::ImpactMethods { rows, truth, tolerance } => impact::methods(rows, *truth, *tolerance, self.width),
             Block::SiValue {
                 name,

@@ -12,7 +12,9 @@
 //! harmonics and the best contact law; each judged by Runge-Kutta on the equation as it stands. Without an order or a method the
 //! derived column has the first of a ladder that passes: what it tried is told.
 
-use super::derived::Flight;
+use super::collision::losses;
+use super::contact::{ContactLaw, ContactRow};
+use super::derived::{DerivedContact, Flight};
 use super::judge::{Deviation, TrueImpact};
 use super::phases::{ContactSpeed, Form, PhasesError, Swing, ThreePhases, three_phases};
 use super::setup::{Letters, Setup, SetupError};
@@ -41,6 +43,12 @@ pub struct Impact {
     pub columns: Vec<Column>,
     /// The swing of the derived column.
     pub flight: Option<Flight>,
+    /// The contact of the derived column.
+    pub contact: Option<DerivedContact>,
+    /// Every law of the contact at `energy_speed`; empty where they are not asked for.
+    pub contact_laws: Vec<ContactRow>,
+    /// lambda of the contact, zero where it loses nothing.
+    pub damping: f64,
     /// What was tried for the derived column, in order; where that has a reason not to be, it is here.
     pub tried: Vec<Attempt>,
     /// The speed at the touch from the energy, exact for the equation.
@@ -118,10 +126,12 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             phases,
         };
         let mut columns: Vec<Column> = paper.into_iter().map(column).collect();
-        let flight = derived.map(|derived| {
-            columns.push(column((Reading::Derived, derived.phases)));
-            derived.flight
-        });
+        let (flight, contact) = derived
+            .map(|derived| {
+                columns.push(column((Reading::Derived, derived.phases)));
+                (derived.flight, derived.contact)
+            })
+            .unzip();
         if columns.is_empty() {
             let paper = no_paper.unwrap_or_default();
             return Err(ImpactError::NoReading { paper, tried });
@@ -135,6 +145,9 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             free_swing,
             columns,
             flight,
+            contact,
+            contact_laws: trial.contact_laws()?,
+            damping: trial.collision.damping,
             tried,
             energy_speed: trial.energy_speed,
             no_paper,
@@ -163,6 +176,9 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         collision,
         ..
     } = trial;
+    if setup.loss.is_some() {
+        return Err(SetupError::LosesEnergy.into());
+    }
     let swing = &equations.swing;
     if equations.equilibrium != 0.0 || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)? {
         return Err(SetupError::NotOdd {
@@ -248,6 +264,16 @@ impl Impact {
         (self.turning_point - self.equilibrium).abs()
     }
 
+    /// Whether the contact of the derived column is the exact one, by law and without loss.
+    pub fn contact_is_exact(&self) -> bool {
+        self.setup.loss.is_none() && self.setup.contact_law == ContactLaw::Exact
+    }
+
+    /// Where the true motion turns after the impact, in the unit of x.
+    pub fn place_of_turn(&self) -> f64 {
+        self.equilibrium + self.setup.side.sign() * self.truth.at(self.truth.period).0
+    }
+
     /// Runge-Kutta and then every column, with so many points a phase.
     pub fn paths(&self, points: usize) -> Vec<SampledMotion> {
         let sign = self.setup.side.sign();
@@ -293,6 +319,24 @@ impl Impact {
             quantity("duration", &|phases| phases.duration, self.truth.duration),
             quantity("period", &|phases| phases.period, self.truth.period),
         ]
+    }
+
+    /// Restitution and speed out of a contact that loses energy, which are judged, and what it loses per unit of mass, which is not: of
+    /// a small loss no digits are left.
+    pub fn losses(&self) -> Option<([Quantity; 2], Quantity)> {
+        self.setup.loss?;
+        let truth = losses([self.truth.touch.v, -self.truth.exit.v]);
+        let columns = self.columns.iter().map(|column| &column.phases);
+        let found: Vec<[f64; 3]> = columns
+            .map(|phases| losses([phases.speed, phases.exit_speed]))
+            .collect();
+        let quantity = |index: usize, name| Quantity {
+            name,
+            runge_kutta: truth[index],
+            closed_forms: found.iter().map(|numbers| numbers[index]).collect(),
+        };
+        let judged = [quantity(0, "restitution"), quantity(1, "speed out")];
+        Some((judged, quantity(2, "energy lost")))
     }
 
     /// omega of the approach and the return in the paper's reading.
@@ -342,12 +386,18 @@ impl Impact {
             Reading::Derived => [
                 "the derived swing is not closer at this order".to_owned(),
                 "the contact begins with the speed of the derived swing".to_owned(),
-                "the contact is met with that speed".to_owned(),
+                match (self.setup.loss, self.setup.contact_law) {
+                    (Some(_), _) => "the contact leaves the force of the swing out".to_owned(),
+                    (None, ContactLaw::Exact) => "the contact is met with that speed".to_owned(),
+                    (None, law) => format!("the contact is that of the law {law}"),
+                },
             ],
         };
         let quantities = self.quantities();
+        let losses = self.losses().map(|(judged, _)| judged);
         let mut errors: Vec<(&'static str, f64)> = quantities
             .iter()
+            .chain(losses.iter().flatten())
             .filter_map(|quantity| Some((quantity.name, quantity.errors().nth(index)?)))
             .collect();
         let [approach, pressed, back] = self.deviations(column);
@@ -367,7 +417,16 @@ impl Impact {
                 swing,
             ),
             (&["speed"], speed),
-            (&["penetration", "duration", "shape of the contact"], contact),
+            (
+                &[
+                    "penetration",
+                    "duration",
+                    "shape of the contact",
+                    "restitution",
+                    "speed out",
+                ],
+                contact,
+            ),
         ];
         // An error that is no number lies beyond every tolerance.
         let beyond = |names: &[&str]| {

@@ -29,6 +29,14 @@ pub struct Collision<'a> {
     /// F(depth), the elastic force of the barrier per unit of gamma, such as
     /// [`hertz::elastic_force`](super::hertz::elastic_force); asked for depths of at least zero only.
     pub elastic_force: &'a dyn Fn(f64) -> f64,
+    /// lambda >= 0: the barrier pushes with gamma F(d) (1 + lambda d'), and never pulls; zero where nothing is lost in it.
+    pub damping: f64,
+}
+
+/// Restitution, speed out and energy lost per unit of mass, of a contact with these speeds in and out.
+pub(super) fn losses([inwards, outwards]: [f64; 2]) -> [f64; 3] {
+    let lost = 0.5 * (inwards - outwards) * (inwards + outwards);
+    [outwards / inwards, outwards, lost]
 }
 
 /// Why nothing hits the barrier.
@@ -241,6 +249,7 @@ impl Collision<'_> {
     ///     stiffness: 1e6,
     ///     restoring_force: &f64::sin,
     ///     elastic_force: &elastic_force,
+    ///     damping: 0.0,
     /// };
     /// let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
     /// assert!((pendulum.contact_speed()? - exact).abs() < 1e-14);

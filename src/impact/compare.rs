@@ -29,6 +29,8 @@ pub struct ImpactComparison {
     pub rows: Vec<ImpactRow>,
     /// The others, with the reason of each.
     pub refused: Vec<(ImpactMethod, String)>,
+    /// lambda of the contact, zero where it loses nothing.
+    pub damping: f64,
     /// Runge-Kutta on the original equation.
     pub truth: TrueImpact,
 }
@@ -178,6 +180,7 @@ pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
             turning_point: trial.turning_point,
             rows,
             refused,
+            damping: trial.collision.damping,
             truth: trial.truth.clone(),
         })
     })

@@ -9,6 +9,9 @@
 //! return     x = X(t - t3)           t3 = t2 + t1, the turning point after the impact and the period
 //! ```
 //!
+//! A contact that loses energy is left with less speed: then X of the return is the motion of the amplitude that has this speed at
+//! the barrier, and t3 - t2 the time it takes.
+//!
 //! The swing is derived as it is released, from its upper turning point: where the release is the lower one, it is the equation
 //! of -x that is derived.
 
@@ -16,8 +19,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::collision::Collision;
-use super::contact::{ContactError, ExactContact};
+use super::contact::{ContactError, ContactMotion, HuntCrossley, SineSeries};
 use super::phases::{Form, Phase, ThreePhases};
 use super::setup::Equations;
 use crate::exact::{Doubles, from_f64};
@@ -55,6 +57,9 @@ pub enum NoFlight {
     /// No amplitude of the law belongs to the release.
     #[error("no amplitude of the law turns round at the release")]
     Amplitude,
+    /// No amplitude of the law belongs to the way back.
+    #[error("no amplitude of the law leaves the barrier with the speed {0}")]
+    WayBack(f64),
     /// The derived motion does not touch the barrier.
     #[error("the derived motion does not reach the barrier: it swings from {from} to {to}")]
     NeverReaches {
@@ -113,14 +118,8 @@ impl Flight {
         let swing = &equations.swing;
         let turned = if sign < 0.0 { turned(swing)? } else { None };
         let solution = method::solve(turned.as_ref().unwrap_or(swing), options)?;
-        let symbol = solution.amplitude.symbol();
         let (from, distance) = (sign * release, sign * (release - equations.equilibrium));
-        let motion_at = |amplitude: f64| -> Result<Motion, NoFlight> {
-            let (_, mut values) = equations.values.split(&[symbol]);
-            let exact = from_f64(amplitude).ok_or(NoFlight::Amplitude)?;
-            values.insert(symbol, Expr::number(exact))?;
-            Ok(solution.motion_at(&values)?)
-        };
+        let motion_at = |amplitude: f64| motion_at(&solution, equations, amplitude);
         let amplitude = match solution.amplitude {
             AmplitudeConvention::Initial => distance,
             AmplitudeConvention::FirstHarmonic => {
@@ -146,6 +145,27 @@ impl Flight {
                 release,
             }),
         }
+    }
+
+    /// The same swing with the amplitude, no larger one, that passes the barrier at this speed.
+    ///
+    /// # Errors
+    /// [`NoFlight::WayBack`]; the method has no motion at that amplitude.
+    pub(super) fn passing(&self, equations: &Equations, barrier: f64, speed: f64) -> Result<Self, NoFlight> {
+        let of = |amplitude: f64| -> Result<Self, NoFlight> {
+            Ok(Self {
+                amplitude,
+                motion: motion_at(&self.solution, equations, amplitude)?,
+                ..self.clone()
+            })
+        };
+        let excess = |amplitude: f64| {
+            let touched = of(amplitude).and_then(|flight| flight.touch(barrier));
+            // Too small a swing does not come as far.
+            touched.map_or(-1.0, |(_, found)| (found / speed).powi(2) - 1.0)
+        };
+        let amplitude = find_root(excess, 0.0, self.amplitude).map_err(|_| NoFlight::WayBack(speed))?;
+        of(amplitude)
     }
 
     /// The time from the release to this place, and the speed there.
@@ -186,6 +206,15 @@ impl Flight {
     }
 }
 
+/// The motion of a law at this amplitude.
+fn motion_at(solution: &Solution, equations: &Equations, amplitude: f64) -> Result<Motion, NoFlight> {
+    let symbol = solution.amplitude.symbol();
+    let (_, mut values) = equations.values.split(&[symbol]);
+    let exact = from_f64(amplitude).ok_or(NoFlight::Amplitude)?;
+    values.insert(symbol, Expr::number(exact))?;
+    Ok(solution.motion_at(&values)?)
+}
+
 /// The equation of -x; `None` where it is that of x.
 fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, NoFlight> {
     let x = swing.coordinate;
@@ -211,25 +240,62 @@ fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, NoFlight> {
 /// How close the printed series of a contact comes to its motion, as a part of the depth.
 const SERIES: f64 = 1e-6;
 
-/// The exact contact of this collision entered at this speed, the force of the swing included.
-pub(super) fn contact(collision: &Collision, speed: f64) -> Result<ExactContact, NoFlight> {
-    let &Collision {
-        barrier,
-        stiffness,
-        restoring_force,
-        elastic_force,
-        ..
-    } = collision;
-    let force = |depth: f64| restoring_force(barrier + depth) + stiffness * elastic_force(depth);
-    Ok(ExactContact::new(force, speed)?)
+/// The contact of the derived phases.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DerivedContact {
+    /// By a law under which nothing is lost.
+    Elastic(Box<ContactMotion>),
+    /// With damping, the force of the swing left out of it.
+    Damped(Box<HuntCrossley>),
 }
 
-/// The three phases: the flight, the contact on that side of the barrier, the flight backwards.
-pub(super) fn phases_of(flight: &Flight, barrier: f64, touch: f64, contact: &ExactContact) -> ThreePhases {
-    let exit = touch + contact.duration;
-    let end = exit + touch;
-    let depth = contact.sine_series(SERIES);
-    let velocity_jump = depth.at(0.0).1 - contact.speed;
+impl DerivedContact {
+    /// Its greatest depth, duration, and speed out where it was entered at `speed`.
+    fn numbers(&self, speed: f64) -> [f64; 3] {
+        match self {
+            Self::Elastic(contact) => [contact.depth, contact.duration, speed],
+            Self::Damped(contact) => [contact.depth, contact.duration, contact.exit_speed],
+        }
+    }
+
+    /// Its motion in elementary functions.
+    fn sine_series(&self) -> SineSeries {
+        match self {
+            Self::Elastic(contact) => contact.sine_series(SERIES),
+            Self::Damped(contact) => SineSeries::of(
+                |time| contact.position(time),
+                contact.duration,
+                0.0,
+                contact.depth,
+                SERIES,
+            ),
+        }
+    }
+}
+
+/// The three phases: the flight, the contact on that side of the barrier entered at this time and speed, the flight backwards.
+///
+/// # Errors
+/// [`NoFlight`] where a contact that loses energy has no way back.
+pub(super) fn phases_of(
+    flight: &Flight,
+    equations: &Equations,
+    barrier: f64,
+    [touch, speed]: [f64; 2],
+    contact: &DerivedContact,
+) -> Result<ThreePhases, NoFlight> {
+    let [penetration, duration, exit_speed] = contact.numbers(speed);
+    let (back, way_back) = match contact {
+        DerivedContact::Elastic(_) => (flight.form(), touch),
+        DerivedContact::Damped(_) => {
+            let back = flight.passing(equations, barrier, exit_speed)?;
+            (back.form(), back.touch(barrier)?.0)
+        }
+    };
+    let exit = touch + duration;
+    let end = exit + way_back;
+    let depth = contact.sine_series();
+    let velocity_jump = depth.at(0.0).1 - speed;
     let pressed = Form::Contact {
         barrier,
         inward: -flight.sign,
@@ -242,17 +308,18 @@ pub(super) fn phases_of(flight: &Flight, barrier: f64, touch: f64, contact: &Exa
         clock,
         form,
     };
-    ThreePhases {
+    Ok(ThreePhases {
         phases: [
             phase("approach", [0.0, touch, 0.0], flight.form()),
             phase("contact", [touch, exit, touch], pressed),
-            phase("return", [exit, end, end], flight.form()),
+            phase("return", [exit, end, end], back),
         ],
-        speed: contact.speed,
-        penetration: contact.depth,
-        duration: contact.duration,
+        speed,
+        exit_speed,
+        penetration,
+        duration,
         period: end,
         velocity_jump,
         fitted: None,
-    }
+    })
 }

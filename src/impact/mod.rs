@@ -79,13 +79,13 @@ pub use case::{Case, CaseError, ContactDamping};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
-pub use derived::{Flight, NoFlight};
+pub use derived::{DerivedContact, Flight, NoFlight};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, Form, Phase, PhasesError, Swing, Term, ThreePhases, three_phases};
-pub use setup::{Letters, Setup, SetupError};
+pub use setup::{ContactLoss, Letters, Setup, SetupError};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{

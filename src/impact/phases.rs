@@ -81,11 +81,13 @@ pub struct ThreePhases {
     pub phases: [Phase; 3],
     /// Speed v at first touch, in the units of x and time of the equation: rad times omega for the pendulum.
     pub speed: f64,
+    /// Speed at the end of the contact, out of the barrier: less than `speed` where the contact loses energy.
+    pub exit_speed: f64,
     /// Greatest depth of the closed form, in the unit of x.
     pub penetration: f64,
     /// Duration of the contact, in units of 1/omega for the pendulum.
     pub duration: f64,
-    /// Time from release to release, in the same unit.
+    /// Time from the release to the turning point after the impact, in the same unit: where nothing is lost, the period.
     pub period: f64,
     /// Speed of contact minus the speed of the cosine at the barrier: the size of the jump of the velocity at the
     /// start and at the end of the contact. Zero for [`ContactSpeed::Paper`].
@@ -276,6 +278,7 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
             },
         ],
         speed,
+        exit_speed: speed,
         penetration: contact.penetration,
         duration: contact.duration,
         period: end,
@@ -358,6 +361,7 @@ impl Swing<'_> {
             stiffness: self.stiffness,
             restoring_force: self.restoring_force,
             elastic_force: self.elastic_force,
+            damping: 0.0,
         }
     }
 }
@@ -374,18 +378,19 @@ impl ThreePhases {
         }
     }
 
-    /// Displacement at this time; the motion repeats with its period.
+    /// Displacement at this time; the motion repeats with its period, but one that has lost energy goes on as its return.
     pub fn position_at(&self, time: f64) -> f64 {
         self.at(time).0
     }
 
-    /// Velocity at this time; the motion repeats with its period.
+    /// Velocity at this time, as for [`ThreePhases::position_at`].
     pub fn velocity_at(&self, time: f64) -> f64 {
         self.at(time).1
     }
 
     fn at(&self, time: f64) -> (f64, f64) {
-        let time = if (0.0..=self.period).contains(&time) {
+        let repeats = self.exit_speed == self.speed;
+        let time = if (0.0..=self.period).contains(&time) || !repeats {
             time
         } else {
             time.rem_euclid(self.period)
@@ -562,8 +567,10 @@ impl Form {
             &Self::Oscillation { amplitude, .. } => vec![(1, amplitude)],
             Self::Harmonics { harmonics, .. } => harmonics.clone(),
             Self::Contact { inward, depth, .. } => {
-                let odd = (1..).step_by(2).zip(&depth.harmonics);
-                odd.map(|(k, sine)| (k, Complex64::new(0.0, -inward * sine))).collect()
+                let sines = depth.sines().into_iter();
+                sines
+                    .map(|(k, sine)| (k, Complex64::new(0.0, -inward * sine)))
+                    .collect()
             }
         }
     }

@@ -8,8 +8,10 @@
 //! x'' + f(x) - gamma F(x_c - x) H(x_c - x) = 0                                on the left
 //! ```
 //!
+//! where a contact that loses energy has gamma F (1 + lambda d') for gamma F, d' the speed inwards,
 //! and its two forces as functions, in the coordinate z = s (x - x_e) that runs from the equilibrium x_e towards the barrier.
 
+use super::contact::ContactLaw;
 use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
@@ -58,12 +60,27 @@ pub struct Setup {
     pub amplitude_convention: Option<AmplitudeConvention>,
     /// How the line is fitted in the paper's reading.
     pub rule: Rule,
+    /// The law of the contact in the derived column; without say where `loss` is given.
+    pub contact_law: ContactLaw,
+    /// Whether every law of the contact is to stand in a table.
+    pub every_contact_law: bool,
+    /// What the contact loses: then the derived column's is that of Hunt and Crossley.
+    pub loss: Option<ContactLoss>,
     /// The relative error up to which a closed form passes.
     pub tolerance: f64,
     /// Error per step of Runge-Kutta, relative; between 1e-15 and 0.1.
     pub integrator_tolerance: f64,
     /// Steps after which Runge-Kutta gives up, which is an error.
     pub step_limit: u32,
+}
+
+/// What a contact loses, by the law of Hunt and Crossley.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactLoss {
+    /// lambda, positive, in units of time over the unit of x: mu/gamma in equation (7).
+    Damping(f64),
+    /// The coefficient of restitution, above 0 and below 1, at the speed that the energy of the swing gives the touch.
+    Restitution(f64),
 }
 
 /// The paper's pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
@@ -84,6 +101,9 @@ impl Default for Setup {
             degrees: None,
             amplitude_convention: None,
             rule: Rule::default(),
+            contact_law: ContactLaw::default(),
+            every_contact_law: false,
+            loss: None,
             tolerance: DEFAULT_TOLERANCE,
             integrator_tolerance: 1e-10,
             step_limit: 250_000,
@@ -119,6 +139,24 @@ pub enum SetupError {
         /// The force.
         force: String,
     },
+    /// A contact that loses energy, in the paper's reading.
+    #[error("its equations (13) to (16) are those of a contact that loses nothing")]
+    LosesEnergy,
+    /// A contact that loses energy, from inside the barrier.
+    #[error(
+        "a release inside the barrier is the deepest point of a cycle only where nothing is lost: release the motion outside, or leave \
+         the loss out"
+    )]
+    InsideWithLoss,
+    /// A contact that loses energy by a law that has no closed form.
+    #[error(
+        "a contact that loses energy needs a force that is a power of the depth, such as `gamma*d^(3/2)`, but it is `{force}`: give \
+         another one, or leave the loss out"
+    )]
+    NoPower {
+        /// The force.
+        force: String,
+    },
     /// A value for nothing.
     #[error("there is no parameter `{name}`, neither in the swing nor in the force of the barrier")]
     Unknown {
@@ -144,6 +182,8 @@ pub struct Letters {
     pub stiffness: Symbol,
     /// The depth in it, in the law of its force: `d`.
     pub depth: Symbol,
+    /// Its damping, where it has one: `lambda`.
+    pub damping: Symbol,
 }
 
 /// The equations of an impact, and their forces as functions.
@@ -209,11 +249,14 @@ impl Setup {
                 term: (&mass * &Expr::from(acceleration)).to_string(),
             });
         }
+        let mut taken = swing.parameters.clone();
+        taken.extend(self.force.iter().flat_map(|force| force.symbols()));
         let letters = Letters {
             coordinate: x,
             barrier: fresh(&format!("{x}c"), &swing.parameters),
             stiffness: fresh("gamma", &swing.parameters),
             depth: fresh("d", &swing.parameters),
+            damping: fresh("lambda", &taken),
         };
         let own = |name: &Symbol| {
             let of_force = self.force.as_ref().is_some_and(|force| force.contains(*name));
@@ -238,6 +281,13 @@ impl Setup {
         });
         let inside = &sign * &(&Expr::from(x) - &Expr::from(letters.barrier));
         let pressed = written.substitute(letters.depth, &inside)?;
+        let pressed = match self.loss {
+            None => pressed,
+            Some(_) => {
+                let inwards = &sign * &Expr::from(x.derivative());
+                &pressed * &(&Expr::from(1) + &(&Expr::from(letters.damping) * &inwards))
+            }
+        };
         let pressed = &(&sign * &pressed) * &Expr::function(Function::Step, vec![inside])?;
         let judged = Equation {
             left: &swing.residual + &pressed,

@@ -5,10 +5,13 @@
 //! towards the barrier.
 
 use super::collision::{Collision, CollisionError};
-use super::derived::{Flight, NoFlight, contact, phases_of};
+use super::contact::hunt_crossley::{damping_for, restitution};
+use super::contact::power_law::exponent_of;
+use super::contact::{ContactError, ContactLaw, ContactRow, HuntCrossley, Touch, comparison};
+use super::derived::{DerivedContact, Flight, NoFlight, phases_of};
 use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
 use super::phases::{PhasesError, ThreePhases};
-use super::setup::{Equations, Setup, SetupError};
+use super::setup::{ContactLoss, Equations, Setup, SetupError};
 use crate::method::table::{Choice, Entry};
 use crate::method::{self, Refusal};
 use crate::numeric::ode::Options;
@@ -23,7 +26,8 @@ pub struct Attempt {
     pub order: Option<u32>,
     /// Its degrees, where it was given some.
     pub degrees: Option<(u32, u32)>,
-    /// The largest error, relative; of the five numbers alone where one of them is beyond the tolerance already. Or why there is none.
+    /// The largest error, relative; of the five numbers alone where one of them is beyond the tolerance already. Where the contact is
+    /// not the exact one, that of the approach. Or why there is none.
     pub error: Result<f64, String>,
 }
 
@@ -46,6 +50,9 @@ pub enum ImpactError {
     /// The swing of the derived column could not be derived.
     #[error(transparent)]
     Flight(#[from] NoFlight),
+    /// There is no contact of that damping, or none to compare with.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
     /// The true motion could not be followed.
     #[error(transparent)]
     Truth(#[from] TrueImpactError),
@@ -86,7 +93,9 @@ pub(super) struct Derived {
     pub(super) flight: Flight,
     /// The phases, in x.
     pub(super) phases: ThreePhases,
-    /// Their largest error.
+    /// Their contact.
+    pub(super) contact: DerivedContact,
+    /// Their largest error; where the contact is not the exact one, that of the approach.
     error: f64,
 }
 
@@ -120,9 +129,13 @@ impl Trial<'_> {
             stiffness: equations.stiffness,
             restoring_force: &|z: f64| sign * equations.restoring_force(origin + sign * z),
             elastic_force: &|depth: f64| equations.elastic_force(depth),
+            damping: 0.0,
         };
         let seen = |error: CollisionError| error.seen_from(sign, origin);
         let inside = collision.release > collision.barrier && collision.barrier.is_finite();
+        if inside && setup.loss.is_some() {
+            return Err(SetupError::InsideWithLoss.into());
+        }
         let collision = Collision {
             release: match inside {
                 true => collision.turning_point(collision.release).map_err(seen)?,
@@ -132,6 +145,19 @@ impl Trial<'_> {
         };
         collision.check().map_err(seen)?;
         let energy_speed = collision.contact_speed().map_err(seen)?;
+        let damping = match setup.loss {
+            None => 0.0,
+            Some(ContactLoss::Damping(damping)) => damping,
+            Some(ContactLoss::Restitution(wanted)) => damping_for(wanted)? / energy_speed,
+        };
+        restitution(damping * energy_speed)?;
+        if let (Some(_), None, Some(force)) = (setup.loss, exponent_of(collision.elastic_force), &setup.force) {
+            return Err(SetupError::NoPower {
+                force: force.to_string(),
+            }
+            .into());
+        }
+        let collision = Collision { damping, ..collision };
         let options = Options {
             maximum_steps: setup.step_limit as usize,
             ..Options::with_tolerance(setup.integrator_tolerance)
@@ -214,6 +240,8 @@ impl Trial<'_> {
             // What refuses an order refuses those above it; the first may be too low.
             let refused = matches!(flight, Err(NoFlight::Refusal(_))) && order.is_none_or(|order| order > 2);
             let found = flight.and_then(|flight| self.with_contact(flight));
+            // A law that does not apply to this contact does so at no order.
+            let no_law = matches!(found, Err(NoFlight::Contact(_))) && self.contact(self.energy_speed).is_err();
             tried.push(Attempt {
                 method,
                 order,
@@ -231,7 +259,7 @@ impl Trial<'_> {
                 let least = |attempts: &[Attempt]| attempts.iter().map(error).fold(f64::INFINITY, f64::min);
                 least(lately) >= least(before)
             };
-            if refused || stalls || best.as_ref().is_some_and(|best| best.error <= setup.tolerance) {
+            if refused || no_law || stalls || best.as_ref().is_some_and(|best| best.error <= setup.tolerance) {
                 break;
             }
         }
@@ -241,15 +269,66 @@ impl Trial<'_> {
     /// The phases of this swing, and how far they are from the truth.
     fn with_contact(&self, flight: Flight) -> Result<Derived, NoFlight> {
         let (touch, speed) = flight.touch(self.setup.barrier)?;
-        let contact = contact(&self.collision, speed)?;
-        let phases = phases_of(&flight, self.setup.barrier, touch, &contact);
+        let contact = self.contact(speed)?;
+        let phases = phases_of(&flight, self.equations, self.setup.barrier, [touch, speed], &contact)?;
+        // A law of the contact that is far off must not be made up for by the swing: that is chosen by its flight.
+        let is_exact = self.setup.contact_law == ContactLaw::Exact && self.setup.loss.is_none();
+        let numbers = self.number_errors(&phases);
         // What misses a number is not followed through its phases.
-        let numbers = worst(&self.number_errors(&phases));
-        let error = match numbers <= self.setup.tolerance {
-            true => worst(&self.errors(&phases)),
-            false => numbers,
+        let numbers = worst(if is_exact { &numbers } else { &numbers[..2] });
+        let error = match (numbers <= self.setup.tolerance, is_exact) {
+            (true, true) => worst(&self.errors(&phases)),
+            (true, false) => worst(&[numbers, self.errors(&phases)[5]]),
+            (false, _) => numbers,
         };
-        Ok(Derived { flight, phases, error })
+        Ok(Derived {
+            flight,
+            phases,
+            contact,
+            error,
+        })
+    }
+
+    /// The contact entered at this speed, the force of the swing included where nothing is lost.
+    fn contact(&self, speed: f64) -> Result<DerivedContact, ContactError> {
+        let touch = self.touch(speed);
+        match self.setup.loss {
+            None => Ok(DerivedContact::Elastic(Box::new(touch.by(self.setup.contact_law)?))),
+            Some(_) => {
+                let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
+                let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
+                let contact = HuntCrossley::new(exponent, stiffness, self.collision.damping, speed)?;
+                Ok(DerivedContact::Damped(Box::new(contact)))
+            }
+        }
+    }
+
+    /// What meets at this speed.
+    fn touch(&self, speed: f64) -> Touch<'_> {
+        let Collision {
+            barrier,
+            stiffness,
+            restoring_force,
+            elastic_force,
+            ..
+        } = self.collision;
+        Touch {
+            speed,
+            barrier,
+            stiffness,
+            restoring_force,
+            slope: self.equations.slope(self.setup.barrier),
+            elastic_force,
+            exponent: exponent_of(elastic_force),
+        }
+    }
+
+    /// Every law of the contact at the speed from the energy, where they are asked for.
+    pub(super) fn contact_laws(&self) -> Result<Vec<ContactRow>, ContactError> {
+        match self.setup.every_contact_law {
+            true => comparison(&self.touch(self.energy_speed)),
+            false => Ok(vec![]),
+        }
     }
 
     /// The relative errors of three phases in x: time to contact, speed, penetration, duration, period, and the largest deviation in

@@ -154,7 +154,11 @@ pub struct Contact {
     pub mu: Option<f64>,
     /// Contact damping of Hunt and Crossley, s/m.
     pub lambda: Option<f64>,
-    /// The rule by which a line replaces the elastic force.
+    /// For an impact, the coefficient of restitution at the speed of the touch.
+    pub restitution: Option<f64>,
+    /// For an impact, the law of the contact in the derived phases; `all` for a table of every law.
+    pub law: Option<String>,
+    /// The rule by which a line replaces the elastic force; `all` for a table of every law of the contact.
     pub linearisation: Option<String>,
 }
 

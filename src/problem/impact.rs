@@ -4,7 +4,9 @@ use thiserror::Error;
 
 use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, UnreadKey};
 use crate::expr::{Expr, ParseError, parse_expression};
-use crate::impact::{CollisionError, Rule, Setup, Side, UnknownRule};
+use crate::impact::contact::{ContactLaw, UnknownContactLaw};
+use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::{CollisionError, ContactLoss, Rule, Setup, Side, UnknownRule};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Method};
 use crate::spelling::nearest;
@@ -28,10 +30,44 @@ pub enum ImpactFileError {
     Collision(#[from] CollisionError),
     /// Something that damps.
     #[error(
-        "the three phases in closed form are those of the undamped equation (9): leave out zeta, alpha, mu and lambda, or use \
-         `lindstedt simulate`"
+        "the flights in closed form are those of the undamped equation (9): leave out zeta and alpha, or use `lindstedt simulate`"
     )]
     Damped,
+    /// Two losses of the contact.
+    #[error("[contact] has both {0} and {1}: either says what the contact loses, give one of them")]
+    TwoLosses(&'static str, &'static str),
+    /// A restitution that is none.
+    #[error("[contact] restitution must lie above 0 and below 1, not {0}: leave it out for a contact without loss")]
+    Restitution(f64),
+    /// A damping that is none.
+    #[error("[contact] {key} must be a number and not negative, not {value}: 0 is a contact without loss")]
+    Damping {
+        /// The key.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A damping in units that an equation or a force of one's own does not have.
+    #[error(
+        "[contact] {0} belongs to the pendulum at the barrier of Hertz: with an `equation` or a `force` give `restitution`"
+    )]
+    DampingOfItsOwn(&'static str),
+    /// A law or a line for a contact that loses energy.
+    #[error(
+        "[contact] {key} is that of a contact without loss: beside {loss} the law is that of Hunt and Crossley, leave one of them out"
+    )]
+    LawBesideLoss {
+        /// The key of the law.
+        key: &'static str,
+        /// The key of the loss.
+        loss: &'static str,
+    },
+    /// A law that is none.
+    #[error("[contact] law: {0}, or all for a table of them")]
+    Law(#[from] UnknownContactLaw),
+    /// A design without a length or gravity.
+    #[error("[design]: {0}")]
+    Design(#[from] NotPositive),
     /// A moving pivot.
     #[error(
         "the three phases in closed form are those of the free motion, equation (9): leave out [excitation], or use \
@@ -121,8 +157,7 @@ impl TryFrom<&Problem> for Setup {
     fn try_from(problem: &Problem) -> Result<Self, ImpactFileError> {
         problem.check_keys(Reader::Impact)?;
         let (damping, contact) = (&problem.damping, &problem.contact);
-        let contact_damping = contact.mu.or(contact.lambda).unwrap_or(0.0);
-        if damping.zeta != 0.0 || damping.alpha != 0.0 || contact_damping != 0.0 {
+        if damping.zeta != 0.0 || damping.alpha != 0.0 {
             return Err(ImpactFileError::Damped);
         }
         if problem.excitation.beta != 0.0 {
@@ -212,6 +247,7 @@ impl TryFrom<&Problem> for Setup {
             Some(Order::Power(order)) => (Some(order), None),
             Some(Order::Degrees([numerator, denominator])) => (None, Some((numerator, denominator))),
         };
+        let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
         Ok(Self {
             swing,
             values: rest,
@@ -227,6 +263,12 @@ impl TryFrom<&Problem> for Setup {
             degrees,
             amplitude_convention: convention(problem)?,
             rule: linearisation(problem).map_err(ProblemError::from)?,
+            contact_law: match contact.law.as_deref() {
+                None | Some(EVERY_LAW) => ContactLaw::default(),
+                Some(name) => name.parse()?,
+            },
+            every_contact_law: is_all(&contact.law) || is_all(&contact.linearisation),
+            loss: loss(problem, stiffness)?,
             integrator_tolerance: problem.run.integrator_tolerance,
             step_limit: problem.run.step_limit,
             ..Self::default()
@@ -293,10 +335,64 @@ fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ImpactFi
     AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
 }
 
+/// What stands for a table in place of the name of a law or a rule.
+const EVERY_LAW: &str = "all";
+
 /// The rule that replaces the elastic force by a line.
 fn linearisation(problem: &Problem) -> Result<Rule, UnknownRule> {
-    match &problem.contact.linearisation {
-        None => Ok(Rule::default()),
+    match problem.contact.linearisation.as_deref() {
+        None | Some(EVERY_LAW) => Ok(Rule::default()),
         Some(name) => name.parse(),
     }
+}
+
+/// What the contact loses.
+fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, ImpactFileError> {
+    let contact = &problem.contact;
+    let losses = [
+        ("mu", contact.mu),
+        ("lambda", contact.lambda),
+        ("restitution", contact.restitution),
+    ];
+    let given: Vec<(&'static str, f64)> = losses
+        .into_iter()
+        .filter_map(|(key, value)| value.map(|value| (key, value)))
+        .collect();
+    let (key, value) = match given[..] {
+        [] => return Ok(None),
+        [one] => one,
+        [(one, _), (other, _), ..] => return Err(ImpactFileError::TwoLosses(one, other)),
+    };
+    let of_restitution = key == "restitution";
+    if of_restitution && !(value > 0.0 && value < 1.0) {
+        return Err(ImpactFileError::Restitution(value));
+    }
+    if !(value.is_finite() && value >= 0.0) {
+        return Err(ImpactFileError::Damping { key, value });
+    }
+    if value == 0.0 {
+        return Ok(None);
+    }
+    if !of_restitution && (problem.equation.is_some() || contact.force.is_some()) {
+        return Err(ImpactFileError::DampingOfItsOwn(key));
+    }
+    let laws = [("law", &contact.law), ("linearisation", &contact.linearisation)];
+    if let Some((law, _)) = laws.into_iter().find(|(_, name)| name.is_some()) {
+        return Err(ImpactFileError::LawBesideLoss { key: law, loss: key });
+    }
+    let Design { length, gravity, .. } = problem.design().map_err(ProblemError::from)?;
+    Ok(Some(match key {
+        "restitution" => ContactLoss::Restitution(value),
+        "mu" => ContactLoss::Damping(value / stiffness),
+        _ => {
+            let lengths = [("length", length), ("gravity", gravity)];
+            match lengths
+                .into_iter()
+                .find(|(_, value)| !(value.is_finite() && *value > 0.0))
+            {
+                Some((quantity, value)) => return Err(NotPositive { quantity, value }.into()),
+                None => ContactLoss::Damping(value * (gravity * length).sqrt()),
+            }
+        }
+    }))
 }

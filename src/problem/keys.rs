@@ -33,7 +33,7 @@ impl fmt::Display for Reader {
 }
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 40] = [
+pub const KEYS: [(&str, &[Reader]); 42] = [
     ("equation", &[Derive, Compare, Impact, Simulate]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
@@ -53,6 +53,8 @@ pub const KEYS: [(&str, &[Reader]); 40] = [
     ("[contact] force", &[Impact]),
     ("[contact] mu", &[Impact, Simulate]),
     ("[contact] lambda", &[Impact, Simulate]),
+    ("[contact] restitution", &[Impact]),
+    ("[contact] law", &[Impact]),
     ("[contact] linearisation", &[Impact]),
     ("[damping] zeta", &[Impact, Simulate]),
     ("[damping] alpha", &[Impact, Simulate]),

@@ -3,9 +3,11 @@
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::decimal::{decimal, significant};
+use crate::impact::contact::ContactLaw;
+use crate::impact::contact::power_law::duration_factor;
 use crate::impact::{
-    Attempt, Column, Flight, Form, Impact, Letters, Modulus, PRINTED_CONTACT_TIME, Quantity, Reading, Setup, SiImpact,
-    Side, YieldCheck,
+    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, PRINTED_CONTACT_TIME,
+    Quantity, Reading, Setup, SiImpact, Side, YieldCheck,
 };
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Solution};
@@ -28,6 +30,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
             &impact.setup,
             impact.letters,
             [impact.equilibrium, impact.turning_point],
+            impact.damping,
         ),
     ];
     sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
@@ -48,6 +51,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
         let heading = Block::Heading("No derived motion".to_owned());
         sections.push(std::iter::once(heading).chain(tried).collect());
     }
+    sections.extend(contact_laws(impact));
     sections.push(judged(impact, tolerance));
     if impact.setup.units.is_some() {
         sections.push(match impact.si() {
@@ -90,7 +94,12 @@ fn start(impact: &Impact) -> String {
     format!("{x}(0) = {start}, {x}'(0) = 0: released from rest, towards a barrier{side} at {barrier}")
 }
 
-pub(super) fn asked(setup: &Setup, letters: Letters, [equilibrium, turning_point]: [f64; 2]) -> Vec<Block<'_>> {
+pub(super) fn asked(
+    setup: &Setup,
+    letters: Letters,
+    [equilibrium, turning_point]: [f64; 2],
+    damping: f64,
+) -> Vec<Block<'_>> {
     let value = |name: Symbol, value, source| Block::Value { name, value, source };
     let mut blocks = Vec::new();
     if is_minus_amplitude(setup, equilibrium) {
@@ -101,6 +110,13 @@ pub(super) fn asked(setup: &Setup, letters: Letters, [equilibrium, turning_point
     if setup.force.as_ref().is_none_or(|force| force.contains(gamma)) {
         blocks.push(value(gamma, setup.stiffness, Some(setup.stiffness_source.as_str())));
     }
+    blocks.extend(setup.loss.map(|loss| {
+        let source = match loss {
+            ContactLoss::Damping(_) => "given, in units of the equation",
+            ContactLoss::Restitution(_) => "for the restitution asked for, at the speed of the touch",
+        };
+        value(letters.damping, damping, Some(source))
+    }));
     blocks.extend(
         setup
             .values
@@ -180,11 +196,14 @@ fn energy_speed(impact: &Impact) -> String {
 }
 
 fn phases<'a>(impact: &Impact, column: &'a Column) -> impl Iterator<Item = Block<'a>> {
-    let (letters, release) = (impact.letters, release(impact));
+    let (letters, release, is_lossy) = (impact.letters, release(impact), impact.setup.loss.is_some());
     column.phases.phases.iter().map(move |phase| Block::Phase {
         phase,
         letters,
-        release: release.clone(),
+        release: match phase.name == "return" && is_lossy {
+            true => decimal(phase.at(phase.end).0),
+            false => release.clone(),
+        },
     })
 }
 
@@ -197,13 +216,17 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
     }];
     let setup = &impact.setup;
     let passes = |attempt: &Attempt| attempt.error.as_ref().is_ok_and(|error| *error <= setup.tolerance);
+    let [it, that, none] = match impact.contact_is_exact() {
+        true => ["it", "that", "none"],
+        false => ["its approach", "whose approach", "no approach"],
+    };
     let chosen = match (setup.order.is_some() || setup.degrees.is_some(), impact.tried.last()) {
         (true, _) | (_, None) => None,
         (false, Some(last)) if passes(last) => Some(match impact.tried.len() {
-            1 => "the first that was tried, and it passes".to_owned(),
-            count => format!("the first of {count} tried that passes"),
+            1 => format!("the first that was tried, and {it} passes"),
+            count => format!("the first of {count} tried {that} passes"),
         }),
-        (false, Some(_)) => Some(format!("the closest of {} tried; none passes", impact.tried.len())),
+        (false, Some(_)) => Some(format!("the closest of {} tried; {none} passes", impact.tried.len())),
     };
     blocks.extend(chosen.map(Block::Detail));
     let x = solution.coordinate();
@@ -226,11 +249,112 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
         blocks.push(Block::Detail(format!(
             "the contact is written to {:.0e} of its depth; as JSON it has {} sines, to {:.0e}",
             Form::WRITTEN_CONTACT,
-            depth.harmonics.len(),
+            depth.sines().len(),
             depth.deviation
         )));
     }
+    blocks.extend(
+        impact
+            .contact
+            .iter()
+            .flat_map(|contact| law_of_contact(impact, contact)),
+    );
     blocks
+}
+
+/// What is to be said of a contact that is not the exact one.
+fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a>> {
+    let lines = match contact {
+        DerivedContact::Elastic(contact) if contact.law == ContactLaw::Exact => vec![],
+        DerivedContact::Elastic(contact) => {
+            let law = match contact.law {
+                ContactLaw::Line(rule) => format!("a line for the force of the barrier, {rule}"),
+                law => format!("the law {law}"),
+            };
+            let factor = contact.exponent().map(|exponent| {
+                let (m, factor) = (decimal(exponent + 1.0), decimal(duration_factor(exponent)));
+                format!("  T = (2/m) sqrt(pi) Gamma(1/m)/Gamma(1/m + 1/2) D/v = {factor} D/v, m = {m}")
+            });
+            let mut lines = vec![
+                format!("the contact is by {law}; with s the time since the touch"),
+                format!("  {}", contact.closed_form(6, Form::WRITTEN_CONTACT)),
+            ];
+            match contact.law {
+                ContactLaw::PowerLaw => lines.extend(factor),
+                ContactLaw::CorrectedPowerLaw => lines.extend([
+                    "  Y the motion of the law power-law between depths 0 and 1 and times 0 and 1,".to_owned(),
+                    format!("  and T = {}", decimal(contact.duration)),
+                ]),
+                _ => {}
+            }
+            lines
+        }
+        DerivedContact::Damped(contact) => {
+            let product = contact.damping * contact.speed;
+            let small = 1.0 - 2.0 / 3.0 * product;
+            let off = 100.0 * (small / contact.restitution - 1.0).abs();
+            let off = if off < 10.0 {
+                significant(off, 2)
+            } else {
+                format!("{off:.0}")
+            };
+            let (stiffness, exponent) = (decimal(contact.stiffness), decimal(contact.exponent));
+            let damping = impact.letters.damping;
+            vec![
+                "the contact is by Hunt and Crossley, the force of the swing left out of it:".to_owned(),
+                format!("  d'' = -{stiffness} d^{exponent} (1 + {damping} d')"),
+                format!(
+                    "  G(-{damping} e v) = G({damping} v), G(z) = z - ln(1 + z), {damping} v = {}",
+                    decimal(product)
+                ),
+                format!(
+                    "  e = {}; for small damping 1 - (2/3) {damping} v = {}, {off} % off",
+                    decimal(contact.restitution),
+                    decimal(small)
+                ),
+                format!("  (to 1 % up to {damping} v = {SMALL_DAMPING})"),
+                format!(
+                    "  greatest force {} at the depth {}, energy lost {} per unit of mass",
+                    decimal(contact.peak_force),
+                    decimal(contact.peak_depth),
+                    decimal(contact.energy_lost)
+                ),
+            ]
+        }
+    };
+    lines.into_iter().map(Block::Note).collect()
+}
+
+/// lambda v up to which the first term of the restitution is good to 1 %.
+const SMALL_DAMPING: f64 = 0.15;
+
+/// The table of every law, and the reasons of those that do not apply.
+fn contact_laws(impact: &Impact) -> Vec<Vec<Block<'_>>> {
+    if impact.contact_laws.is_empty() {
+        return vec![];
+    }
+    let heading = format!(
+        "Every law of the contact, at the speed {} of the touch by the energy",
+        decimal(impact.energy_speed)
+    );
+    let refused = impact.contact_laws.iter().filter_map(|row| {
+        let reason = row.outcome.as_ref().err()?;
+        Some((row.law.to_string(), reason.to_string()))
+    });
+    let refused: Vec<_> = refused.collect();
+    let mut sections = vec![vec![
+        Block::Heading(heading),
+        Block::ContactLaws {
+            rows: &impact.contact_laws,
+        },
+    ]];
+    if !refused.is_empty() {
+        sections.push(vec![Block::Entries {
+            heading: "Laws that do not apply",
+            entries: refused,
+        }]);
+    }
+    sections
 }
 
 fn attempted(attempt: &Attempt) -> String {
@@ -253,7 +377,11 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
         Block::Heading("Beside Runge-Kutta on the original equation".to_owned()),
         Block::Quantities {
             columns: columns.clone(),
-            rows: impact.quantities().into(),
+            rows: impact
+                .quantities()
+                .into_iter()
+                .chain(impact.losses().into_iter().flat_map(|(judged, _)| judged))
+                .collect(),
             deviations: impact
                 .columns
                 .iter()
@@ -262,13 +390,25 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
             shapes: impact.columns.iter().map(|column| impact.deviations(column)).collect(),
         },
         Block::Detail(format!(
-            "Runge-Kutta keeps the energy to {drift:e} of the kinetic energy at touch"
+            "Runge-Kutta keeps the energy{} to {drift:e} of the kinetic energy at touch",
+            if impact.setup.loss.is_some() {
+                " of the flights"
+            } else {
+                ""
+            }
         )),
         Block::Verdicts {
             verdicts: columns.iter().copied().zip(impact.verdicts(tolerance)).collect(),
             tolerance,
         },
     ];
+    if impact.setup.loss.is_some() {
+        blocks.push(Block::Detail(format!(
+            "the period ends where the motion turns after the impact, at {} = {}",
+            impact.letters.coordinate,
+            decimal(impact.place_of_turn())
+        )));
+    }
     for (index, &reading) in columns.iter().enumerate() {
         let shortcomings = impact.shortcomings(index, tolerance).into_iter();
         blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming { reading, errors, cause }));
@@ -282,8 +422,13 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         Side::Right => ('+', "x - xc"),
         Side::Left => ('-', "xc - x"),
     };
+    let is_lossy = impact.setup.loss.is_some();
+    let damped = match is_lossy {
+        true => format!(" (1 {sign} {} sqrt(L/g) x')", impact.letters.damping),
+        false => String::new(),
+    };
     let mut blocks = vec![Block::Heading(format!(
-        "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2) H({inside}) = 0"
+        "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2){damped} H({inside}) = 0"
     ))];
     blocks.extend(formulas(impact, si));
     let mut rows: Vec<(Quantity, &str)> = si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
@@ -302,6 +447,10 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         }
     };
     blocks.push(Block::Detail(peak.to_owned()));
+    if is_lossy {
+        let words = "of a damped contact the greatest force comes before that depth, and is larger: it stands above";
+        blocks.push(Block::Note(words.to_owned()));
+    }
     blocks.push(Block::Note(printed(impact, &over_the_printed, tolerance)));
     blocks.extend(si.yield_checks().iter().map(|check| Block::Note(yielding(check))));
     blocks

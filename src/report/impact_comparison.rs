@@ -18,7 +18,12 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'
     let truth = &table.truth;
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&table.equation)],
-        asked(&table.setup, table.letters, [table.equilibrium, table.turning_point]),
+        asked(
+            &table.setup,
+            table.letters,
+            [table.equilibrium, table.turning_point],
+            table.damping,
+        ),
         vec![Block::ImpactMethods {
             rows: &table.rows,
             truth: [

@@ -16,6 +16,7 @@ pub use solution::solution;
 
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
+use crate::impact::contact::ContactRow;
 use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Definition, Solution, Sum};
@@ -176,6 +177,11 @@ pub enum Block<'a> {
         /// The largest deviation of each column in approach, contact and return, each on its own clock: of the flights over the
         /// amplitude, of the contact over the depth.
         shapes: Vec<[f64; 3]>,
+    },
+    /// A table of every law of a contact.
+    ContactLaws {
+        /// A row each.
+        rows: &'a [ContactRow],
     },
     /// A table of methods on one impact.
     ImpactMethods {

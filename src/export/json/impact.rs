@@ -8,8 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
-use crate::impact::contact::SineSeries;
-use crate::impact::{self, Form, Impact, Modulus, PRINTED_CONTACT_TIME, Reading, Rule, Setup, SiImpact, Side};
+use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
+use crate::impact::{
+    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PRINTED_CONTACT_TIME, Reading, Rule, Setup, SiImpact,
+    Side,
+};
 use crate::verify::Verdict;
 
 /// A swing released from rest that hits an elastic barrier: approach, contact and return in closed form, beside Runge-Kutta on the
@@ -39,9 +42,13 @@ pub struct ImpactDocument {
     pub derived_phases: Vec<Phase>,
     /// The numbers of the contact.
     pub contact: Contact,
+    /// What the contact loses; null where it loses nothing.
+    pub contact_damping: Option<ContactDamping>,
+    /// Every law of the contact at the speed of the touch by the energy; null where they are not asked for.
+    pub contact_laws: Option<Vec<ContactLawRow>>,
     /// The time from the release to the touch, in units of time.
     pub time_to_contact: Quantity,
-    /// The time from release to release, in units of time.
+    /// The time from release to release, in units of time; where the contact loses energy, to the turning point after it.
     pub period: Quantity,
     /// What Runge-Kutta says of the phases.
     pub verification: Verification,
@@ -180,6 +187,13 @@ pub struct Parameters {
     pub gamma_source: String,
     /// The order of `law` in the amplitude; null where there is none.
     pub order: Option<u32>,
+    /// The law of the contact in the derived phases.
+    #[schemars(extend("enum" = law_names()))]
+    pub contact_law: String,
+    /// The damping lambda of the contact by Hunt and Crossley, in units of time per radian; null where it loses nothing.
+    pub lambda: Option<f64>,
+    /// The coefficient of restitution that lambda follows from; null where it does not.
+    pub restitution: Option<f64>,
     /// How the line is fitted that replaces the force of the barrier.
     #[schemars(extend("enum" = Rule::ALL.map(Rule::name)))]
     pub linearisation: String,
@@ -318,6 +332,57 @@ pub struct Contact {
     pub duration: Quantity,
 }
 
+/// A number and its error.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Judged {
+    /// The number.
+    pub value: f64,
+    /// value / true value - 1, as a fraction.
+    pub error: f64,
+}
+
+/// A contact that loses energy: its force is gamma F(d) (1 + lambda d').
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ContactDamping {
+    /// The damping, in units of time per radian.
+    pub lambda: f64,
+    /// The speed out over the speed in.
+    pub restitution: Quantity,
+    /// The speed at the end of the contact, in radians per unit of time.
+    pub exit_speed: Quantity,
+    /// The energy lost, per unit of mass, in radians squared per unit of time squared.
+    pub energy_lost: Quantity,
+    /// The greatest force of the derived contact, per unit of mass; null where there are no derived phases.
+    pub peak_force: Option<f64>,
+    /// The restitution 1 - (2/3) lambda v of small damping, good to 1 % where lambda v, with v the speed at the touch, is below 0.15; null
+    /// where there are no derived phases.
+    pub small_damping: Option<Judged>,
+}
+
+/// One law of the contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ContactLawRow {
+    /// Its name, as in a problem file.
+    #[schemars(extend("enum" = ContactLaw::ALL.map(ContactLaw::name)))]
+    pub law: String,
+    /// Whether it applies.
+    pub applies: bool,
+    /// Why it does not, in words; null where it does.
+    pub reason: Option<String>,
+    /// The time from touch to release, in units of time, its error from the exact law; this and the rest is null where the law does not
+    /// apply.
+    pub duration: Option<Judged>,
+    /// The greatest depth, in radians.
+    pub penetration: Option<Judged>,
+    /// The whole force at that depth, per unit of mass, in radians per unit of time squared.
+    pub peak_force: Option<Judged>,
+    /// The largest difference of depth at the same time since the touch, as a fraction of the greatest depth.
+    pub max_deviation: Option<f64>,
+}
+
 /// One number by each closed form and by Runge-Kutta; null for a reading that does not apply.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -423,6 +488,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         column.flat_map(|column| &column.phases.phases).map(Phase::of).collect()
     };
     let [paper, energy, derived] = READINGS.map(judged);
+    let contact_laws = impact.contact_laws.iter().map(ContactLawRow::of);
     let first = paper.as_ref().or(derived.as_ref()).map(|column| column.verdict.clone());
     ImpactDocument {
         schema: Kind::Impact.schema().to_owned(),
@@ -431,6 +497,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             setup,
             [impact.equilibrium, impact.turning_point],
             impact.free_swing.as_ref().map(|law| law.order),
+            impact.damping,
         ),
         law: impact.free_swing.as_ref().map(|law| solution(law, None)),
         frequency: impact.frequency(),
@@ -448,6 +515,8 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             penetration,
             duration,
         },
+        contact_damping: contact_damping(impact),
+        contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
         time_to_contact,
         period,
         verification: Verification {
@@ -524,8 +593,9 @@ fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
 }
 
 impl Parameters {
-    /// The numbers of a setup whose swing has this equilibrium and turns at this point, and the order of `law`.
-    pub(super) fn of(setup: &Setup, [equilibrium, turning_point]: [f64; 2], order: Option<u32>) -> Self {
+    /// The numbers of a setup whose swing has this equilibrium and turns at this point and whose contact has this damping, and the order
+    /// of `law`.
+    pub(super) fn of(setup: &Setup, [equilibrium, turning_point]: [f64; 2], order: Option<u32>, damping: f64) -> Self {
         Self {
             amplitude: (turning_point - equilibrium).abs(),
             release: setup.release,
@@ -546,10 +616,69 @@ impl Parameters {
             gamma: setup.stiffness,
             gamma_source: setup.stiffness_source.clone(),
             order,
+            contact_law: match setup.loss {
+                None => setup.contact_law.name(),
+                Some(_) => HUNT_CROSSLEY,
+            }
+            .to_owned(),
+            lambda: setup.loss.map(|_| damping),
+            restitution: match setup.loss {
+                Some(ContactLoss::Restitution(wanted)) => Some(wanted),
+                Some(ContactLoss::Damping(_)) | None => None,
+            },
             linearisation: setup.rule.name().to_owned(),
             integrator_tolerance: setup.integrator_tolerance,
         }
     }
+}
+
+/// The name of the law of a contact that loses energy.
+const HUNT_CROSSLEY: &str = "hunt-crossley";
+
+fn law_names() -> Vec<&'static str> {
+    let names = ContactLaw::ALL.map(ContactLaw::name);
+    names.into_iter().chain([HUNT_CROSSLEY]).collect()
+}
+
+impl ContactLawRow {
+    fn of(row: &ContactRow) -> Self {
+        let judged = |of: &dyn Fn(&ContactMotion, &ContactErrors) -> [f64; 2]| {
+            let (motion, errors) = row.outcome.as_ref().ok()?;
+            let [value, error] = of(motion, errors);
+            Some(Judged { value, error })
+        };
+        Self {
+            law: row.law.name().to_owned(),
+            applies: row.outcome.is_ok(),
+            reason: row.outcome.as_ref().err().map(ToString::to_string),
+            duration: judged(&|motion, errors| [motion.duration, errors.duration]),
+            penetration: judged(&|motion, errors| [motion.depth, errors.depth]),
+            peak_force: judged(&|motion, errors| [motion.peak_force, errors.peak_force]),
+            max_deviation: row.outcome.as_ref().ok().map(|(_, errors)| errors.motion),
+        }
+    }
+}
+
+fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
+    let ([restitution, exit_speed], energy_lost) = impact.losses()?;
+    let contact = match &impact.contact {
+        Some(DerivedContact::Damped(contact)) => Some(contact),
+        Some(DerivedContact::Elastic(_)) | None => None,
+    };
+    Some(ContactDamping {
+        lambda: impact.damping,
+        restitution: quantity(impact, &restitution),
+        exit_speed: quantity(impact, &exit_speed),
+        energy_lost: quantity(impact, &energy_lost),
+        peak_force: contact.map(|contact| contact.peak_force),
+        small_damping: contact.map(|contact| {
+            let value = 1.0 - 2.0 / 3.0 * contact.damping * contact.speed;
+            Judged {
+                value,
+                error: value / contact.restitution - 1.0,
+            }
+        }),
+    })
 }
 
 const READINGS: [Reading; 3] = [Reading::Paper, Reading::Energy, Reading::Derived];
@@ -668,11 +797,7 @@ impl Phase {
                 None if self.name == PhaseName::Contact => Form::Contact {
                     barrier: self.displacement.centre,
                     inward: 1.0,
-                    depth: SineSeries::new(
-                        self.displacement.duration,
-                        self.displacement.parabola,
-                        self.displacement.harmonics.iter().map(|wave| wave.sin).collect(),
-                    ),
+                    depth: self.displacement.read_depth(),
                 },
                 None => Form::Harmonics {
                     centre: self.displacement.centre,
@@ -686,6 +811,19 @@ impl Phase {
                 },
             },
         }
+    }
+}
+
+impl Displacement {
+    /// The depth in contact that these harmonics are.
+    fn read_depth(&self) -> SineSeries {
+        let sines = |rest: u32| -> Vec<f64> {
+            let those = self.harmonics.iter().filter(|wave| wave.harmonic % 2 == rest);
+            those.map(|wave| wave.sin).collect()
+        };
+        let mut depth = SineSeries::new(self.duration, self.parabola, sines(1));
+        depth.even = sines(0);
+        depth
     }
 }
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::impact::Parameters;
+use super::impact::{Judged, Parameters};
 use crate::impact::{ImpactComparison, ImpactRow, TrueImpact};
 use crate::verify::Verdict;
 
@@ -75,16 +75,6 @@ pub struct Row {
     pub verdict: Option<String>,
 }
 
-/// A number and its error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Judged {
-    /// The number.
-    pub value: f64,
-    /// value / true value - 1, as a fraction.
-    pub error: f64,
-}
-
 /// The document of kind `impact-comparison`.
 ///
 /// ```
@@ -121,7 +111,12 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
     ImpactComparisonDocument {
         schema: Kind::ImpactComparison.schema().to_owned(),
         equation: table.equation.clone(),
-        parameters: Parameters::of(&table.setup, [table.equilibrium, table.turning_point], None),
+        parameters: Parameters::of(
+            &table.setup,
+            [table.equilibrium, table.turning_point],
+            None,
+            table.damping,
+        ),
         runge_kutta: TrueNumbers {
             time_to_contact: touch.t,
             speed: touch.v,

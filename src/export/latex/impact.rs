@@ -3,6 +3,7 @@
 use super::{scientific, scientific_text};
 use crate::decimal::significant;
 use crate::export::latex::{symbol, typed};
+use crate::impact::contact::ContactRow;
 use crate::impact::{FittedLine, Form, ImpactRow, Letters, Phase, Quantity, Reading, Rule, Term};
 
 /// Of what the phases that follow are.
@@ -86,6 +87,25 @@ pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> S
     let rows: String = rows.iter().map(row).collect();
     let places = "r".repeat(1 + columns.len());
     format!("\\begin{{tabular}}{{l{places}}}\n & Runge--Kutta{names} \\\\\n\\hline\n{rows}\\end{{tabular}}\n")
+}
+
+/// A table of laws: the numbers of each and their errors in percent.
+pub(super) fn contact_laws(rows: &[ContactRow]) -> String {
+    let percent = |error: f64| format!("${}$", scientific((1e5 * error).round() / 1e3));
+    let row = |row: &ContactRow| -> Option<String> {
+        let (motion, errors) = row.outcome.as_ref().ok()?;
+        let pairs = [
+            (motion.duration, errors.duration),
+            (motion.depth, errors.depth),
+            (motion.peak_force, errors.peak_force),
+        ];
+        let pairs = pairs.map(|(value, error)| format!(" & ${}$ & {}", scientific(value), percent(error)));
+        let motion = percent(errors.motion);
+        Some(format!("{}{} & {motion} \\\\\n", row.law, pairs.concat()))
+    };
+    let rows: String = rows.iter().filter_map(row).collect();
+    let head = "law & duration & \\% & penetration & \\% & peak force & \\% & motion, \\% \\\\\n\\hline\n";
+    format!("\\begin{{tabular}}{{lrrrrrrr}}\n{head}{rows}\\end{{tabular}}\n")
 }
 
 /// A table of methods: the errors of each in percent.

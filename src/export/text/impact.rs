@@ -3,6 +3,7 @@
 use super::comparison::wrapped;
 use super::percent;
 use crate::decimal::{decimal, significant};
+use crate::impact::contact::{ContactLaw, ContactRow};
 use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
 use crate::verify::Verdict;
 
@@ -68,6 +69,30 @@ pub(super) fn quantities(columns: &[Reading], rows: &[Quantity], deviations: &[f
         lines.push(line(&format!("  {name}"), first(shapes, String::new())));
     }
     lines.join("\n") + "\n"
+}
+
+/// A table of laws: the numbers of each, and below them their errors.
+pub(super) fn contact_laws(rows: &[ContactRow]) -> String {
+    let line = |name: &str, cells: [String; 4]| {
+        let cells: String = cells.iter().map(|cell| format!("{cell:>14}")).collect();
+        format!("  {name:<21}{cells}").trim_end().to_owned() + "\n"
+    };
+    let head = ["duration", "penetration", "peak force", "motion"];
+    let mut text = line("", head.map(str::to_owned));
+    for row in rows {
+        let Ok((motion, errors)) = &row.outcome else { continue };
+        let numbers = [motion.duration, motion.depth, motion.peak_force].map(decimal);
+        let [duration, depth, force] = numbers;
+        text += &line(row.law.name(), [duration, depth, force, String::new()]);
+        if row.law != ContactLaw::Exact {
+            let errors_of = [errors.duration, errors.depth, errors.peak_force].map(percent);
+            let [duration, depth, force] = errors_of;
+            let motion = format!("{} %", significant(100.0 * errors.motion, 3));
+            text += &line("", [duration, depth, force, motion]);
+        }
+    }
+    text + "  below each law its errors against the exact one; motion: the largest difference of\n"
+        + "  depth at the same time, of the greatest depth; forces are per unit of mass\n"
 }
 
 /// A table of methods: the errors of each in percent, the numbers of the true motion above them.

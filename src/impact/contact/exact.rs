@@ -43,6 +43,9 @@ use crate::numeric::ode::root::find_root;
 /// A harmonic beyond it is worth a parabola of its own.
 const MOST_HARMONICS: usize = 64;
 
+/// Parts of equal time in which a motion is sampled for its sines.
+const PARTS: usize = 512;
+
 /// A contact under any force of the depth. Made by [`ExactContact::new`], so that all fields belong together.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -150,6 +153,7 @@ impl ExactContact {
             duration,
             parabola: 0.5 * self.force_at_touch,
             harmonics: vec![],
+            even: vec![],
             deviation: f64::INFINITY,
         };
         // Half the contact is enough, and its middle is where the sines add up to the most.
@@ -208,7 +212,8 @@ impl ExactContact {
     }
 }
 
-/// The motion of a contact in elementary functions: d(s) = parabola s (T - s) + sum_(k odd) b_k sin(k pi s/T).
+/// The motion of a contact in elementary functions: d(s) = parabola s (T - s) + sum_k b_k sin(k pi s/T), of odd k alone where the way
+/// out mirrors the way in.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SineSeries {
@@ -218,6 +223,8 @@ pub struct SineSeries {
     pub parabola: f64,
     /// b_1, b_3, b_5, .., in the unit of x.
     pub harmonics: Vec<f64>,
+    /// b_2, b_4, b_6, .., in the unit of x; empty where nothing is lost.
+    pub even: Vec<f64>,
     /// The largest difference from the motion that it was made of, relative to D.
     pub deviation: f64,
 }
@@ -229,8 +236,67 @@ impl SineSeries {
             duration,
             parabola,
             harmonics,
+            even: vec![],
             deviation: 0.0,
         }
+    }
+
+    /// The series of a motion from touch to release, given at any time and as deep as `depth`: as many sines as stay within `tolerance`
+    /// of that, at most 64 odd and 64 even ones.
+    ///
+    /// `parabola` is half of what bends the motion back at touch and at release; without it the sines go on for longer. What is left is
+    /// in [`SineSeries::deviation`].
+    ///
+    /// ```
+    /// use lindstedt::impact::contact::{HuntCrossley, SineSeries};
+    ///
+    /// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;
+    /// let series = SineSeries::of(|s| contact.position(s), contact.duration, 0.0, contact.depth, 1e-6);
+    /// assert!(series.deviation <= 1e-6 && (series.at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
+    /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
+    /// ```
+    pub fn of(position: impl Fn(f64) -> f64, duration: f64, parabola: f64, depth: f64, tolerance: f64) -> Self {
+        let mut series = Self {
+            deviation: f64::INFINITY,
+            ..Self::new(duration, parabola, vec![])
+        };
+        let sine = |number: usize, part: usize| (PI * ((number * part) % (2 * PARTS)) as f64 / PARTS as f64).sin();
+        let mut left: Vec<f64> = (1..PARTS)
+            .map(|part| {
+                let time = duration * part as f64 / PARTS as f64;
+                position(time) - parabola * time * (duration - time)
+            })
+            .collect();
+        let is_mirrored = (1..PARTS / 2).all(|part| (left[part - 1] - left[PARTS - part - 1]).abs() <= 1e-9 * depth);
+        for number in 1..=2 * MOST_HARMONICS {
+            if number % 2 == 0 && is_mirrored {
+                continue;
+            }
+            // The trapezium is exact but for harmonics beyond twice the number of parts.
+            let sum: f64 = (1..PARTS).map(|part| left[part - 1] * sine(number, part)).sum();
+            let coefficient = 2.0 / PARTS as f64 * sum;
+            for part in 1..PARTS {
+                left[part - 1] -= coefficient * sine(number, part);
+            }
+            match number % 2 {
+                0 => series.even.push(coefficient),
+                _ => series.harmonics.push(coefficient),
+            }
+            series.deviation = left.iter().fold(0.0, |worst: f64, rest| worst.max(rest.abs())) / depth;
+            if series.deviation <= tolerance {
+                break;
+            }
+        }
+        series
+    }
+
+    /// Number k and b_k of every sine, in the order of k.
+    pub fn sines(&self) -> Vec<(u32, f64)> {
+        let odd = (1..).step_by(2).zip(self.harmonics.iter().copied());
+        let even = (2..).step_by(2).zip(self.even.iter().copied());
+        let mut sines: Vec<(u32, f64)> = odd.chain(even).collect();
+        sines.sort_by_key(|(number, _)| *number);
+        sines
     }
 
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
@@ -238,14 +304,17 @@ impl SineSeries {
         let time = within(time, self.duration);
         let mut depth = self.parabola * time * (self.duration - time);
         let mut velocity = self.parabola * (self.duration - 2.0 * time);
-        // exp(i k phi) for the odd k, one turn by 2 phi after the other: one sine and cosine for all.
+        // exp(i k phi) of the odd k, and of the even ones, one turn by 2 phi after the other: one sine and cosine for all.
         let first = PI / self.duration;
-        let mut wave = Complex64::cis(first * time);
+        let wave = Complex64::cis(first * time);
         let turn = wave * wave;
-        for (number, coefficient) in self.harmonics.iter().enumerate() {
-            depth += coefficient * wave.im;
-            velocity += coefficient * (2 * number + 1) as f64 * first * wave.re;
-            wave *= turn;
+        let of_number = [(1, wave, &self.harmonics), (2, turn, &self.even)];
+        for (lowest, mut wave, coefficients) in of_number {
+            for (number, coefficient) in coefficients.iter().enumerate() {
+                depth += coefficient * wave.im;
+                velocity += coefficient * (2 * number + lowest) as f64 * first * wave.re;
+                wave *= turn;
+            }
         }
         (depth, velocity)
     }
@@ -265,8 +334,8 @@ impl SineSeries {
             let duration = significant(self.duration, digits);
             terms.push((self.parabola, format!("s ({duration} - s)")));
         }
-        for (number, &coefficient) in self.harmonics.iter().enumerate() {
-            let wave = (2 * number + 1) as f64 * PI / self.duration;
+        for (number, coefficient) in self.sines() {
+            let wave = f64::from(number) * PI / self.duration;
             terms.push((coefficient, format!("sin({} s)", significant(wave, digits))));
         }
         let mut text = "d(s) =".to_owned();

@@ -142,7 +142,7 @@ pub struct Touch<'a> {
     pub slope: f64,
     /// F(d), the force of the contact per unit of gamma.
     pub elastic_force: &'a dyn Fn(f64) -> f64,
-    /// n, where F(d) = d^n: without it the laws of a power have nothing to say.
+    /// n, where F(d) is d^n but for a factor: without it the laws of a power have nothing to say.
     pub exponent: Option<f64>,
 }
 
@@ -186,7 +186,6 @@ impl Touch<'_> {
         positive("speed of contact", self.speed)?;
         positive("stiffness gamma", self.stiffness)?;
         finite("position of the barrier", self.barrier)?;
-        finite("slope of the force", self.slope)?;
         finite("force at touch", (self.restoring_force)(self.barrier))?;
         let form = match law {
             ContactLaw::Line(rule) => Form::Line(self.line(rule)?),
@@ -220,7 +219,7 @@ impl Touch<'_> {
 
     fn power_law(&self) -> Result<PowerLaw, ContactError> {
         let exponent = self.exponent.ok_or(ContactError::NoPowerLaw)?;
-        PowerLaw::new(exponent, self.stiffness, self.speed)
+        PowerLaw::new(exponent, self.stiffness * (self.elastic_force)(1.0), self.speed)
     }
 
     /// The line of the rule over the depth that the elastic force alone allows, and what it drives.
@@ -228,7 +227,7 @@ impl Touch<'_> {
         let energy = 0.5 * self.speed * self.speed / self.stiffness;
         let deepest = linearisation::greatest_depth(self.elastic_force, energy)?;
         let line = linearisation::fit(rule, self.elastic_force, deepest)?;
-        let square = self.slope + self.stiffness * line.slope;
+        let square = finite("slope of the force", self.slope)? + self.stiffness * line.slope;
         let frequency = positive("slope of the fitted force", square)?.sqrt();
         let at_touch = (self.restoring_force)(self.barrier) + self.stiffness * line.at_touch;
         Ok(HalfTurn {
@@ -428,6 +427,15 @@ enum Form {
 }
 
 impl ContactMotion {
+    /// n of a law of the power d^n; nothing for the others.
+    pub fn exponent(&self) -> Option<f64> {
+        match &self.form {
+            Form::PowerLaw(contact) => Some(contact.exponent),
+            Form::Corrected(contact) => Some(contact.contact.exponent),
+            Form::Line(_) | Form::Sines(_) | Form::Exact(_) => None,
+        }
+    }
+
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     pub fn at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
@@ -448,6 +456,34 @@ impl ContactMotion {
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
         self.at(time).1
+    }
+
+    /// The same motion as a parabola and sines within `tolerance` of D, as far as 64 of them do: elementary functions, whatever the law.
+    ///
+    /// ```
+    /// use lindstedt::impact::contact::{ContactLaw, Touch};
+    ///
+    /// let contact = Touch::default().by(ContactLaw::PowerLaw)?;
+    /// let series = contact.sine_series(1e-6);
+    /// let time = 0.3 * contact.duration;
+    /// assert!((series.at(time).0 - contact.position(time)).abs() <= 1e-6 * contact.depth);
+    /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
+    /// ```
+    pub fn sine_series(&self, tolerance: f64) -> SineSeries {
+        let parabola = match &self.form {
+            Form::Sines(sines) => return sines.clone(),
+            Form::Exact(contact) => return contact.sine_series(tolerance),
+            Form::Line(line) => 0.5 * line.centre * line.frequency * line.frequency,
+            Form::Corrected(contact) => 0.5 * contact.preload,
+            Form::PowerLaw(_) => 0.0,
+        };
+        SineSeries::of(
+            |time| self.position(time),
+            self.duration,
+            parabola,
+            self.depth,
+            tolerance,
+        )
     }
 
     /// The formula as people write it, so many significant digits: s is the time since touch. The exact motion is written as sines

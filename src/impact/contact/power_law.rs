@@ -275,6 +275,31 @@ fn greatest_depth(exponent: f64, stiffness: f64, speed: f64) -> f64 {
     (0.5 * (exponent + 1.0)).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse)
 }
 
+/// n, where this force is d^n but for a factor, as far as doubles tell at depths from 1e-9 to 4; else nothing.
+///
+/// ```
+/// use lindstedt::impact::contact::power_law::exponent_of;
+///
+/// assert_eq!(exponent_of(|d| 3e6 * d * d), Some(2.0));
+/// assert_eq!(exponent_of(|d| d + d.powi(3)), None);
+/// ```
+pub fn exponent_of(force: impl Fn(f64) -> f64) -> Option<f64> {
+    let unit = force(1.0);
+    let slope = (force(4.0) / unit).log2() / 2.0;
+    // Exponents are written with few digits; the logarithm has all but the last.
+    let written = (slope * 1e6).round() / 1e6;
+    let exponent = if (slope - written).abs() < 1e-13 * written {
+        written
+    } else {
+        slope
+    };
+    let is_power = |power: i32| {
+        let depth = 2.0_f64.powi(power);
+        (force(depth) / unit / depth.powf(exponent) - 1.0).abs() < 1e-11
+    };
+    (unit > 0.0 && exponent.is_finite() && (-30..=2).step_by(4).all(is_power)).then_some(exponent)
+}
+
 /// The number T v/D of the power law, (2/m) B(1/m, 1/2): 2.9432751843247 for Hertz, pi for a spring, 4 for a constant force.
 pub fn duration_factor(exponent: f64) -> f64 {
     let inverse = 1.0 / (exponent + 1.0);

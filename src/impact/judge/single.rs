@@ -1,6 +1,7 @@
 //! The true motion of an impact, and how far the closed form is from it.
 //!
-//! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at rest from x = -A.
+//! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at rest from x = -A; with contact
+//! damping gamma F (1 + lambda x') stands for gamma F, as long as that pushes.
 //! Out: [`TrueImpact`]: speed, depth, duration and period measured on the Runge-Kutta path, the path, the drift of
 //! its energy
 //!
@@ -8,8 +9,8 @@
 //! x'^2/2 + V(x) + gamma int_0^depth F,      V' = f
 //! ```
 //!
-//! Flight and contact are separate runs joined at the located touch; the flight back mirrors the approach. Nothing of the
-//! closed form enters: no frequency law, no line.
+//! Flight and contact are separate runs joined at the located touch; the flight back mirrors the approach where nothing is lost, and
+//! is a run of its own where the contact is damped; then the energy of the flights alone is watched. Nothing of the closed form enters: no frequency law, no line.
 
 use thiserror::Error;
 
@@ -33,13 +34,16 @@ pub struct TrueImpact {
     pub penetration: f64,
     /// Duration of the contact.
     pub duration: f64,
-    /// Time from the release to the turning point after the impact: the period.
+    /// Time from the release to the turning point after the impact: the period, where nothing is lost.
     pub period: f64,
     /// The path from the release to the touch, counted from the release; run backwards it is that from the exit to the return.
     pub approach: Trajectory,
     /// The path in contact: depth and speed against the time since the touch.
     pub contact: Trajectory,
-    /// Largest change of the energy along the path, as a part of the kinetic energy at touch: how good the path is.
+    /// The path from the exit to the turning point after it, place against the barrier and speed out of it against the time since the
+    /// exit; nothing where it is the approach run backwards.
+    pub back: Option<Trajectory>,
+    /// Largest change of the energy along the path, in flight alone where the contact is damped, as a part of the kinetic energy at touch: how good the path is.
     pub energy_drift: f64,
 }
 
@@ -94,9 +98,9 @@ fn way_forward(reason: &StopReason) -> String {
     }
 }
 
-/// Follows the motion from its release until the barrier lets it go again, with the same speed: nothing is lost. The flight
+/// Follows the motion from its release until the barrier lets it go again. Without damping it leaves with the same speed: the flight
 /// back is the approach run backwards, so the period has as many digits as the approach, also where the release is near the
-/// top of the swing and forgets its energy.
+/// top of the swing and forgets its energy. A damped contact is followed by a flight of its own to where it turns.
 ///
 /// The contact is counted from the touch, in depth and in time, so a hard barrier costs no digits. No step may err by more
 /// than the relative tolerance at the amplitude or at the depth, however large the absolute one is.
@@ -114,6 +118,7 @@ fn way_forward(reason: &StopReason) -> String {
 ///     stiffness: 1e6,
 ///     restoring_force: &f64::sin,
 ///     elastic_force: &elastic_force,
+///     damping: 0.0,
 /// };
 /// let truth = true_impact(&pendulum, &Options::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
@@ -127,13 +132,15 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
         stiffness,
         restoring_force,
         elastic_force,
+        damping,
     } = collision;
     if barrier <= release {
         return Err(CollisionError::ReleasedBehindBarrier { release, barrier }.into());
     }
     let scale = release.abs();
     let swing = |_: f64, x: f64, _: f64| -restoring_force(x);
-    let press = |depth: f64, _: f64| stiffness * elastic_force(depth.max(0.0));
+    let press =
+        |depth: f64, inwards: f64| stiffness * elastic_force(depth.max(0.0)) * (1.0 + damping * inwards).max(0.0);
     let approach = approach(swing, [release, barrier], &at_scale(options, scale))?;
     let touch = ode::State {
         x: barrier,
@@ -174,8 +181,19 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
         x: inside.x(state.x),
         v: state.v,
     };
-    let stored = |depth: f64| Ok(stiffness * work(elastic_force, depth)?);
-    let energy_drift = energy_drift([release, barrier], [&approach, &contact], restoring_force, stored)?;
+    let back = match damping > 0.0 {
+        true => Some(way_back(swing, barrier, exit, &at_scale(options, scale))?),
+        false => None,
+    };
+    // Counted from the barrier: the energy at release is the kinetic energy at touch.
+    let potential = |to: f64| integrate_smooth(restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral);
+    let released = potential(release)?;
+    let drift = largest_change(&approach, released, |gone| potential(release + gone))?.max(match &back {
+        None => largest_change(&contact, released, |depth| {
+            Ok(potential(barrier + depth)? + stiffness * work(elastic_force, depth)?)
+        })?,
+        Some(back) => largest_change(back, 0.5 * exit.v * exit.v, |gone| potential(barrier - gone))?,
+    });
     Ok(TrueImpact {
         touch,
         deepest: seen(deepest),
@@ -185,10 +203,11 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
         },
         penetration: deepest.x,
         duration: exit.t,
-        period: 2.0 * touch.t + exit.t,
+        period: touch.t + exit.t + back.as_ref().map_or(touch.t, |back| back.end().t),
         approach,
         contact,
-        energy_drift,
+        back,
+        energy_drift: drift / released.abs(),
     })
 }
 
@@ -233,26 +252,41 @@ fn approach(
     }
 }
 
-/// Largest change of the energy along approach and contact, as a part of the kinetic energy at touch; `stored` is what the
-/// barrier holds at a depth.
-fn energy_drift(
-    [release, barrier]: [f64; 2],
-    [approach, contact]: [&Trajectory; 2],
-    restoring_force: impl Fn(f64) -> f64,
-    stored: impl Fn(f64) -> Result<f64, QuadratureError>,
+/// The flight from the exit to where it turns, counted from the barrier outwards.
+fn way_back(
+    swing: impl Fn(f64, f64, f64) -> f64,
+    barrier: f64,
+    exit: ode::State,
+    options: &ode::Options,
+) -> Result<Trajectory, TrueImpactError> {
+    let outwards = Coordinate {
+        sign: -1.0,
+        origin: barrier,
+    };
+    let start = ode::State {
+        t: 0.0,
+        x: 0.0,
+        v: -exit.v,
+    };
+    let events = [Event::stop(|_: f64, _: f64, v: f64| v).falling()];
+    let back = integrate(outwards.flight(swing), start, LONGEST_TIME, &events, options)?;
+    match back.stop_reason() {
+        StopReason::Event { .. } => Ok(back),
+        reason => Err(TrueImpactError::Stopped(reason)),
+    }
+}
+
+/// Largest difference from this energy along a path; `held` is what is not kinetic at a place.
+fn largest_change(
+    path: &Trajectory,
+    energy: f64,
+    held: impl Fn(f64) -> Result<f64, QuadratureError>,
 ) -> Result<f64, QuadratureError> {
-    let potential = |to: f64| integrate_smooth(&restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral);
-    // Counted from the barrier: the energy at release is the kinetic energy at touch.
-    let released = potential(release)?;
-    let mut drift = 0.0_f64;
-    for knot in approach.knots() {
-        drift = drift.max((0.5 * knot.v * knot.v + potential(release + knot.x)? - released).abs());
+    let mut change = 0.0_f64;
+    for knot in path.knots() {
+        change = change.max((0.5 * knot.v * knot.v + held(knot.x)? - energy).abs());
     }
-    for knot in contact.knots() {
-        let stored = stored(knot.x)?;
-        drift = drift.max((0.5 * knot.v * knot.v + potential(barrier + knot.x)? + stored - released).abs());
-    }
-    Ok(drift / released.abs())
+    Ok(change)
 }
 
 /// A time no impact of interest takes; the number of steps is the real limit.
@@ -281,6 +315,7 @@ const TIGHTEST: f64 = 1e-14;
 ///     stiffness: 1e6,
 ///     restoring_force: &f64::sin,
 ///     elastic_force: &elastic_force,
+///     damping: 0.0,
 /// };
 /// let truth = assured_impact(&pendulum, &Options::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
@@ -318,9 +353,15 @@ pub fn assured_impact(collision: &Collision, options: &ode::Options) -> Result<T
 }
 
 impl TrueImpact {
-    /// Time to contact, speed, penetration, duration, period.
-    fn quantities(&self) -> [f64; 5] {
-        [self.touch.t, self.touch.v, self.penetration, self.duration, self.period]
+    /// Time to contact, speed, penetration, duration, period, speed out.
+    fn quantities(&self) -> [f64; 6] {
+        let Self { touch, exit, .. } = self;
+        [touch.t, touch.v, self.penetration, self.duration, self.period, exit.v]
+    }
+
+    /// Speed out over speed in: 1 where nothing is lost.
+    pub fn restitution(&self) -> f64 {
+        -self.exit.v / self.touch.v
     }
 
     /// Displacement and velocity at a time between release and return, whose ends stand for all before and after.
@@ -333,6 +374,11 @@ impl TrueImpact {
         if t < self.exit.t {
             let (depth, v) = self.contact.at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
             return (barrier + depth, v);
+        }
+        if let Some(back) = &self.back {
+            let end = back.end();
+            let (gone, v) = back.at(t - self.exit.t).unwrap_or((end.x, end.v));
+            return (barrier - gone, -v);
         }
         let (x, v) = self.flight(self.period - t);
         (x, -v)
@@ -427,6 +473,7 @@ mod tests {
             stiffness,
             restoring_force: &FORCE,
             elastic_force: &elastic_force,
+            damping: 0.0,
         }
     }
 

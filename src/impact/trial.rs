@@ -103,10 +103,11 @@ pub(super) struct Derived {
 type Rung = (Option<u32>, Option<(u32, u32)>);
 
 /// The highest order of a method that is tried where none is asked for: expansions and balances go on for long, the others become
-/// slow.
+/// slow, and a third pass of iteration perturbation may take minutes.
 fn highest_order(method: Method) -> u32 {
     match method {
         Method::LindstedtPoincare | Method::HarmonicBalance => 16,
+        Method::IterationPerturbation => 2,
         _ => 4,
     }
 }

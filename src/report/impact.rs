@@ -526,6 +526,7 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
         value("T", Some("sqrt(L/g)"), units.time(), "s", "the unit of time"),
         value("V", Some("sqrt(g*L)"), units.speed(), "m/s", "the unit of speed"),
         value("gamma", of_gamma, impact.setup.stiffness, "", source),
+        value("beta", Some("(Ae/L)*(Omega/omega)^2"), 0.0, "", "the pivot is at rest"),
     ]);
     blocks
 }

@@ -124,11 +124,17 @@ impl Well {
     }
 }
 
-/// The potential above the bottom of the well at a distance; `None` where it is infinite.
+/// A force with more pieces on the way than this, such as a tangent over a million poles, is not followed through them.
+const MOST_PIECES: usize = 256;
+
+/// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond too many pieces.
 fn rise(force: &Force, to: f64) -> Option<f64> {
     let mut knots = vec![to.min(0.0)];
     knots.extend(force.cuts(0.0, to));
     knots.push(to.max(0.0));
+    if knots.len() > MOST_PIECES {
+        return None;
+    }
     let mut sum = 0.0;
     for pair in knots.windows(2) {
         sum += match integrate_smooth(|y| force.at(y), pair[0], pair[1], 1e-10) {

@@ -397,10 +397,11 @@ impl TrueImpact {
 /// The deviation of the closed form from the true motion.
 ///
 /// ```
-/// use lindstedt::impact::{Setup, deviation, solve};
+/// use lindstedt::impact::{Reading, Setup, deviation, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert_eq!(deviation(&impact.energy, &impact.truth), impact.energy_deviation);
+/// let derived = impact.column(Reading::Derived).ok_or("none")?;
+/// assert_eq!(deviation(&derived.phases, &impact.truth), derived.deviation);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {

@@ -365,6 +365,7 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "left",
         "right",
         "omega",
+        "Omega",
         "theta",
         "varepsilon",
         "gamma",

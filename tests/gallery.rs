@@ -352,7 +352,7 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 54] = [
+    const COMMANDS: [&str; 55] = [
         "int",
         "Rightarrow",
         "hbar",

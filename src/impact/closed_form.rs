@@ -15,8 +15,9 @@
 use super::collision::losses;
 use super::contact::{ContactLaw, ContactRow};
 use super::derived::{DerivedContact, Flight};
+use super::form::Form;
 use super::judge::{Deviation, TrueImpact};
-use super::phases::{ContactSpeed, Form, PhasesError, Swing, ThreePhases, three_phases};
+use super::phases::{ContactSpeed, PhasesError, Swing, ThreePhases, three_phases};
 use super::setup::{Letters, Setup, SetupError};
 use super::trial::{Attempt, ImpactError, Trial};
 use crate::method::{self, is_odd};
@@ -114,7 +115,9 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         let (free_swing, paper, no_paper) = match paper(trial) {
             Ok((law, phases)) => (Some(law), phases, None),
             Err(error) => {
-                if derived.is_none() && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_)) {
+                // Where the same method was asked for both, its reason is the whole reason.
+                let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
+                if derived.is_none() && alone && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_)) {
                     return Err(error);
                 }
                 (None, vec![], Some(error.to_string()))

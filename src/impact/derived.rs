@@ -20,7 +20,8 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::contact::{ContactError, ContactMotion, HuntCrossley, SineSeries};
-use super::phases::{Form, Phase, ThreePhases};
+use super::form::Form;
+use super::phases::{Phase, ThreePhases};
 use super::setup::Equations;
 use crate::exact::{Doubles, from_f64};
 use crate::expr::{Equation, Expr, ExprError};

@@ -12,6 +12,7 @@
 //! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
 //! - [`contact`]: the contact by other laws, the exact one among them, side by side.
 //! - `collision`: a [`Collision`], the question: two forces, a release and a barrier; the speed at the touch.
+//! - `form`: a [`Form`], the function of time that a phase is.
 //! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
 //! - `parameter`: the numbers that a study may vary, by name, group and unit.
 //! - `model`: the forces of equation (7) and what its parameters may be.
@@ -58,6 +59,7 @@ mod collision;
 mod compare;
 pub mod contact;
 mod derived;
+mod form;
 pub mod hertz;
 mod judge;
 mod linearisation;
@@ -80,11 +82,12 @@ pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcom
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight, NoFlight};
+pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use parameter::{Parameter, UnknownParameter};
-pub use phases::{ContactSpeed, FittedLine, Form, Phase, PhasesError, Swing, Term, ThreePhases, three_phases};
+pub use phases::{ContactSpeed, FittedLine, Phase, PhasesError, Swing, ThreePhases, three_phases};
 pub use setup::{ContactLoss, Letters, Setup, SetupError};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, simulate, simulate_many};

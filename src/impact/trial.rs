@@ -71,7 +71,9 @@ fn attempts(tried: &[Attempt]) -> String {
         let reason = attempt.error.as_ref().err()?;
         Some(format!("{}: {reason}", attempt.method.title()))
     };
-    tried.iter().filter_map(reason).collect::<Vec<_>>().join("; ")
+    let mut reasons: Vec<String> = tried.iter().filter_map(reason).collect();
+    reasons.dedup();
+    reasons.join("; ")
 }
 
 /// The question of an impact with its true motion.

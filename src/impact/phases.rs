@@ -28,6 +28,7 @@ use num_complex::Complex64;
 use thiserror::Error;
 
 use super::collision::{Collision, CollisionError};
+use super::contact::line::LineContact;
 use super::form::{Form, Term};
 use super::linearisation::{self, Line, LinearisationError, Rule};
 use crate::decimal::significant;
@@ -190,18 +191,20 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     };
     let fitted_depth = linearisation::greatest_depth(swing.elastic_force, 0.5 * speed * speed / stiffness)?;
     let line = linearisation::fit(swing.rule, swing.elastic_force, fitted_depth)?;
-    let contact = LinearContact::new(line, stiffness, barrier, speed, linear_stiffness)
-        .ok_or(PhasesError::LinearStiffness(linear_stiffness))?;
+    // In equation (15) the swing pulls with k x.
+    let beside = [linear_stiffness * barrier, linear_stiffness];
+    let contact =
+        LineContact::new(line, stiffness, beside, speed).ok_or(PhasesError::LinearStiffness(linear_stiffness))?;
 
     let phase = (barrier / amplitude).acos();
     // acos(-x_c/A) = pi - acos(x_c/A): time of approach and of return.
     let flight = (PI - phase) / frequency;
     let touch = flight;
-    let exit = touch + contact.duration;
+    let exit = touch + contact.duration();
     let end = exit + flight;
     let oscillation = Form::Oscillation {
-        centre: contact.centre,
-        amplitude: contact.amplitude,
+        centre: barrier - contact.centre,
+        amplitude: Complex64::new(contact.centre, -speed / contact.frequency),
         frequency: contact.frequency,
     };
     Ok(ThreePhases {
@@ -238,8 +241,8 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
         ],
         speed,
         exit_speed: speed,
-        penetration: contact.penetration,
-        duration: contact.duration,
+        penetration: contact.depth(),
+        duration: contact.duration(),
         period: end,
         velocity_jump: speed - swing_speed,
         fitted: Some(FittedLine {
@@ -270,45 +273,6 @@ fn check(swing: &Swing) -> Result<(), PhasesError> {
         return Err(PhasesError::LinearStiffness(linear_stiffness));
     }
     Ok(())
-}
-
-/// Equation (15) solved: x'' + k x + gamma (p x - q) = 0 from x = x_c with speed v until x = x_c again.
-#[derive(Debug, Clone, Copy)]
-struct LinearContact {
-    centre: f64,
-    amplitude: Complex64,
-    frequency: f64,
-    duration: f64,
-    penetration: f64,
-}
-
-impl LinearContact {
-    /// `None` where the linear equation does not oscillate.
-    fn new(line: Line, stiffness: f64, barrier: f64, speed: f64, linear_stiffness: f64) -> Option<Self> {
-        let frequency_squared = linear_stiffness + stiffness * line.slope;
-        if !(frequency_squared.is_finite() && frequency_squared > 0.0) {
-            return None;
-        }
-        let frequency = frequency_squared.sqrt();
-        // x_c - centre = (k x_c + gamma F(touch))/kappa^2, without the cancellation of x_c - gamma q/kappa^2.
-        let offset = (linear_stiffness * barrier + stiffness * line.at_touch) / frequency_squared;
-        let amplitude = Complex64::new(offset, -speed / frequency);
-        // x - centre = |Z| cos(kappa s - chi) with chi = atan2(v/kappa, offset): x_c at s = 0 and at kappa s = 2 chi.
-        let duration = 2.0 * (-amplitude.arg()) / frequency;
-        // |Z| + centre - x_c = |Z| - offset, again without cancellation.
-        let penetration = if offset > 0.0 {
-            amplitude.im * amplitude.im / (amplitude.norm() + offset)
-        } else {
-            amplitude.norm() - offset
-        };
-        Some(Self {
-            centre: barrier - offset,
-            amplitude,
-            frequency,
-            duration,
-            penetration,
-        })
-    }
 }
 
 impl Swing<'_> {
@@ -595,10 +559,10 @@ mod tests {
         for (rule, duration_error, depth_error) in table {
             let depth = crate::impact::hertz::penetration(1e6, speed).unwrap();
             let line = linearisation::fit(rule, elastic_force, depth).unwrap();
-            let contact = LinearContact::new(line, 1e6, 0.3, speed, 0.0).unwrap();
+            let contact = LineContact::new(line, 1e6, [0.0; 2], speed).unwrap();
             let duration = crate::impact::hertz::duration(1e6, speed).unwrap();
-            near(100.0 * (contact.duration / duration - 1.0), duration_error, 0.06);
-            near(100.0 * (contact.penetration / depth - 1.0), depth_error, 0.06);
+            near(100.0 * (contact.duration() / duration - 1.0), duration_error, 0.06);
+            near(100.0 * (contact.depth() / depth - 1.0), depth_error, 0.06);
         }
     }
 

@@ -1,39 +1,25 @@
 //! Every law of a contact, by name, in one table: lines, perturbation, balances, power law, exact.
 //!
 //! In: a [`Touch`], the forces as closures and the speed. Out: by a [`ContactLaw`] a [`ContactMotion`], by all of them a
-//! [`comparison`] with the exact one. On the half oscillation d(0) = d(T) = 0, phi = pi s/T = Omega s, with the sine coefficients
-//! s_k(A) = (2/pi) int_0^pi g(A sin phi) sin k phi dphi of the whole force g(d) = f(x_c + d) + gamma F(d):
+//! [`comparison`] with the exact one. How each is computed stands in files of their own: the fitted lines in `line`, homotopy,
+//! iteration and the balances in `half_oscillation`, the power law and the exact contact in theirs.
 //!
-//! ```text
-//! fitted lines        d'' + a + k d + gamma (F_0 + p d) = 0,  F ~ F_0 + p d by the rule over the depth that gamma F alone allows
-//! homotopy            Omega^2 = s_1/A,  d = A sin phi,  v = Omega A
-//! iteration           Omega^2 = s_1/A,  d = A sin phi + X/Omega^2,   X = sum_(k = 3, 5 ..) s_k (sin k phi - sigma_k sin phi)/(k^2 - 1),
-//!                                       v = d'(0), D = A             sigma_k = sin(k pi/2)
-//! homotopy-2          Omega^4 - (s_1/A) Omega^2 - Q = 0, d as before, Q = (1/A) [first coefficient of (g'(A sin phi) - s_1/A) X]
-//! harmonic-balance-N  k^2 Omega^2 b_k = (2/pi) int_0^pi g(d) sin k phi dphi, k = 1, 3 .. 2 N - 1,  d = sum b_k sin k phi,  v = d'(0)
-//! power-law, power-law-corrected, exact       files of their own
-//! ```
-//!
-//! (J.-H. He, *Comput. Methods Appl. Mech. Eng.* 178 (1999) 257, *J. Vib. Control* 7 (2001) 631; A. H. Nayfeh and D. T. Mook,
-//! *Nonlinear Oscillations*, 1979, section 2.3.4, for the balance.) `homotopy` of the first order, the first order of parameter expansion
-//! and of homotopy analysis, the variational and the Hamiltonian approach and the balance of one harmonic are one number here;
-//! `iteration` has the same Omega by A, but takes A from the speed of its own motion. `harmonic-balance` is the line of that name, over
-//! Hertz's depth. For the power law all errors are numbers that depend on n alone: those of the least-squares line of equation (15) are
-//! +1.6 % in T and 0 in D.
+//! `homotopy` of the first order, the first order of parameter expansion and of homotopy analysis, the variational and the
+//! Hamiltonian approach and the balance of one harmonic are one number here; `iteration` has the same Omega by A, but takes A from
+//! the speed of its own motion. `harmonic-balance` is the line of that name, over Hertz's depth. For the power law all errors are
+//! numbers that depend on n alone: those of the least-squares line of equation (15) are +1.6 % in T and 0 in D.
 
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 use std::str::FromStr;
 
-use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::super::hertz::{self, DEFAULT_STIFFNESS, positive};
 use super::super::linearisation::{self, Rule};
+use super::half_oscillation::{HalfOscillation, Order};
+use super::line::LineContact;
 use super::{ContactError, CorrectedPowerLaw, ExactContact, PowerLaw, SineSeries, finite, in_range, within};
 use crate::decimal::significant;
-use crate::numeric::ode::quadrature::nodes_and_weights;
-use crate::numeric::ode::root::find_root;
 
 /// How the motion in contact is computed. The names are those of tables and problem files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,13 +173,18 @@ impl Touch<'_> {
         positive("stiffness gamma", self.stiffness)?;
         finite("position of the barrier", self.barrier)?;
         finite("force at touch", (self.restoring_force)(self.barrier))?;
+        let force = |depth: f64| self.force(depth);
+        let half = HalfOscillation {
+            force: &force,
+            speed: self.speed,
+        };
         let form = match law {
             ContactLaw::Line(rule) => Form::Line(self.line(rule)?),
-            ContactLaw::Homotopy => Form::Sines(self.perturbed(Order::First)?),
-            ContactLaw::Iteration => Form::Sines(self.perturbed(Order::Iterated)?),
-            ContactLaw::SecondHomotopy => Form::Sines(self.perturbed(Order::Second)?),
-            ContactLaw::TwoHarmonics => Form::Sines(self.balanced(2)?),
-            ContactLaw::ThreeHarmonics => Form::Sines(self.balanced(3)?),
+            ContactLaw::Homotopy => Form::Sines(half.perturbed(Order::First)?),
+            ContactLaw::Iteration => Form::Sines(half.perturbed(Order::Iterated)?),
+            ContactLaw::SecondHomotopy => Form::Sines(half.perturbed(Order::Second)?),
+            ContactLaw::TwoHarmonics => Form::Sines(half.balanced(2)?),
+            ContactLaw::ThreeHarmonics => Form::Sines(half.balanced(3)?),
             ContactLaw::PowerLaw => Form::PowerLaw(self.power_law()?),
             ContactLaw::CorrectedPowerLaw => {
                 let preload = (self.restoring_force)(self.barrier);
@@ -223,181 +214,14 @@ impl Touch<'_> {
     }
 
     /// The line of the rule over the depth that the elastic force alone allows, and what it drives.
-    fn line(&self, rule: Rule) -> Result<HalfTurn, ContactError> {
+    fn line(&self, rule: Rule) -> Result<LineContact, ContactError> {
         let energy = 0.5 * self.speed * self.speed / self.stiffness;
         let deepest = linearisation::greatest_depth(self.elastic_force, energy)?;
         let line = linearisation::fit(rule, self.elastic_force, deepest)?;
-        let square = finite("slope of the force", self.slope)? + self.stiffness * line.slope;
-        let frequency = positive("slope of the fitted force", square)?.sqrt();
-        let at_touch = (self.restoring_force)(self.barrier) + self.stiffness * line.at_touch;
-        Ok(HalfTurn {
-            speed: self.speed,
-            frequency,
-            centre: at_touch / square,
-        })
-    }
-
-    /// s_k(A) for k = 1, 3, ..
-    fn sine_coefficients(&self, amplitude: f64) -> [f64; HARMONICS] {
-        let mut coefficients = [0.0; HARMONICS];
-        for (phi, weight) in quarter() {
-            let force = weight * self.force(amplitude * phi.sin());
-            for (number, coefficient) in coefficients.iter_mut().enumerate() {
-                *coefficient += 4.0 / PI * force * ((2 * number + 1) as f64 * phi).sin();
-            }
-        }
-        coefficients
-    }
-
-    /// Omega^2 and the motion by homotopy or iteration, for the amplitude that begins with the speed of touch.
-    fn perturbed(&self, order: Order) -> Result<SineSeries, ContactError> {
-        // The square of d'(0), with the sign that tells on which side of an oscillation the amplitude lies.
-        let squared_speed = |amplitude: f64| {
-            let (square, sines) = self.perturbation(amplitude, order);
-            let slope = sum_of_slopes(&sines);
-            square * slope * slope.abs()
-        };
-        let excess = |root: f64| squared_speed(root * root) / (self.speed * self.speed) - 1.0;
-        let root = rising_root(excess).ok_or(ContactError::NotOscillating)?;
-        let (square, harmonics) = self.perturbation(root * root, order);
-        Ok(SineSeries::new(
-            PI / positive("square of the frequency", square)?.sqrt(),
-            0.0,
-            harmonics,
-        ))
-    }
-
-    fn perturbation(&self, amplitude: f64, order: Order) -> (f64, Vec<f64>) {
-        let coefficients = self.sine_coefficients(amplitude);
-        let first = coefficients[0] / amplitude;
-        if order == Order::First {
-            return (first, vec![amplitude]);
-        }
-        // X by its sine coefficients.
-        let mut correction = [0.0; HARMONICS];
-        for number in 1..HARMONICS {
-            let k = (2 * number + 1) as f64;
-            let part = coefficients[number] / (k * k - 1.0);
-            correction[number] += part;
-            correction[0] -= if number % 2 == 0 { part } else { -part };
-        }
-        let square = match order {
-            Order::Second => {
-                // g' X by the difference of the force along X.
-                let size = correction
-                    .iter()
-                    .fold(f64::MIN_POSITIVE, |size: f64, term| size.max(term.abs()));
-                let step = 1e-4 * amplitude / size;
-                let mut change = 0.0;
-                for (phi, weight) in quarter() {
-                    let along = step * sine_sum(&correction, phi);
-                    let depth = amplitude * phi.sin();
-                    let difference = self.force(depth + along) - self.force(depth - along);
-                    change += 4.0 / PI * weight * difference / (2.0 * step) * phi.sin();
-                }
-                let q = (change - first * correction[0]) / amplitude;
-                0.5 * (first + (first * first + 4.0 * q).max(0.0).sqrt())
-            }
-            _ => first,
-        };
-        let mut sines: Vec<f64> = correction.iter().map(|term| term / square).collect();
-        sines[0] += amplitude;
-        (square, sines)
-    }
-
-    /// The balance of so many odd harmonics, by Newton from that of one.
-    fn balanced(&self, count: usize) -> Result<SineSeries, ContactError> {
-        let start = self.perturbed(Order::First)?;
-        let (scale, frequency) = (start.harmonics[0], PI / start.duration);
-        // Unknowns: harmonics in units of the amplitude of one, Omega in units of its own.
-        let residual = |unknown: &DVector<f64>| {
-            let omega = unknown[count];
-            let sines: Vec<f64> = unknown.iter().take(count).copied().collect();
-            let mut residual = DVector::zeros(count + 1);
-            for (phi, weight) in quarter() {
-                let force = weight * self.force(scale * sine_sum(&sines, phi)) / (scale * frequency * frequency);
-                for number in 0..count {
-                    residual[number] -= 4.0 / PI * force * ((2 * number + 1) as f64 * phi).sin();
-                }
-            }
-            for number in 0..count {
-                residual[number] += ((2 * number + 1) as f64 * omega).powi(2) * unknown[number];
-            }
-            residual[count] = omega * sum_of_slopes(&sines) - self.speed / (scale * frequency);
-            residual
-        };
-        let mut unknown = DVector::zeros(count + 1);
-        unknown[0] = 1.0;
-        unknown[count] = 1.0;
-        let mut size = residual(&unknown).amax();
-        for _ in 0..40 {
-            let step = newton_step(residual, &unknown).ok_or(ContactError::NotOscillating)?;
-            // Halved until the residual falls.
-            let mut part = 1.0;
-            let (mut next, mut next_size) = (&unknown - &step, f64::INFINITY);
-            while part > 1e-3 {
-                next = &unknown - &step * part;
-                next_size = residual(&next).amax();
-                if next_size < size {
-                    break;
-                }
-                part *= 0.5;
-            }
-            if next_size.is_nan() || next_size >= size {
-                break;
-            }
-            (unknown, size) = (next, next_size);
-        }
-        if size.is_nan() || size > 1e-9 || unknown[count] <= 0.0 {
-            return Err(ContactError::NotOscillating);
-        }
-        let harmonics = unknown.iter().take(count).map(|part| scale * part).collect();
-        Ok(SineSeries::new(PI / (frequency * unknown[count]), 0.0, harmonics))
-    }
-}
-
-/// Harmonics kept in the motion of iteration and homotopy: to k = 15.
-const HARMONICS: usize = 8;
-
-/// What is taken of the perturbation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Order {
-    First,
-    Iterated,
-    Second,
-}
-
-/// d'' + b + w^2 d = 0 from d = 0 with speed v until d = 0 again.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct HalfTurn {
-    speed: f64,
-    frequency: f64,
-    /// b/w^2, how far in front of the barrier it turns about.
-    centre: f64,
-}
-
-impl HalfTurn {
-    fn duration(&self) -> f64 {
-        2.0 / self.frequency * (self.speed / self.frequency).atan2(self.centre)
-    }
-
-    fn depth(&self) -> f64 {
-        let swing = self.speed / self.frequency;
-        let amplitude = self.centre.hypot(swing);
-        // Without the difference of nearly equal numbers.
-        if self.centre > 0.0 {
-            swing / (amplitude + self.centre) * swing
-        } else {
-            amplitude - self.centre
-        }
-    }
-
-    fn at(&self, time: f64) -> (f64, f64) {
-        let swing = self.speed / self.frequency;
-        let (sine, cosine) = (0.5 * self.frequency * time).sin_cos();
-        let depth = 2.0 * sine * (swing * cosine - self.centre * sine);
-        let (sine, cosine) = (self.frequency * time).sin_cos();
-        (depth, self.speed * cosine - self.centre * self.frequency * sine)
+        let slope = finite("slope of the force", self.slope)?;
+        let at_barrier = (self.restoring_force)(self.barrier);
+        let contact = LineContact::new(line, self.stiffness, [at_barrier, slope], self.speed);
+        contact.ok_or(ContactError::NotOscillating)
     }
 }
 
@@ -419,7 +243,7 @@ pub struct ContactMotion {
 /// The closed form of the motion.
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
-    Line(HalfTurn),
+    Line(LineContact),
     Sines(SineSeries),
     PowerLaw(PowerLaw),
     Corrected(CorrectedPowerLaw),
@@ -596,65 +420,11 @@ pub fn comparison(touch: &Touch) -> Result<Vec<ContactRow>, ContactError> {
     Ok(ContactLaw::ALL.into_iter().map(row).collect())
 }
 
-/// Angles from 0 to pi/2 and weights: phi = u^2, so that roots of the depth are smooth.
-fn quarter() -> impl Iterator<Item = (f64, f64)> {
-    let end = FRAC_PI_2.sqrt();
-    (0..4).flat_map(move |panel| {
-        let (from, to) = (end * f64::from(panel) / 4.0, end * f64::from(panel + 1) / 4.0);
-        nodes_and_weights(from, to).map(|(u, weight)| (u * u, 2.0 * u * weight))
-    })
-}
-
-/// sum of b_k sin k phi over k = 1, 3, ..
-fn sine_sum(harmonics: &[f64], phi: f64) -> f64 {
-    let term = |(number, harmonic): (usize, &f64)| harmonic * ((2 * number + 1) as f64 * phi).sin();
-    harmonics.iter().enumerate().map(term).sum()
-}
-
-/// Its derivative at zero: sum of k b_k.
-fn sum_of_slopes(harmonics: &[f64]) -> f64 {
-    let term = |(number, harmonic): (usize, &f64)| harmonic * (2 * number + 1) as f64;
-    harmonics.iter().enumerate().map(term).sum()
-}
-
-/// The place above zero at which a function that grows changes its sign, searched by doubling and halving from one.
-fn rising_root(function: impl Fn(f64) -> f64) -> Option<f64> {
-    let (mut low, mut high) = (1.0, 1.0);
-    // What is no number lies too far.
-    let value = |at: f64| {
-        let value = function(at);
-        if value.is_finite() { value } else { 1.0 }
-    };
-    for _ in 0..500 {
-        if value(low) > 0.0 {
-            high = low;
-            low *= 0.5;
-        } else if value(high) < 0.0 {
-            low = high;
-            high *= 2.0;
-        } else {
-            return find_root(value, low, high).ok();
-        }
-    }
-    None
-}
-
-/// The inverse Jacobian, by central differences, times the residual.
-fn newton_step(residual: impl Fn(&DVector<f64>) -> DVector<f64>, at: &DVector<f64>) -> Option<DVector<f64>> {
-    let size = at.len();
-    let mut jacobian = DMatrix::zeros(size, size);
-    let step = 1e-6;
-    for column in 0..size {
-        let (mut above, mut below) = (at.clone(), at.clone());
-        above[column] += step;
-        below[column] -= step;
-        jacobian.set_column(column, &((residual(&above) - residual(&below)) / (2.0 * step)));
-    }
-    jacobian.lu().solve(&residual(at))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
+    use super::super::half_oscillation::HARMONICS;
     use super::*;
     use proptest::prelude::*;
     use spec_math::cephes64::gamma;

@@ -13,7 +13,9 @@
 //! - `time`: the time along a motion whose speed is known at every place, and back.
 //! - [`exact`]: any force as a closure, by energy and quadrature; the motion as a short series of sines.
 //! - [`hunt_crossley`]: a contact that loses energy, gamma d^n (1 + lambda d'): restitution, loop of force and depth, duration.
-//! - [`law`]: all laws by name, the fitted lines, perturbation and balances among them, beside the exact one: [`comparison`].
+//! - `line`: a line in place of the force, equation (15), which the paper's phases use as well.
+//! - `half_oscillation`: homotopy, iteration and the balance of harmonics.
+//! - [`law`]: all laws by name, beside the exact one: [`comparison`].
 //!
 //! Depths are in the unit of x, rad for the pendulum, times in units of 1/omega, forces per unit of mass: accelerations, rad omega^2.
 
@@ -25,8 +27,10 @@ use crate::numeric::ode::quadrature::QuadratureError;
 use crate::numeric::ode::root::RootError;
 
 pub mod exact;
+mod half_oscillation;
 pub mod hunt_crossley;
 pub mod law;
+pub(super) mod line;
 pub mod power_law;
 mod time;
 

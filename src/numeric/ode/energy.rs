@@ -349,8 +349,6 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     const FARTHEST: f64 = 1e10;
     /// How often a stretch on which the force has no integral is halved.
     const HALVINGS: u32 = 60;
-    /// A force with more places to stop at in a window, such as a tangent over a million poles, is not followed through them.
-    const MOST_KNOTS: usize = 512;
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
     if force.at(start) * side <= 0.0 || amplitude == 0.0 {
@@ -366,12 +364,6 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
         let from = x;
         let mut places = force.knots(from, from - side * window);
-        if places.len() > MOST_KNOTS {
-            return Err(PeriodError::Escapes {
-                start,
-                searched: from - side * window,
-            });
-        }
         places.extend((1..STEPS).map(|k| from - side * window * k as f64 / STEPS as f64));
         places.sort_by(|one, other| (side * other).total_cmp(&(side * one)));
         places.dedup();

@@ -398,21 +398,12 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
 mod tests {
     use super::*;
     use crate::impact::contact::PowerLaw;
-    use crate::numeric::ode::{Event, Options, State, Trajectory, integrate};
+    use crate::impact::contact::by_runge_kutta;
+    use crate::numeric::ode::Trajectory;
     use proptest::prelude::*;
 
     fn integrated(force: &dyn Fn(f64) -> f64, contact: &ExactContact) -> Trajectory {
-        let options = Options {
-            absolute_tolerance: 1e-14 * contact.depth,
-            ..Options::with_tolerance(1e-13)
-        };
-        let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
-        let start = State {
-            t: 0.0,
-            x: 0.0,
-            v: contact.speed,
-        };
-        integrate(|_, d, _| -force(d), start, 2.0 * contact.duration, &events, &options).unwrap()
+        by_runge_kutta(|d, _| force(d), [contact.speed, contact.depth, 2.0 * contact.duration])
     }
 
     #[test]

@@ -396,9 +396,10 @@ fn not_negative(quantity: &'static str, value: f64) -> Result<f64, ContactError>
 mod tests {
     use super::*;
     use crate::impact::contact::PowerLaw;
+    use crate::impact::contact::by_runge_kutta;
     use crate::impact::{Integrator, Model, Settings, Start, simulate};
+    use crate::numeric::ode::Trajectory;
     use crate::numeric::ode::quadrature::integrate_smooth;
-    use crate::numeric::ode::{Event, Options, State, Trajectory, integrate};
     use proptest::prelude::*;
 
     fn integrated(contact: &HuntCrossley) -> Trajectory {
@@ -411,18 +412,10 @@ mod tests {
             duration,
             ..
         } = *contact;
-        let options = Options {
-            absolute_tolerance: 1e-14 * depth,
-            ..Options::with_tolerance(1e-13)
-        };
-        let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
-        let force = |_, d: f64, v: f64| -stiffness * d.max(0.0).powf(exponent) * (1.0 + damping * v);
-        let start = State {
-            t: 0.0,
-            x: 0.0,
-            v: speed,
-        };
-        integrate(force, start, 2.0 * duration, &events, &options).unwrap()
+        by_runge_kutta(
+            |d, v| stiffness * d.max(0.0).powf(exponent) * (1.0 + damping * v),
+            [speed, depth, 2.0 * duration],
+        )
     }
 
     /// From a loss of a thousandth to one of 95 %.

@@ -148,6 +148,24 @@ fn within(time: f64, duration: f64) -> f64 {
     if time > 0.0 { time.min(duration) } else { 0.0 }
 }
 
+/// Runge-Kutta on d'' = -force(d, d') from the touch to the release, or for this time: what the laws are held to. Its first event is
+/// the deepest point.
+#[cfg(test)]
+fn by_runge_kutta(force: impl Fn(f64, f64) -> f64, [speed, depth, time]: [f64; 3]) -> crate::numeric::ode::Trajectory {
+    use crate::numeric::ode::{Event, Options, State, integrate};
+    let options = Options {
+        absolute_tolerance: 1e-14 * depth,
+        ..Options::with_tolerance(1e-13)
+    };
+    let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
+    let start = State {
+        t: 0.0,
+        x: 0.0,
+        v: speed,
+    };
+    integrate(|_, d, v| -force(d, v), start, time, &events, &options).expect("a path")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

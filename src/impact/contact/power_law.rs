@@ -393,9 +393,10 @@ fn binomial(n: i32, k: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::contact::by_runge_kutta;
     use crate::impact::hertz;
+    use crate::numeric::ode::Trajectory;
     use crate::numeric::ode::quadrature::integrate_smooth;
-    use crate::numeric::ode::{Event, Options, State, Trajectory, integrate};
     use proptest::prelude::*;
 
     const EXPONENTS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 7.0];
@@ -420,18 +421,10 @@ mod tests {
             duration,
             ..
         } = *contact;
-        let options = Options {
-            absolute_tolerance: 1e-14 * depth,
-            ..Options::with_tolerance(1e-13)
-        };
-        let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
-        let start = State {
-            t: 0.0,
-            x: 0.0,
-            v: speed,
-        };
-        let force = |_, d: f64, _| -preload - slope * d - stiffness * d.max(0.0).powf(exponent);
-        integrate(force, start, 100.0 * duration, &events, &options).unwrap()
+        by_runge_kutta(
+            |d, _| preload + slope * d + stiffness * d.max(0.0).powf(exponent),
+            [speed, depth, 100.0 * duration],
+        )
     }
 
     #[test]

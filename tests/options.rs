@@ -376,3 +376,14 @@ fn quiet_leaves_notes_out_and_results_in() {
     assert_eq!(quiet.status.code(), Some(4));
     std::fs::remove_dir_all(folder).expect("the folder goes");
 }
+
+/// A number on the command line wins over that of the file, whatever key it has there.
+#[test]
+fn a_number_of_an_impact_wins_over_the_file() {
+    let soft = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact-soft.toml");
+    let document = json(&["impact", soft, "--at", "A=1.25", "--at", "xc=1/4", "--at", "gamma=2e5"]);
+    let parameters = &document["parameters"];
+    for (key, value) in [("amplitude", 1.25), ("barrier", 0.25), ("gamma", 2e5)] {
+        assert_eq!(parameters[key].as_f64(), Some(value), "{key}");
+    }
+}

@@ -310,18 +310,14 @@ impl Impact {
 
     /// Speed, penetration and duration of the contact, the time to it, and the period.
     pub fn quantities(&self) -> [Quantity; 5] {
-        let quantity = |name, of: &dyn Fn(&ThreePhases) -> f64, runge_kutta| Quantity {
-            name,
-            runge_kutta,
-            closed_forms: self.columns.iter().map(|column| of(&column.phases)).collect(),
-        };
-        [
-            quantity("time to contact", &|phases| phases.phases[0].end, self.truth.touch.t),
-            quantity("speed", &|phases| phases.speed, self.truth.touch.v),
-            quantity("penetration", &|phases| phases.penetration, self.truth.penetration),
-            quantity("duration", &|phases| phases.duration, self.truth.duration),
-            quantity("period", &|phases| phases.period, self.truth.period),
-        ]
+        const NAMES: [&str; 5] = ["time to contact", "speed", "penetration", "duration", "period"];
+        let truth = self.truth.quantities();
+        let columns: Vec<[f64; 5]> = self.columns.iter().map(|column| column.phases.quantities()).collect();
+        std::array::from_fn(|index| Quantity {
+            name: NAMES[index],
+            runge_kutta: truth[index],
+            closed_forms: columns.iter().map(|numbers| numbers[index]).collect(),
+        })
     }
 
     /// Restitution and speed out of a contact that loses energy, which are judged, and what it loses per unit of mass, which is not: of

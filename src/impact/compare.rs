@@ -7,7 +7,7 @@ use super::closed_form::{Reading, paper};
 use super::judge::TrueImpact;
 use super::phases::ThreePhases;
 use super::setup::{Letters, Setup};
-use super::trial::{ImpactError, Trial};
+use super::trial::{ImpactError, Trial, worst};
 use crate::solution::Method;
 use crate::verify::Verdict;
 
@@ -93,25 +93,9 @@ impl ImpactRow {
         }
     }
 
-    /// Time to contact, speed, penetration, duration, period.
-    pub fn values(&self) -> [f64; 5] {
-        let phases = &self.phases;
-        [
-            phases.phases[0].end,
-            phases.speed,
-            phases.penetration,
-            phases.duration,
-            phases.period,
-        ]
-    }
-
     /// The largest of its errors and deviations, in size.
     pub fn worst(&self) -> f64 {
-        let all = self.errors.iter().chain(&self.deviations);
-        all.fold(0.0, |worst: f64, error| match error.is_nan() {
-            true => f64::INFINITY,
-            false => worst.max(error.abs()),
-        })
+        worst(self.errors.iter().chain(&self.deviations))
     }
 
     /// Whether every number and every phase is within the tolerance.

@@ -301,6 +301,17 @@ impl ThreePhases {
         }
     }
 
+    /// Time to contact, speed, penetration, duration, period: the numbers that are judged.
+    pub fn quantities(&self) -> [f64; 5] {
+        [
+            self.phases[0].end,
+            self.speed,
+            self.penetration,
+            self.duration,
+            self.period,
+        ]
+    }
+
     /// Displacement at this time; the motion repeats with its period, but one that has lost energy goes on as its return.
     pub fn position_at(&self, time: f64) -> f64 {
         self.at(time).0

@@ -223,6 +223,44 @@ impl Equations {
 }
 
 impl Setup {
+    /// The letters, none of which the swing or the force of the barrier uses for something else.
+    fn letters(&self, swing: &Oscillator) -> Letters {
+        let x = swing.coordinate;
+        let mut taken = swing.parameters.clone();
+        taken.extend(self.force.iter().flat_map(|force| force.symbols()));
+        Letters {
+            coordinate: x,
+            barrier: fresh(&format!("{x}c"), &swing.parameters),
+            stiffness: fresh("gamma", &swing.parameters),
+            depth: fresh("d", &swing.parameters),
+            damping: fresh("lambda", &taken),
+        }
+    }
+
+    /// The equation with the barrier in it, whose force is `written` in the depth.
+    fn judged(&self, swing: &Oscillator, letters: Letters, written: &Expr) -> Result<Equation, ExprError> {
+        let x = letters.coordinate;
+        let sign = Expr::from(match self.side {
+            Side::Left => -1,
+            Side::Right => 1,
+        });
+        let inside = &sign * &(&Expr::from(x) - &Expr::from(letters.barrier));
+        let pressed = written.substitute(letters.depth, &inside)?;
+        let pressed = match self.loss {
+            None => pressed,
+            Some(_) => {
+                let inwards = &sign * &Expr::from(x.derivative());
+                &pressed * &(&Expr::from(1) + &(&Expr::from(letters.damping) * &inwards))
+            }
+        };
+        let pressed = &(&sign * &pressed) * &Expr::function(Function::Step, vec![inside])?;
+        Ok(Equation {
+            left: &swing.residual + &pressed,
+            right: Expr::zero(),
+            ..swing.equation()
+        })
+    }
+
     /// The equations and their forces.
     ///
     /// # Errors
@@ -249,15 +287,7 @@ impl Setup {
                 term: (&mass * &Expr::from(acceleration)).to_string(),
             });
         }
-        let mut taken = swing.parameters.clone();
-        taken.extend(self.force.iter().flat_map(|force| force.symbols()));
-        let letters = Letters {
-            coordinate: x,
-            barrier: fresh(&format!("{x}c"), &swing.parameters),
-            stiffness: fresh("gamma", &swing.parameters),
-            depth: fresh("d", &swing.parameters),
-            damping: fresh("lambda", &taken),
-        };
+        let letters = self.letters(&swing);
         let own = |name: &Symbol| {
             let of_force = self.force.as_ref().is_some_and(|force| force.contains(*name));
             swing.parameters.contains(name) || of_force && *name != letters.stiffness && *name != letters.depth
@@ -275,25 +305,7 @@ impl Setup {
             None => (hertz, self.stiffness),
             Some(force) => (force.clone(), 1.0),
         };
-        let sign = Expr::from(match self.side {
-            Side::Left => -1,
-            Side::Right => 1,
-        });
-        let inside = &sign * &(&Expr::from(x) - &Expr::from(letters.barrier));
-        let pressed = written.substitute(letters.depth, &inside)?;
-        let pressed = match self.loss {
-            None => pressed,
-            Some(_) => {
-                let inwards = &sign * &Expr::from(x.derivative());
-                &pressed * &(&Expr::from(1) + &(&Expr::from(letters.damping) * &inwards))
-            }
-        };
-        let pressed = &(&sign * &pressed) * &Expr::function(Function::Step, vec![inside])?;
-        let judged = Equation {
-            left: &swing.residual + &pressed,
-            right: Expr::zero(),
-            ..swing.equation()
-        };
+        let judged = self.judged(&swing, letters, &written)?;
         let function = |expression: &Expr, argument: Symbol| {
             let mut expression = expression.clone();
             for (name, value) in self.values.iter() {

@@ -354,14 +354,8 @@ impl Trial<'_> {
 
     /// The first five of them.
     fn number_errors(&self, phases: &ThreePhases) -> [f64; 5] {
-        let truth = &self.truth;
-        [
-            phases.phases[0].end / truth.touch.t - 1.0,
-            phases.speed / truth.touch.v - 1.0,
-            phases.penetration / truth.penetration - 1.0,
-            phases.duration / truth.duration - 1.0,
-            phases.period / truth.period - 1.0,
-        ]
+        let (found, truth) = (phases.quantities(), self.truth.quantities());
+        std::array::from_fn(|index| found[index] / truth[index] - 1.0)
     }
 }
 
@@ -373,9 +367,9 @@ fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
     }
 }
 
-/// The largest of them; what is no number is the largest.
-fn worst(errors: &[f64]) -> f64 {
-    errors.iter().fold(0.0, |worst: f64, error| match error.is_nan() {
+/// The largest of them in size; what is no number is the largest.
+pub(super) fn worst<'a>(errors: impl IntoIterator<Item = &'a f64>) -> f64 {
+    errors.into_iter().fold(0.0, |worst: f64, error| match error.is_nan() {
         true => f64::INFINITY,
         false => worst.max(error.abs()),
     })

@@ -42,6 +42,9 @@ pub struct Problem {
     /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
     #[serde(skip)]
     pub given: Vec<String>,
+    /// The values that win over a key that says the same.
+    #[serde(skip)]
+    pub overriding: Vec<String>,
 }
 
 /// A whole number, or the two degrees of a Pade approximant: `order = 4`, `order = [2, 1]`.
@@ -213,8 +216,9 @@ pub struct Run {
 }
 
 impl Problem {
-    /// Gives a value, as if it stood in `[values]`.
+    /// Gives a value, as if it stood in `[values]`, but it wins over a key that says the same.
     pub fn set_value(&mut self, name: &str, value: &str) {
+        self.overriding.push(name.to_owned());
         self.values
             .insert(name.to_owned(), toml::Value::String(value.to_owned()));
     }

@@ -11,6 +11,7 @@ use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Method};
 use crate::spelling::nearest;
 use crate::symbol::Symbol;
+use crate::values::Values;
 
 /// Why a file describes no impact in closed form.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -168,70 +169,25 @@ impl TryFrom<&Problem> for Setup {
         }
         let swing = swing(problem)?;
         let force = force(problem)?;
-        // The numbers of the impact may stand among the values, by the letters of the printed equation.
-        let parameters = swing.as_ref().map_or(&[][..], |swing| &swing.parameters);
-        let coordinate = swing.as_ref().map_or("x", |swing| swing.coordinate.name());
-        let letters = [
-            ("A".to_owned(), "A", "[pendulum] amplitude"),
-            (format!("{coordinate}c"), "xc", "[pendulum] barrier"),
-            ("gamma".to_owned(), "gamma", "[contact] gamma"),
-        ];
-        let values = problem.exact_values()?;
-        let own = letters.each_ref().map(|(name, ..)| Symbol::new(name));
-        let own: Vec<Symbol> = own.into_iter().filter(|name| !parameters.contains(name)).collect();
-        let (_, rest) = values.split(&own);
-        let number = |index: usize| -> Result<Option<f64>, ImpactFileError> {
-            let (name, letter, key) = &letters[index];
-            let name = Symbol::new(name);
-            let value = own.contains(&name).then(|| values.get(name)).flatten();
-            match value.is_some() && problem.gives(key) {
-                true => Err(ImpactFileError::Twice { name: letter, key }),
-                false => Ok(value),
-            }
-        };
-        if problem.pendulum.start.is_some() && (number(0)?.is_some() || problem.gives(letters[0].2)) {
-            return Err(ImpactFileError::AmplitudeBesideStart);
-        }
-        if swing.is_some() {
-            let given =
-                |index: usize| Ok::<bool, ImpactFileError>(number(index)?.is_some() || problem.gives(letters[index].2));
-            let given = [
-                given(0)? || problem.pendulum.start.is_some(),
-                given(1)?,
-                given(2)? || force.is_some(),
-            ];
-            let missing = letters.iter().zip(given).filter(|(_, given)| !given);
-            let missing: Vec<&str> = missing.map(|((name, ..), _)| name.as_str()).collect();
-            if !missing.is_empty() {
-                return Err(ImpactFileError::Missing {
-                    barrier: letters[1].0.clone(),
-                    missing: missing.join(" and "),
-                });
-            }
-        }
-        let amplitude = number(0)?.unwrap_or(problem.pendulum.amplitude);
+        let given = Numbers::of(problem, swing.as_ref(), force.is_some())?;
         let side = match problem.pendulum.side {
             Some(BarrierSide::Left) => Side::Left,
             Some(BarrierSide::Right) | None => Side::Right,
         };
+        let amplitude = given.amplitude.unwrap_or(problem.pendulum.amplitude);
         if !(amplitude.is_finite() && amplitude > 0.0) && problem.pendulum.start.is_none() {
             return Err(CollisionError::Amplitude(amplitude).into());
         }
         let release = problem.pendulum.start.unwrap_or(-side.sign() * amplitude);
-        let barrier = match (number(1)?, problem.pendulum.barrier, side) {
-            (Some(barrier), ..) => barrier,
-            (None, Barrier::Absent(_), _) => return Err(ImpactFileError::NoBarrier),
-            (None, Barrier::Right(position), _) => position,
-            // A barrier beyond the release is never touched again.
-            (None, Barrier::Both([left, right]), Side::Right) if left < release => right,
-            (None, Barrier::Both([left, right]), Side::Left) if right > release => left,
-            (None, Barrier::Both(_), _) => return Err(ImpactFileError::LeftBarrier),
+        let barrier = match given.barrier {
+            Some(barrier) => barrier,
+            None => barrier(problem.pendulum.barrier, side, release)?,
         };
-        let (stiffness, source) = match number(2)? {
+        let (stiffness, source) = match given.stiffness {
             Some(stiffness) => (stiffness, "given"),
             None => problem.stiffness()?,
         };
-        let gives_stiffness = contact.gamma.is_some() || number(2)?.is_some();
+        let gives_stiffness = contact.gamma.is_some() || given.stiffness.is_some();
         if let Some(force) = &force
             && gives_stiffness
             && !force.contains(Symbol::new("gamma"))
@@ -250,7 +206,7 @@ impl TryFrom<&Problem> for Setup {
         let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
         Ok(Self {
             swing,
-            values: rest,
+            values: given.others,
             release,
             barrier,
             side,
@@ -273,6 +229,78 @@ impl TryFrom<&Problem> for Setup {
             step_limit: problem.run.step_limit,
             ..Self::default()
         })
+    }
+}
+
+/// The numbers of an impact that stand among the values, by the letters of the printed equation, and the other values.
+struct Numbers {
+    amplitude: Option<f64>,
+    barrier: Option<f64>,
+    stiffness: Option<f64>,
+    others: Values,
+}
+
+impl Numbers {
+    /// What the values of a problem say; what they leave out stands under its key.
+    ///
+    /// # Errors
+    /// A number under both, and for an equation of its own one under neither.
+    fn of(problem: &Problem, swing: Option<&Oscillator>, has_force: bool) -> Result<Self, ImpactFileError> {
+        let parameters = swing.map_or(&[][..], |swing| &swing.parameters);
+        let coordinate = swing.map_or("x", |swing| swing.coordinate.name());
+        let letters = [
+            ("A".to_owned(), "A", "[pendulum] amplitude"),
+            (format!("{coordinate}c"), "xc", "[pendulum] barrier"),
+            ("gamma".to_owned(), "gamma", "[contact] gamma"),
+        ];
+        let values = problem.exact_values()?;
+        let own = letters.each_ref().map(|(name, ..)| Symbol::new(name));
+        let own: Vec<Symbol> = own.into_iter().filter(|name| !parameters.contains(name)).collect();
+        let (_, others) = values.split(&own);
+        let mut found = [None; 3];
+        for ((written, letter, key), found) in letters.iter().zip(&mut found) {
+            let name = Symbol::new(written);
+            *found = own.contains(&name).then(|| values.get(name)).flatten();
+            // The command line wins over the file.
+            let wins = problem.overriding.contains(written);
+            if found.is_some() && problem.gives(key) && !wins {
+                return Err(ImpactFileError::Twice { name: letter, key });
+            }
+        }
+        let starts = problem.pendulum.start.is_some();
+        let gives = |index: usize| found[index].is_some() || problem.gives(letters[index].2);
+        if starts && gives(0) {
+            return Err(ImpactFileError::AmplitudeBesideStart);
+        }
+        if swing.is_some() {
+            let given = [gives(0) || starts, gives(1), gives(2) || has_force];
+            let missing = letters.iter().zip(given).filter(|(_, given)| !given);
+            let missing: Vec<&str> = missing.map(|((name, ..), _)| name.as_str()).collect();
+            if !missing.is_empty() {
+                return Err(ImpactFileError::Missing {
+                    barrier: letters[1].0.clone(),
+                    missing: missing.join(" and "),
+                });
+            }
+        }
+        let [amplitude, barrier, stiffness] = found;
+        Ok(Self {
+            amplitude,
+            barrier,
+            stiffness,
+            others,
+        })
+    }
+}
+
+/// The place of the barrier on this side; one on the other is never touched again, where it stands beyond the release.
+fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFileError> {
+    match (barrier, side) {
+        (Barrier::Absent(_), _) => Err(ImpactFileError::NoBarrier),
+        (Barrier::Right(position), _) => Ok(position),
+        (Barrier::Both([left, right]), Side::Right) if left < release => Ok(right),
+        (Barrier::Both([left, right]), Side::Left) if right > release => Ok(left),
+        (Barrier::Both(_), _) => Err(ImpactFileError::LeftBarrier),
     }
 }
 

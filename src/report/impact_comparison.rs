@@ -15,7 +15,6 @@ use crate::impact::ImpactComparison;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'_> {
-    let truth = &table.truth;
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&table.equation)],
         asked(
@@ -26,13 +25,7 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'
         ),
         vec![Block::ImpactMethods {
             rows: &table.rows,
-            truth: [
-                truth.touch.t,
-                truth.touch.v,
-                truth.penetration,
-                truth.duration,
-                truth.period,
-            ],
+            truth: table.truth.quantities(),
             tolerance,
         }],
     ];

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Kind;
 use super::impact::{Judged, Parameters};
-use crate::impact::{ImpactComparison, ImpactRow, TrueImpact};
+use crate::impact::{ImpactComparison, ImpactRow};
 use crate::verify::Verdict;
 
 /// Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a document of kind `impact`.
@@ -86,13 +86,7 @@ pub struct Row {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComparisonDocument {
-    let TrueImpact {
-        touch,
-        penetration,
-        duration,
-        period,
-        ..
-    } = table.truth;
+    let [time_to_contact, speed, penetration, duration, period] = table.truth.quantities();
     let applying = table.rows.iter().map(|row| applying(row, tolerance));
     let refused = table.refused.iter().map(|(method, reason)| Row {
         method: method.name().to_owned(),
@@ -118,8 +112,8 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
             table.damping,
         ),
         runge_kutta: TrueNumbers {
-            time_to_contact: touch.t,
-            speed: touch.v,
+            time_to_contact,
+            speed,
             penetration,
             duration,
             period,
@@ -130,7 +124,7 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
 }
 
 fn applying(row: &ImpactRow, tolerance: f64) -> Row {
-    let (values, errors) = (row.values(), row.errors);
+    let (values, errors) = (row.phases.quantities(), row.errors);
     let [time_to_contact, speed, penetration, duration, period] = std::array::from_fn(|index| {
         Some(Judged {
             value: values[index],

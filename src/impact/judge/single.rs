@@ -336,10 +336,9 @@ pub fn assured_impact(collision: &Collision, options: &ode::Options) -> Result<T
         let closer = 0.01 * tolerance;
         let is_last = closer < TIGHTEST;
         let other = with(if is_last { 100.0 * tolerance } else { closer })?;
-        let [mine, others] = [&motion, &other].map(TrueImpact::quantities);
-        let change = mine
-            .iter()
-            .zip(&others)
+        let known = |motion: &TrueImpact| motion.quantities().into_iter().chain([motion.exit.v]);
+        let change = known(&motion)
+            .zip(known(&other))
             .map(|(one, other)| (one / other - 1.0).abs())
             .fold(0.0, f64::max);
         if change <= ACCURACY {
@@ -353,10 +352,9 @@ pub fn assured_impact(collision: &Collision, options: &ode::Options) -> Result<T
 }
 
 impl TrueImpact {
-    /// Time to contact, speed, penetration, duration, period, speed out.
-    fn quantities(&self) -> [f64; 6] {
-        let Self { touch, exit, .. } = self;
-        [touch.t, touch.v, self.penetration, self.duration, self.period, exit.v]
+    /// Time to contact, speed, penetration, duration, period: in the order of [`ThreePhases::quantities`].
+    pub fn quantities(&self) -> [f64; 5] {
+        [self.touch.t, self.touch.v, self.penetration, self.duration, self.period]
     }
 
     /// Speed out over speed in: 1 where nothing is lost.

@@ -123,6 +123,8 @@ fn documents() -> Vec<(String, Value)> {
     add(&["impact", "--compare"]);
     add(&["simulate", "--integrator", "both"]);
     add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
+    let three = ["gamma=1e4:1e6:2:log", "zeta=0.1,0.3,0.2", "alpha=0.1:0:2"];
+    add(&[&["simulate"], three.map(|axis| ["--sweep", axis]).as_flattened()].concat());
     add(&["catalog"]);
     documents
 }

@@ -36,6 +36,11 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&output(&[arguments, &["--format", "json"]].concat())).expect("the output is JSON")
 }
 
+/// The lines of a table of comma-separated values that are no comments.
+fn rows(table: &str) -> Vec<&str> {
+    table.lines().filter(|line| !line.starts_with('#')).collect()
+}
+
 fn example(name: &str) -> String {
     format!("{EXAMPLES}/{name}.toml")
 }
@@ -149,12 +154,38 @@ fn wrong_arguments_get_theirs() {
         (vec!["--sweep", "zeta=0:1:3", "--sweep", "zeta=0:1:3"], "swept twice"),
         (
             vec!["--sweep", "zeta=0:1:2000", "--sweep", "mu=0:1:2000"],
-            "more than 1000000 motions",
+            "2000 * 2000 = 4000000 motions, more than 1000000 motions",
         ),
         (
-            vec!["--sweep", "zeta=0:1:3", "--sweep", "mu=0:1:3", "--sweep", "alpha=0:1:3"],
-            "one or two parameters",
+            vec!["--sweep", "zeta=0:1:3", "--sweep", "mu=0:1:3", "--sweep", "zeta=5:6:3"],
+            "`zeta` is swept twice",
         ),
+        (
+            vec![
+                "--sweep",
+                "zeta=0:1:3",
+                "--sweep",
+                "mu=0:1:3",
+                "--sweep",
+                "alpha=0:1:3",
+                "--plot",
+                "map.svg",
+            ],
+            "--plot draws curves over one parameter or a map over two",
+        ),
+        (
+            vec!["--sweep", "mu=0:1e5:3:log"],
+            "two ends of one sign, neither of them zero",
+        ),
+        (
+            vec!["--sweep", "speed=-1:1:3:log"],
+            "two ends of one sign, neither of them zero",
+        ),
+        (vec!["--sweep", "zeta=0.01:0.1:3:logg"], "did you mean `log`?"),
+        (vec!["--sweep", "zeta=0.01,x"], "`x` is no finite number"),
+        (vec!["--sweep", "zeta=0.01"], "NAME=a,b,c"),
+        (vec!["--sweep", "zeta=0.1,0.2,0.1"], "`zeta` takes the value 0.1 twice"),
+        (vec!["--sweep", "zeta=0.1:0.1:3"], "`zeta` takes the value 0.1 twice"),
         (vec!["--sweep", "zeta=0:1:3", "--sample", "1"], "leave out"),
         (vec!["--sample", "1e9"], "lies beyond the duration"),
         (vec!["--sample", "-1"], "sample"),
@@ -222,15 +253,14 @@ fn steps_and_seconds_are_limits_that_are_said() {
     );
     let stopped = document["stopped"].as_str().expect("a reason");
     assert!(stopped.contains("step_limit"), "{stopped}");
-    let rows = run(&[file, "--sweep", "zeta=0:0.1:3", "--format", "csv"]);
-    assert_eq!(rows.status.code(), Some(4));
+    let swept = run(&[file, "--sweep", "zeta=0:0.1:3", "--format", "csv"]);
+    assert_eq!(swept.status.code(), Some(4));
     assert!(
-        String::from_utf8_lossy(&rows.stdout)
-            .lines()
-            .skip(1)
+        rows(&String::from_utf8_lossy(&swept.stdout))[1..]
+            .iter()
             .all(|row| row.ends_with(",false,step limit"))
     );
-    let note = String::from_utf8_lossy(&rows.stderr);
+    let note = String::from_utf8_lossy(&swept.stderr);
     assert!(note.contains("warning: 3 of 3 motions stopped early"), "{note}");
 
     std::fs::write(&path, "[run]\nduration = 1e9\nstep_limit = 10000000\n").expect("a file");
@@ -408,7 +438,7 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
     let document = json(&[&[file], &sweep[..]].concat());
     let table = output(&[&[file, "--format", "csv"], &sweep[..]].concat());
     let text = output(&[&[file], &sweep[..]].concat());
-    let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
+    let header: Vec<&str> = rows(&table)[0].split(',').collect();
     for (row, barrier) in [0.3, 0.5].into_iter().enumerate() {
         std::fs::write(&path, with(barrier)).expect("a file");
         let single = json(&[file]);
@@ -429,7 +459,7 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
             ("velocity", float(&single["final_state"]["velocity"])),
         ];
         let entry = &document["rows"][row];
-        let fields: Vec<&str> = table.lines().nth(row + 1).expect("a row").split(',').collect();
+        let fields: Vec<&str> = rows(&table)[row + 1].split(',').collect();
         let words: Vec<&str> = text.lines().nth(row + 1).expect("a line").split_whitespace().collect();
         for (column, (key, value)) in expected.into_iter().enumerate() {
             let found = match key {
@@ -534,11 +564,73 @@ fn a_sweep_prints_the_same_on_any_number_of_threads() {
         assert_eq!(one, on("7"));
     }
     let table = output(&[&[file.as_str(), "--format", "csv"], &axes[..]].concat());
-    assert_eq!(table.lines().count(), 1 + 9 * 31);
+    let table = rows(&table);
+    assert_eq!(table.len(), 1 + 9 * 31);
     // A row is the motion that its parameters give.
-    let row = table.lines().nth(1).expect("a row");
     let single = output(&[&file, "--format", "csv", "--sweep", "barrier=0.1:0.6:31"]);
-    assert_eq!(row.split_once(',').map(|fields| fields.1), single.lines().nth(1));
+    assert_eq!(table[1].split_once(',').map(|fields| fields.1), Some(rows(&single)[1]));
+}
+
+/// Three parameters, each with its own spacing: every combination, the last fastest, in all formats.
+#[test]
+fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
+    let file = example("damper");
+    let axes = [
+        &file,
+        "--sweep",
+        "gamma=1e4:1e8:3:log",
+        "--sweep",
+        "frequency_ratio=0.5:1.5:2:lin",
+        "--sweep",
+        "beta=0.01,0.05",
+    ];
+    let table = output(&[&axes[..], &["--format", "csv"]].concat());
+    let units = table.lines().next().expect("a line of units");
+    assert_eq!(
+        units,
+        "# units: gamma 1, frequency_ratio 1, beta 1, impacts 1, rest_time 1/omega, penetration rad, speed_in rad*omega, \
+         energy_lost m*g*L, t 1/omega, x rad, velocity rad*omega, complete -, stopped -"
+    );
+    let rows = rows(&table);
+    assert_eq!(
+        rows[0],
+        "gamma,frequency_ratio,beta,impacts,rest_time,penetration,speed_in,energy_lost,t,x,velocity,complete,stopped"
+    );
+    let starts: Vec<String> = rows[1..]
+        .iter()
+        .map(|row| row.splitn(4, ',').take(3).collect::<Vec<_>>().join(" "))
+        .collect();
+    let expected = ["10000", "1000000", "100000000"]
+        .map(|gamma| ["0.5 0.01", "0.5 0.05", "1.5 0.01", "1.5 0.05"].map(|rest| format!("{gamma} {rest}")));
+    assert_eq!(starts, expected.concat());
+    let document = json(&axes);
+    let spacings: Vec<&Value> = document["axes"]
+        .as_array()
+        .expect("axes")
+        .iter()
+        .map(|axis| &axis["spacing"])
+        .collect();
+    assert_eq!(spacings, ["logarithmic", "linear", "list"]);
+    assert_eq!(document["axes"][0]["values"], json!([1e4, 1e6, 1e8]));
+    let columns = document["columns"].as_array().expect("columns");
+    let names: Vec<&str> = columns.iter().filter_map(|column| column["name"].as_str()).collect();
+    assert_eq!(names.join(","), rows[0]);
+    // Every column is a value or a key of a row.
+    for column in &columns[3..] {
+        let row = &document["rows"][0];
+        let name = column["name"].as_str().expect("a name");
+        assert!(
+            !row[name].is_null() || !row["final_state"][name].is_null() || name == "rest_time",
+            "{name}"
+        );
+        assert!(column["meaning"].as_str().is_some_and(|words| words.len() > 10));
+    }
+    // In text, a block for each gamma, and columns that do not run together.
+    let text = output(&axes);
+    let blocks: Vec<&str> = text.split("\n\n").collect();
+    assert_eq!(blocks.len(), 3, "{text}");
+    let words: Vec<&str> = text.lines().next().expect("a header").split_whitespace().collect();
+    assert_eq!(words[..4], ["gamma", "frequency_ratio", "beta", "impacts"]);
 }
 
 #[test]

@@ -4,7 +4,9 @@
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use lindstedt::problem::{KEYS, Reader};
+use lindstedt::impact::sweep::sweep;
+use lindstedt::impact::{Model, Parameter, Start};
+use lindstedt::problem::{KEYS, Problem, Reader, SimulateError};
 
 /// Exit code, standard output, standard error.
 type Answer = (Option<i32>, String, String);
@@ -203,6 +205,22 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
             ["frequency_ratio", "beta"],
         ),
         ("[contact]\nmu = 1", vec!["--sweep", "lambda=0:1:3"], ["mu", "lambda"]),
+        (
+            "[excitation]\nbeta = 0",
+            vec!["--sweep", "frequency_ratio=0.5:1:3"],
+            ["frequency_ratio", "beta"],
+        ),
+        ("", vec!["--sweep", "beta=0.1:1:3"], ["beta", "frequency_ratio"]),
+        (
+            "[pendulum]\nbarrier = false",
+            vec!["--sweep", "gamma=1e4:1e5:3:log"],
+            ["gamma", "barrier"],
+        ),
+        (
+            "[contact]\ngamma = 1e5\nlambda = 0",
+            vec!["--sweep", "length=0.1:0.2:3"],
+            ["length", "gamma"],
+        ),
     ] {
         let answer = of_file("both", text, &[&["simulate"], arguments.as_slice()].concat());
         assert!(
@@ -220,7 +238,7 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
     let rows: Vec<&str> = swept
         .1
         .lines()
-        .skip(1)
+        .skip(2)
         .filter_map(|row| row.split_once(','))
         .map(|row| row.1)
         .collect();
@@ -230,6 +248,96 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
         let answer = of_file("wins", "[contact]\ngamma = 1e5\n[design]\nmodulus = 1e8", &[command]);
         assert!(answer.1.contains("given: [design] has no say in it"), "{answer:?}");
     }
+}
+
+/// The motions of a grid of two values for each parameter, as the command makes them.
+fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, SimulateError> {
+    let asked = file.parse::<Problem>().expect("a file").simulate(swept)?;
+    (0..1_usize << swept.len())
+        .map(|number| {
+            let mut case = asked.case;
+            for (bit, &parameter) in swept.iter().enumerate() {
+                // A swing that reaches its barrier.
+                let value = match parameter {
+                    Parameter::Amplitude => 0.6,
+                    Parameter::Start => -0.55,
+                    Parameter::Barrier => 0.1,
+                    Parameter::Zeta | Parameter::Alpha | Parameter::Beta => 0.02,
+                    other => 0.2 + 0.01 * f64::from(other as u8),
+                };
+                // By another ratio each: gamma is that of modulus over mass.
+                let ratio = 1.2 + 0.01 * f64::from(parameter as u8);
+                case.set(parameter, if number >> bit & 1 == 0 { value } else { value * ratio });
+            }
+            Ok(case.motion()?)
+        })
+        .collect()
+}
+
+/// Every parameter alone and every pair, beside files that give what might override them: no two rows of a sweep are the
+/// same, or the refusal names what is swept and what it would be overridden by.
+#[test]
+fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
+    const FILES: [&str; 14] = [
+        "",
+        "[pendulum]\nbarrier = false",
+        "[pendulum]\nbarrier = [-1.6, 0.1]",
+        "[pendulum]\namplitude = 0.9\nspeed = 0.3",
+        "[pendulum]\nstart = -0.8",
+        "[pendulum]\nmass = 0.1\nlength = 0.2\ngravity = 2.0\n[sphere]\nradius = 0.1\n[barrier]\nmodulus = 1e5",
+        "[contact]\ngamma = 1e3",
+        "[contact]\nmu = 10",
+        "[contact]\nlambda = 0.2",
+        "[contact]\ngamma = 1e3\nlambda = 0.2",
+        "[contact]\ngamma = 1e3\nlambda = 0",
+        "[damping]\nzeta = 0.02\nalpha = 0.01\nfriction = \"arctangent\"",
+        "[excitation]\nbeta = 0.1\nfrequency_ratio = 0.7",
+        "[excitation]\nbeta = 0\nfrequency_ratio = 0.7",
+    ];
+    let (mut told_apart, mut refused) = (0, 0);
+    for file in FILES {
+        let settings = ""
+            .parse::<Problem>()
+            .expect("a file")
+            .simulate(&[])
+            .expect("a motion")
+            .settings;
+        let singles = Parameter::ALL.into_iter().map(|parameter| vec![parameter]);
+        let pairs = Parameter::ALL.into_iter().flat_map(|first| {
+            let later = Parameter::ALL
+                .into_iter()
+                .filter(move |second| (first as u8) < *second as u8);
+            later.map(move |second| vec![first, second])
+        });
+        for swept in singles.chain(pairs) {
+            match grid(file, &swept) {
+                Ok(motions) => {
+                    let rows = sweep(&motions, &settings, |_| ()).expect("motions");
+                    for (index, row) in rows.iter().enumerate() {
+                        assert!(
+                            !rows[..index].contains(row),
+                            "{file:?}, {swept:?}: two rows are {row:?}"
+                        );
+                    }
+                    told_apart += 1;
+                }
+                Err(error) => {
+                    let text = error.to_string();
+                    let says = |parameter: &Parameter| {
+                        let mut words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+                        words.any(|word| word == parameter.name())
+                    };
+                    let named = Parameter::ALL.iter().filter(|parameter| says(parameter)).count();
+                    assert!(swept.iter().any(says) && named >= 2, "{file:?}, {swept:?}: {text}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(
+        told_apart > 500 && refused > 300,
+        "{told_apart} told apart, {refused} refused"
+    );
 }
 
 #[test]

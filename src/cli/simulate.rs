@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Interrupt;
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
-use lindstedt::impact::sweep::{Axis, AxisError, MOST_MOTIONS, Summary, grid_values, sweep, sweep_on};
+use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, baseline, simulate};
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
@@ -26,8 +26,9 @@ pub struct Arguments {
     /// a time; or both, and how far they differ
     #[arg(long, value_enum, default_value_t = Method::Taylor)]
     integrator: Method,
-    /// Follow many motions: one parameter over a range, equally spaced; twice for two (a grid)
-    #[arg(long, value_name = "NAME=from:to:count", value_parser = axis)]
+    /// Follow many motions: a parameter over a range by equal steps, by equal ratios (from:to:count:log), or at the values of a
+    /// list (NAME=a,b,c); repeated, over every combination
+    #[arg(long, value_name = "NAME=from:to:count", value_parser = axis, allow_hyphen_values = true)]
     sweep: Vec<Axis>,
     /// Threads of a sweep; all cores without it. The result is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -158,29 +159,20 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
 
 /// The motions of a sweep, the last parameter varying fastest, and how to follow them.
 fn motions(axes: &[Axis], problem: &Problem) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
-    let total = axes
-        .iter()
-        .try_fold(1_usize, |product, axis| product.checked_mul(axis.count))
-        .filter(|total| *total <= MOST_MOTIONS);
-    let Some(total) = total else {
-        return Err(Failure::Refused(format!(
-            "the sweep has more than {MOST_MOTIONS} motions: lower the counts"
-        )));
-    };
+    let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
     for axis in axes {
-        if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name.as_str()) {
+        if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name()) {
             return Err(Failure::Refused(format!(
                 "`{}` is the same for all motions of a sweep: give it in [run]",
-                axis.name
+                axis.name()
             )));
         }
     }
-    if let [down, across] = axes
-        && down.name == across.name
-    {
-        return Err(Failure::Usage(format!("`{}` is swept twice", down.name)));
+    let names: Vec<&str> = axes.iter().map(Axis::name).collect();
+    if let Some(index) = (1..names.len()).find(|index| names[..*index].contains(&names[*index])) {
+        return Err(Failure::Usage(format!("`{}` is swept twice", names[index])));
     }
-    let named = |axis: &Axis| axis.name.parse::<Parameter>();
+    let named = |axis: &Axis| axis.name().parse::<Parameter>();
     let swept: Vec<Parameter> = axes
         .iter()
         .map(named)
@@ -203,8 +195,12 @@ fn motions(axes: &[Axis], problem: &Problem) -> Result<(Vec<(Model, Start)>, Set
 }
 
 fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
-    if arguments.sweep.len() > 2 {
-        return Err(Failure::Usage("a sweep has one or two parameters".to_owned()));
+    if arguments.sweep.len() > 2 && arguments.common.plot.is_some() {
+        return Err(Failure::Usage(
+            "--plot draws curves over one parameter or a map over two, but more are swept: leave out --plot, or draw a map \
+             for each value of the others, given in the file"
+                .to_owned(),
+        ));
     }
     if arguments.integrator != Method::Taylor || !arguments.sample.is_empty() {
         return Err(Failure::Usage(

@@ -3,7 +3,7 @@
 //!
 //! The same numbers give the same bytes. Colours are those of Okabe and Ito, *Color Universal Design* (2008). Curves
 //! are thinned to about 2000 points; an axis whose values agree to 1e-9 shows a constant. A point that is not finite is
-//! an error, never a silent gap. On a logarithmic ordinate negative values are an error, and zeros, where an error
+//! an error, never a silent gap. On a logarithmic axis negative values are an error, and zeros, where an error
 //! curve meets its reference, are left out.
 //!
 //! ```
@@ -83,7 +83,7 @@ pub enum Guide<'a> {
     Y(f64, &'a str),
 }
 
-/// How the ordinate is divided.
+/// How an axis is divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps are equal distances.
@@ -103,6 +103,8 @@ pub struct Panel<'a> {
     pub x_label: &'a str,
     /// The same for the ordinate.
     pub y_label: &'a str,
+    /// Division of the abscissa.
+    pub x_scale: Scale,
     /// Division of the ordinate.
     pub y_scale: Scale,
     /// The curves, the last on top; at least one.
@@ -119,10 +121,10 @@ pub enum FigureError {
     #[error("nothing to draw in {0}: leave it out or give it data")]
     Empty(String),
     /// A curve (named) with fewer than two points to join.
-    #[error("{0} has fewer than 2 points to join (zeros on a logarithmic ordinate do not count): give more samples")]
+    #[error("{0} has fewer than 2 points to join (zeros on a logarithmic axis do not count): give more samples")]
     TooFewPoints(String),
-    /// A curve or guide and its number (named) that is not finite, or not positive on a logarithmic ordinate.
-    #[error("{0} has no place on the axes: stop the curve before it; for a logarithmic ordinate give sizes")]
+    /// A curve or guide and its number (named) that is not finite, or not positive on a logarithmic axis.
+    #[error("{0} has no place on the axes: stop the curve before it; for a logarithmic axis give sizes")]
     OffAxes(String),
     /// Formula and truth part at this sample.
     #[error("formula and truth must be sampled at the same times, but differ at sample {0}: sample both alike")]
@@ -454,9 +456,9 @@ fn panel<'a>(title: &'a str, labels: [&'a str; 2], curves: Vec<Curve<'a>>, guide
         title,
         x_label: labels[0],
         y_label: labels[1],
-        y_scale: Scale::Linear,
         curves,
         guides,
+        ..Panel::default()
     }
 }
 
@@ -469,22 +471,24 @@ fn phase_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// The library's lines and axes for one panel that is one or two columns wide; refuses what has no place on them.
-/// A logarithmic ordinate is drawn as a linear one of exponents, because the library's own ends at 1e-10.
+/// A logarithmic axis is drawn as a linear one of exponents, because the library's own ends at 1e-10.
 fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureError> {
     let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
     if panel.curves.is_empty() {
         return Err(FigureError::Empty(within("the list of curves".to_owned())));
     }
-    let logarithmic = panel.y_scale == Scale::Logarithmic;
-    let height = |y: f64| if logarithmic { y.log10() } else { y };
+    let [x_logarithmic, y_logarithmic] = [panel.x_scale, panel.y_scale].map(|scale| scale == Scale::Logarithmic);
+    let place = |x: f64| if x_logarithmic { x.log10() } else { x };
+    let height = |y: f64| if y_logarithmic { y.log10() } else { y };
     let (mut xs, mut ys, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for Curve { label, points, style } in &panel.curves {
-        let off = |&&(x, y): &&(f64, f64)| !x.is_finite() || !y.is_finite() || height(y).is_nan();
+        let off = |&&(x, y): &&(f64, f64)| !x.is_finite() || !y.is_finite() || place(x).is_nan() || height(y).is_nan();
         if let Some(point) = points.iter().find(off) {
             return Err(FigureError::OffAxes(within(format!("point {point:?} of \"{label}\""))));
         }
-        let points = points.iter().map(|&(x, y)| (x, height(y)));
-        let points = thinned(&points.filter(|point| point.1.is_finite()).collect::<Vec<_>>());
+        let points = points.iter().map(|&(x, y)| (place(x), height(y)));
+        let points = points.filter(|(x, y)| x.is_finite() && y.is_finite());
+        let points = thinned(&points.collect::<Vec<_>>());
         if points.len() < 2 {
             return Err(FigureError::TooFewPoints(within(format!("curve \"{label}\""))));
         }
@@ -494,7 +498,7 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     }
     for guide in &panel.guides {
         let (at, label, list) = match *guide {
-            Guide::X(at, label) => (at, label, &mut xs),
+            Guide::X(at, label) => (place(at), label, &mut xs),
             Guide::Y(at, label) => (height(at), label, &mut ys),
         };
         if !at.is_finite() {
@@ -502,7 +506,7 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
         }
         list.push(at);
     }
-    let ((x_power, x_range), (y_power, y_range)) = (extent(&xs, false), extent(&ys, logarithmic));
+    let ((x_power, x_range), (y_power, y_range)) = (extent(&xs, x_logarithmic), extent(&ys, y_logarithmic));
     let (x_unit, y_unit) = (10f64.powi(x_power), 10f64.powi(y_power));
 
     let line = |label, points: Vec<(f64, f64)>, CurveStyle(colour, dashes, width)| {
@@ -514,7 +518,7 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     let across = |y: f64| vec![(x_range.0, y / y_unit), (x_range.1, y / y_unit)];
     let upright = |x: f64| vec![(x / x_unit, y_range.0), (x / x_unit, y_range.1)];
     let guides = panel.guides.iter().map(|guide| match *guide {
-        Guide::X(at, label) => line(label, upright(at), CurveStyle::GUIDE),
+        Guide::X(at, label) => line(label, upright(place(at)), CurveStyle::GUIDE),
         Guide::Y(at, label) => line(label, across(height(at)), CurveStyle::GUIDE),
     });
     let scaled = |points: Vec<(f64, f64)>| points.into_iter().map(|(x, y)| (x / x_unit, y / y_unit)).collect();
@@ -536,9 +540,13 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     layout.theme.grid_color = "#e8e8e8".to_owned();
     (layout.x_axis_min, layout.x_axis_max) = (Some(x_range.0), Some(x_range.1));
     (layout.y_axis_min, layout.y_axis_max) = (Some(y_range.0), Some(y_range.1));
-    if logarithmic {
-        layout.y_tick_step = Some(((y_range.1 - y_range.0) / 6.0).ceil());
-        layout.y_tick_format = TickFormat::Custom(Arc::new(|exponent| power_of_ten(exponent.round() as i32)));
+    let exponents = || TickFormat::Custom(Arc::new(|exponent: f64| power_of_ten(exponent.round() as i32)));
+    let decades = |range: (f64, f64)| Some(((range.1 - range.0) / 6.0).ceil());
+    if x_logarithmic {
+        (layout.x_tick_step, layout.x_tick_format) = (decades(x_range), exponents());
+    }
+    if y_logarithmic {
+        (layout.y_tick_step, layout.y_tick_format) = (decades(y_range), exponents());
     }
     Ok((lines, layout))
 }
@@ -575,7 +583,7 @@ fn number(value: f64) -> String {
     rounded.to_string().replace('-', "−")
 }
 
-fn power_of_ten(exponent: i32) -> String {
+pub(super) fn power_of_ten(exponent: i32) -> String {
     let digits: Vec<char> = "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().collect();
     let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| digits[digit as usize]);
     format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
@@ -731,6 +739,29 @@ mod tests {
             refused.starts_with("point (1.0, -0.5) of \"e\" in panel \"T\""),
             "{refused}"
         );
+    }
+
+    #[test]
+    fn a_logarithmic_abscissa_has_decades() {
+        let points = [(1e4, 1.0), (1e6, 2.0), (1e9, 3.0)];
+        let curves = vec![curve("", &points, CurveStyle::FORMULA)];
+        let panel = panel("T", ["stiffness", "y"], curves, vec![Guide::X(1e5, "")]);
+        let draw = |x_scale| {
+            figure(
+                &[Panel {
+                    x_scale,
+                    ..panel.clone()
+                }],
+                "",
+            )
+            .unwrap()
+        };
+        let svg = draw(Scale::Logarithmic);
+        assert!(
+            ["10⁴", "10⁹"].iter().all(|tick| svg.contains(&format!(">{tick}<"))),
+            "{svg}"
+        );
+        assert_ne!(path(&svg), path(&draw(Scale::Linear)));
     }
 
     #[test]

@@ -47,8 +47,8 @@ pub enum Parameter {
     Gravity,
 }
 
-/// Name, group and unit of a parameter.
-type Row = (&'static str, &'static str, &'static str);
+/// Name, group, unit and meaning of a parameter.
+type Row = (&'static str, &'static str, &'static str, &'static str);
 
 impl Parameter {
     /// Every parameter, in the order of the documentation.
@@ -73,22 +73,27 @@ impl Parameter {
 
     const fn row(self) -> Row {
         match self {
-            Self::Amplitude => ("amplitude", "pendulum", "rad"),
-            Self::Start => ("start", "pendulum", "rad"),
-            Self::Speed => ("speed", "pendulum", ""),
-            Self::Barrier => ("barrier", "pendulum", "rad"),
-            Self::Gamma => ("gamma", "contact", ""),
-            Self::Mu => ("mu", "contact", ""),
-            Self::Lambda => ("lambda", "contact", "s/m"),
-            Self::Zeta => ("zeta", "damping", ""),
-            Self::Alpha => ("alpha", "damping", ""),
-            Self::Beta => ("beta", "excitation", ""),
-            Self::FrequencyRatio => ("frequency_ratio", "excitation", ""),
-            Self::Mass => ("mass", "design", "kg"),
-            Self::Radius => ("radius", "design", "m"),
-            Self::Length => ("length", "design", "m"),
-            Self::Modulus => ("modulus", "design", "Pa"),
-            Self::Gravity => ("gravity", "design", "m/s^2"),
+            Self::Amplitude => ("amplitude", "pendulum", "rad", "the release from rest at x = -A"),
+            Self::Start => ("start", "pendulum", "rad", "the displacement x(0)"),
+            Self::Speed => ("speed", "pendulum", "rad*omega", "the velocity x'(0)"),
+            Self::Barrier => ("barrier", "pendulum", "rad", "the place x_c of the right barrier"),
+            Self::Gamma => ("gamma", "contact", "", "the stiffness of the contact"),
+            Self::Mu => ("mu", "contact", "", "the damping of the contact"),
+            Self::Lambda => (
+                "lambda",
+                "contact",
+                "s/m",
+                "the damping of the contact by its material, of Hunt and Crossley",
+            ),
+            Self::Zeta => ("zeta", "damping", "", "the viscous damping ratio"),
+            Self::Alpha => ("alpha", "damping", "", "the Coulomb friction"),
+            Self::Beta => ("beta", "excitation", "", "the excitation by the pivot"),
+            Self::FrequencyRatio => ("frequency_ratio", "excitation", "", "Omega/omega of the excitation"),
+            Self::Mass => ("mass", "design", "kg", "the mass of the pendulum"),
+            Self::Radius => ("radius", "design", "m", "the radius of its sphere"),
+            Self::Length => ("length", "design", "m", "the length of the pendulum"),
+            Self::Modulus => ("modulus", "design", "Pa", "the elastic modulus of the barrier"),
+            Self::Gravity => ("gravity", "design", "m/s^2", "the acceleration of gravity"),
         }
     }
 
@@ -102,9 +107,14 @@ impl Parameter {
         self.row().1
     }
 
-    /// Its SI unit, or rad; empty where it is dimensionless.
+    /// Its SI unit, or rad and rad*omega; empty where it is dimensionless.
     pub const fn unit(self) -> &'static str {
         self.row().2
+    }
+
+    /// What it is, in words: `the viscous damping ratio`.
+    pub const fn meaning(self) -> &'static str {
+        self.row().3
     }
 }
 

@@ -1,25 +1,28 @@
-//! Many motions: one or two parameters over a range, all cores, and what an engineer asks of each.
+//! Many motions: any number of parameters, each with its values, on all cores, and what an engineer asks of each.
 //!
-//! In: motions, in the order of their numbers. Out: a [`Summary`] each, in that order. Every motion is followed by the
-//! same operations wherever it runs, so the result does not depend on the number of threads.
+//! In: motions, in the order of their numbers, such as those of the grid of some [`Axis`]. Out: a [`Summary`] each, in that
+//! order. Every motion is followed by the same operations wherever it runs, so the result does not depend on the number of
+//! threads.
 //!
 //! ```
 //! use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
 //!
-//! let axis: Axis = "gamma=1e4:1e6:3".parse()?;
-//! assert_eq!(axis.values(), [1e4, 505_000.0, 1e6]);
+//! let axis: Axis = "gamma=1e4:1e6:3:log".parse()?;
+//! assert_eq!(axis.values(), [1e4, 1e5, 1e6]);
 //! let start = Start { x: -1.5, velocity: 0.0 };
-//! let motions: Vec<_> = axis.values().into_iter().map(|gamma| (Model { gamma, ..Model::default() }, start)).collect();
+//! let motions: Vec<_> = axis.values().iter().map(|&gamma| (Model { gamma, ..Model::default() }, start)).collect();
 //! let found = sweep(&motions, &Settings::default(), |_| ()).map_err(|(_, error)| error)?;
 //! assert!(found[0].deepest > found[2].deepest);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use std::str::FromStr;
+mod axis;
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use thiserror::Error;
+
+pub use axis::{Axis, AxisError, Spacing};
 
 use super::model::{Model, Start};
 use super::simulate::{SimulationError, simulate_many};
@@ -31,78 +34,45 @@ pub const MOST_MOTIONS: usize = 1_000_000;
 /// Motions that one thread follows together.
 const CHUNK: usize = 96;
 
-/// A parameter and the values it takes: `NAME=from:to:count`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    /// The name of the parameter, such as that of a [`Parameter`](super::Parameter).
-    pub name: String,
-    /// The first value.
-    pub from: f64,
-    /// The last value.
-    pub to: f64,
-    /// How many values, equally spaced, both ends included.
-    pub count: usize,
-}
-
-/// Why a text names no range.
+/// More motions than a sweep may have.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum AxisError {
-    /// Not of the form NAME=from:to:count.
-    #[error("`{0}` should be NAME=from:to:count, such as zeta=0.01:0.05:9")]
-    Form(String),
-    /// An end that is no finite number.
-    #[error("`{0}` is no finite number")]
-    Number(String),
-    /// A count that cannot be.
-    #[error("the count `{0}` should be a whole number from 2 to {MOST_MOTIONS}")]
-    Count(String),
+#[error("the sweep has {counts} = {product} motions, more than {MOST_MOTIONS} motions: lower the counts")]
+pub struct TooMany {
+    /// The numbers of values, `2000 * 2000`.
+    pub counts: String,
+    /// Their product.
+    pub product: String,
 }
 
-impl FromStr for Axis {
-    type Err = AxisError;
-
-    fn from_str(text: &str) -> Result<Self, AxisError> {
-        let form = || AxisError::Form(text.to_owned());
-        let (name, range) = text.split_once('=').ok_or_else(form)?;
-        let parts: Vec<&str> = range.split(':').map(str::trim).collect();
-        let [from, to, count] = parts[..] else {
-            return Err(form());
+/// The number of motions of a grid: the product of the numbers of values.
+///
+/// # Errors
+/// [`TooMany`], beyond [`MOST_MOTIONS`].
+///
+/// ```
+/// use lindstedt::impact::sweep::grid_size;
+///
+/// let axes = ["zeta=0:1:2".parse()?, "mu=5,6,8".parse()?, "gamma=1e4:1e9:1000:log".parse()?];
+/// assert_eq!(grid_size(&axes), Ok(6000));
+/// # Ok::<(), lindstedt::impact::sweep::AxisError>(())
+/// ```
+pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
+    let counts = axes.iter().map(|axis| axis.values().len());
+    let product = counts.clone().try_fold(1_usize, usize::checked_mul);
+    product.filter(|product| *product <= MOST_MOTIONS).ok_or_else(|| {
+        let counts: Vec<String> = counts.clone().map(|count| count.to_string()).collect();
+        let product = match product {
+            Some(product) => product.to_string(),
+            None => format!(
+                "{:.2e}",
+                axes.iter().map(|axis| axis.values().len() as f64).product::<f64>()
+            ),
         };
-        let number = |text: &str| match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(AxisError::Number(text.to_owned())),
-        };
-        let count_of = |text: &str| match text.parse::<usize>() {
-            Ok(value) if (2..=MOST_MOTIONS).contains(&value) => Ok(value),
-            _ => Err(AxisError::Count(text.to_owned())),
-        };
-        if name.trim().is_empty() {
-            return Err(form());
+        TooMany {
+            counts: counts.join(" * "),
+            product,
         }
-        Ok(Self {
-            name: name.trim().to_owned(),
-            from: number(from)?,
-            to: number(to)?,
-            count: count_of(count)?,
-        })
-    }
-}
-
-impl Axis {
-    /// The value of this number, counted from zero.
-    pub fn value(&self, index: usize) -> f64 {
-        let last = self.count.saturating_sub(1).max(1);
-        match index >= last {
-            true => self.to,
-            false => self.from + (self.to - self.from) * (index as f64 / last as f64),
-        }
-    }
-
-    /// The values, in order.
-    pub fn values(&self) -> Vec<f64> {
-        (0..self.count).map(|index| self.value(index)).collect()
-    }
+    })
 }
 
 /// The values of the parameters in the motion of this number, where the last axis varies fastest.
@@ -117,9 +87,10 @@ impl Axis {
 pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
     let mut rest = number;
     let value = |axis: &Axis| {
-        let index = rest % axis.count.max(1);
-        rest /= axis.count.max(1);
-        axis.value(index)
+        let count = axis.values().len();
+        let index = rest % count;
+        rest /= count;
+        axis.values()[index]
     };
     let mut values: Vec<f64> = axes.iter().rev().map(value).collect();
     values.reverse();
@@ -150,7 +121,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    fn of(motion: &Simulation) -> Self {
+    /// What there is to say of a motion.
+    pub fn of(motion: &Simulation) -> Self {
         let largest = |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
         Self {
             impacts: motion.impacts.len(),
@@ -181,7 +153,7 @@ impl Summary {
 ///
 /// let axis: Axis = "zeta=0.01:0.1:4".parse()?;
 /// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motions: Vec<_> = axis.values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let motions: Vec<_> = axis.values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
 /// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// assert!(rows[3].impacts < rows[0].impacts);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -196,9 +168,9 @@ pub fn sweep(
         ..*settings
     };
     let run = |(chunk, motions): (usize, &[(Model, Start)])| {
-        let runs = simulate_many(motions, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
+        let found = summaries(motions, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
         progress(motions.len());
-        Ok(runs.iter().map(Summary::of).collect::<Vec<Summary>>())
+        Ok(found)
     };
     #[cfg(feature = "parallel")]
     let chunks = motions.par_chunks(CHUNK);
@@ -210,6 +182,12 @@ pub fn sweep(
         summaries.extend(part?);
     }
     Ok(summaries)
+}
+
+/// From motions to what came of each, several in one instruction stream.
+fn summaries(motions: &[(Model, Start)], settings: &Settings) -> Result<Vec<Summary>, (usize, SimulationError)> {
+    let runs = simulate_many(motions, settings)?;
+    Ok(runs.iter().map(Summary::of).collect())
 }
 
 /// The same on so many threads.
@@ -242,29 +220,5 @@ pub fn sweep_on(
         Ok(pool) => pool.install(|| sweep(motions, settings, progress)),
         // Without threads of its own it runs on those there are.
         Err(_) => sweep(motions, settings, progress),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_range_is_read_and_ends_where_it_says() {
-        let axis: Axis = "zeta=0.01:0.07:4".parse().unwrap();
-        assert_eq!(axis.values().len(), 4);
-        assert_eq!((axis.values()[0], axis.values()[3]), (0.01, 0.07));
-        for wrong in [
-            "zeta",
-            "zeta=1:2",
-            "zeta=1:2:3:4",
-            "=1:2:3",
-            "zeta=a:2:3",
-            "zeta=1:inf:3",
-            "zeta=1:2:1",
-            "zeta=1:2:2.5",
-        ] {
-            assert!(wrong.parse::<Axis>().is_err(), "{wrong}");
-        }
     }
 }

@@ -39,6 +39,17 @@ pub enum SimulateError {
         /// The other one.
         other: Parameter,
     },
+    /// A number of a barrier that is not there.
+    #[error("`{0}` changes nothing where `[pendulum] barrier = false`: leave one of them out")]
+    NoBarrier(Parameter),
+    /// A number that zero leaves nothing to say.
+    #[error("`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out")]
+    Zero {
+        /// The key.
+        key: Parameter,
+        /// The other one.
+        other: Parameter,
+    },
     /// A key that says something only beside another one.
     #[error("`{key}` changes nothing without `{other}`: give that too, or leave it out")]
     Alone {
@@ -204,17 +215,32 @@ impl Problem {
         })
     }
 
-    /// Refuses to sweep what changes nothing because gamma is given, or swept as well.
+    /// Refuses to sweep what changes nothing: for want of a barrier, because gamma is given, or swept as well, or beside a zero.
     fn check_swept(&self, swept: &[Parameter], gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
-        let (gamma, lambda) = (Parameter::Gamma, Parameter::Lambda);
+        use Parameter::{
+            Barrier as Place, Beta, FrequencyRatio, Gamma, Gravity, Lambda, Length, Mass, Modulus, Mu, Radius,
+        };
+        let of_contact =
+            |key: &Parameter| matches!(key, Gamma | Mu | Lambda | Mass | Radius | Modulus | Length | Gravity);
+        if matches!(self.pendulum.barrier, Barrier::Absent(_)) && !swept.contains(&Place) {
+            let first = swept.iter().copied().find(of_contact);
+            first.map_or(Ok(()), |key| Err(SimulateError::NoBarrier(key)))?;
+        }
+        let zero = |key: Parameter, given: Option<f64>| !swept.contains(&key) && given.unwrap_or(0.0) == 0.0;
+        if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta)) {
+            return Err(SimulateError::Zero {
+                key: FrequencyRatio,
+                other: Beta,
+            });
+        }
         let without_say = |parameter: &Parameter| match parameter {
-            Parameter::Mass | Parameter::Radius | Parameter::Modulus => true,
+            Mass | Radius | Modulus => true,
             // mu = gamma*lambda*sqrt(g*L)
-            Parameter::Length | Parameter::Gravity => !gives(lambda),
+            Length | Gravity => zero(Lambda, self.contact.lambda),
             _ => false,
         };
-        match swept.iter().copied().find(without_say).filter(|_| gives(gamma)) {
-            Some(key) => Err(SimulateError::NoEffect { key, other: gamma }),
+        match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {
+            Some(key) => Err(SimulateError::NoEffect { key, other: Gamma }),
             None => Ok(()),
         }
     }

@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::Kind;
 use super::simulation::State;
-use crate::export::simulation::SweepReport;
-use crate::impact::sweep::Summary;
+use crate::export::simulation::{SweepReport, columns};
+use crate::impact::sweep::{Spacing, Summary};
 
-/// Many runs of the paper's equation (7) over one or two parameters, units as in a document of kind `simulation`.
+/// Many runs of the paper's equation (7), over every combination of the values of some parameters; units as in a document of kind
+/// `simulation`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct SweepDocument<Rows = Vec<Row>> {
@@ -19,11 +20,13 @@ pub struct SweepDocument<Rows = Vec<Row>> {
     pub schema: String,
     /// The parameters that are varied; the last varies fastest.
     pub axes: Vec<Axis>,
+    /// What stands in a row: the parameters, in the order of the axes, then what came of the run, each with its unit and meaning.
+    pub columns: Vec<Column>,
     /// A row for each run.
     pub rows: Rows,
 }
 
-/// A parameter over a range, equally spaced.
+/// A parameter and its values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Axis {
@@ -35,6 +38,24 @@ pub struct Axis {
     pub to: f64,
     /// The number of values.
     pub count: usize,
+    /// How the values follow each other: `linear` by equal steps, `logarithmic` by equal ratios, `list` as they were given.
+    #[schemars(extend("enum" = Spacing::ALL.map(Spacing::name)))]
+    pub spacing: String,
+    /// The values, in order.
+    pub values: Vec<f64>,
+}
+
+/// What one number, text or truth value of a row means.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Column {
+    /// Its name: that of a parameter, whose value stands in `values`, or the key of a row; `t`, `x` and `velocity` stand in
+    /// `final_state`.
+    pub name: String,
+    /// Its unit, as it is typed, 1 for a number without dimension; null for what is no number.
+    pub unit: Option<String>,
+    /// What it means, in words.
+    pub meaning: String,
 }
 
 /// What is kept of one run.
@@ -82,7 +103,7 @@ impl Serialize for Streamed<'_> {
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
 /// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// let mut text = Vec::new();
@@ -92,15 +113,26 @@ impl Serialize for Streamed<'_> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    let axes = report.axes.iter().map(|axis| Axis {
-        name: axis.name.clone(),
-        from: axis.from,
-        to: axis.to,
-        count: axis.count,
+    let axes = report.axes.iter().map(|axis| {
+        let [from, to] = axis.ends();
+        Axis {
+            name: axis.name().to_owned(),
+            from,
+            to,
+            count: axis.values().len(),
+            spacing: axis.spacing().name().to_owned(),
+            values: axis.values().to_vec(),
+        }
+    });
+    let columns = columns(report.axes).into_iter().map(|column| Column {
+        name: column.name,
+        unit: column.unit.map(str::to_owned),
+        meaning: column.meaning.to_owned(),
     });
     let document = SweepDocument {
         schema: Kind::Sweep.schema().to_owned(),
         axes: axes.collect(),
+        columns: columns.collect(),
         rows: Streamed(report),
     };
     super::write(&document, to)

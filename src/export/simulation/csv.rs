@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::io;
 
+use super::columns::columns;
 use super::{Report, SweepReport};
 
 /// Points inside each step of the integrator.
@@ -52,7 +53,8 @@ pub fn simulation(report: &Report) -> String {
     text
 }
 
-/// The sweep: the parameters, then what came of them; a line at a time, for there may be a million.
+/// The sweep: the parameters, then what came of them; a line at a time, for there may be a million. The first line has the
+/// units and begins with `#`, as a comment that readers of tables can be told to skip; the second has the names.
 ///
 /// # Errors
 /// What the writer says.
@@ -63,22 +65,22 @@ pub fn simulation(report: &Report) -> String {
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
 /// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// let mut table = Vec::new();
 /// sweep_csv(&report, &mut table)?;
-/// assert!(table.starts_with(b"zeta,"));
+/// assert!(String::from_utf8(table)?.contains("\nzeta,impacts,rest_time,"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    for axis in report.axes {
-        write!(to, "{},", axis.name)?;
-    }
-    writeln!(
-        to,
-        "impacts,rest_time,penetration,speed_in,energy_lost,t,x,velocity,complete,stopped"
-    )?;
+    let columns = columns(report.axes);
+    let units: Vec<String> = columns
+        .iter()
+        .map(|column| format!("{} {}", column.name, column.unit.unwrap_or("-")))
+        .collect();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    writeln!(to, "# units: {}\n{}", units.join(", "), names.join(","))?;
     for (row, summary) in report.rows.iter().enumerate() {
         for value in report.values(row) {
             write!(to, "{value},")?;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, TickFormat};
 use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 
-use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure, written};
+use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure, power_of_ten, written};
 use super::{Report, SweepReport};
-use crate::decimal::decimal;
+use crate::decimal::{decimal, significant};
 use crate::impact::Simulation;
-use crate::impact::sweep::{Axis, Summary};
+use crate::impact::sweep::{Axis, Spacing, Summary};
 
 /// Points of a curve, equally spaced in time; the turning points come on top.
 const POINTS: usize = 1600;
@@ -233,8 +233,25 @@ fn parameter(name: &str) -> [&str; 2] {
 
 /// From where to where: `ζ from 0.01 to 0.05`.
 fn range(axis: &Axis) -> String {
-    let [_, symbol] = parameter(&axis.name);
-    format!("{symbol} from {} to {}", decimal(axis.from), decimal(axis.to))
+    let [_, symbol] = parameter(axis.name());
+    let [from, to] = axis.ends().map(decimal);
+    match axis.spacing() {
+        Spacing::List if axis.values().len() <= 8 => {
+            let values: Vec<String> = axis.values().iter().map(|value| decimal(*value)).collect();
+            format!("{symbol} = {}", values.join(", "))
+        }
+        Spacing::List => format!("{} values of {symbol}", axis.values().len()),
+        Spacing::Linear | Spacing::Logarithmic => format!("{symbol} from {from} to {to}"),
+    }
+}
+
+/// What is written at an axis: on a logarithmic one of negative values stand their sizes.
+fn axis_label(axis: &Axis) -> String {
+    let [label, _] = parameter(axis.name());
+    match axis.spacing() {
+        Spacing::Logarithmic if axis.ends()[0] < 0.0 => format!("size of {label}"),
+        _ => label.to_owned(),
+    }
 }
 
 /// Curves over one parameter, or a heat map over two: of the rest time where a motion has one, otherwise of the number of
@@ -249,7 +266,7 @@ fn range(axis: &Axis) -> String {
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
 /// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// assert!(figure::sweep(&report)?.starts_with("<svg"));
@@ -258,14 +275,23 @@ fn range(axis: &Axis) -> String {
 pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
     match report.axes {
         [one] => {
-            let values = one.values();
+            let (x_scale, values): (Scale, Vec<f64>) = match one.spacing() {
+                Spacing::Logarithmic => (
+                    Scale::Logarithmic,
+                    one.values().iter().map(|value| value.abs()).collect(),
+                ),
+                Spacing::Linear | Spacing::List => (Scale::Linear, one.values().to_vec()),
+            };
+            // A list may go to and fro, a curve does not.
+            let mut order: Vec<usize> = (0..values.len()).collect();
+            order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+            let x_label = axis_label(one);
             // A motion without the quantity interrupts the curve: nothing is drawn across what is not there, and one point
             // alone is no curve.
             let runs = |quantity: &Quantity| -> Vec<Points> {
-                let found: Vec<Option<(f64, f64)>> = values
+                let found: Vec<Option<(f64, f64)>> = order
                     .iter()
-                    .zip(report.rows)
-                    .map(|(at, row)| Some((*at, (quantity.value)(row)?)))
+                    .map(|&index| Some((values[index], (quantity.value)(report.rows.get(index)?)?)))
                     .collect();
                 let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
                 unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
@@ -279,8 +305,9 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 .iter()
                 .map(|(quantity, runs)| Panel {
                     title: quantity.title,
-                    x_label: parameter(&one.name)[0],
+                    x_label: &x_label,
                     y_label: quantity.label,
+                    x_scale,
                     curves: runs
                         .iter()
                         .map(|points| curve("", points, CurveStyle::DIFFERENCE))
@@ -302,7 +329,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
             let quantity = if restless < total { rest } else { impacts };
             let grid: Vec<Vec<f64>> = report
                 .rows
-                .chunks(across.count.max(1))
+                .chunks(across.values().len())
                 .map(|row| {
                     row.iter()
                         .map(|summary| (quantity.value)(summary).unwrap_or(f64::NAN))
@@ -338,31 +365,99 @@ fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f6
     rows
 }
 
+/// Where the values of an axis stand on a map, at equal distances: at themselves, at their exponents, or one after the other.
+struct Ruler {
+    /// The places of the first value and the last.
+    ends: [f64; 2],
+    /// What is written at a place.
+    ticks: TickFormat,
+    /// The distance of the places with something written; the library's choice where there is none.
+    step: Option<f64>,
+}
+
+impl Ruler {
+    fn of(axis: &Axis) -> Self {
+        /// Steps between the exponents that are written.
+        const STEPS: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
+        let ends = axis.ends();
+        let written = |value: f64| decimal((value * 1e12).round() / 1e12);
+        match axis.spacing() {
+            Spacing::Linear => Self {
+                ends,
+                ticks: TickFormat::Custom(Arc::new(written)),
+                step: None,
+            },
+            Spacing::Logarithmic => {
+                let ends = ends.map(|end| end.abs().log10());
+                let span = (ends[1] - ends[0]).abs();
+                let ticks = |exponent: f64| match exponent.round() {
+                    whole if (exponent - whole).abs() < 1e-9 => power_of_ten(whole as i32),
+                    _ => significant(10_f64.powf(exponent), 3),
+                };
+                let small = STEPS.into_iter().find(|step| span >= 2.0 * step).unwrap_or(span / 3.0);
+                let step = if span > 6.0 { (span / 6.0).ceil() } else { small };
+                Self {
+                    ends,
+                    ticks: TickFormat::Custom(Arc::new(ticks)),
+                    step: Some(step),
+                }
+            }
+            Spacing::List => {
+                let values = axis.values().to_vec();
+                let last = values.len() - 1;
+                let ticks = move |place: f64| {
+                    values
+                        .get(place.round() as usize)
+                        .copied()
+                        .map_or_else(String::new, decimal)
+                };
+                Self {
+                    ends: [0.0, last as f64],
+                    ticks: TickFormat::Custom(Arc::new(ticks)),
+                    step: Some(last.div_ceil(12) as f64),
+                }
+            }
+        }
+    }
+
+    fn rises(&self) -> bool {
+        self.ends[1] >= self.ends[0]
+    }
+
+    /// From the edge of the first cell to that of the last, upwards, where there are so many.
+    fn range(&self, count: usize) -> (f64, f64) {
+        let [from, to] = self.ends;
+        let half = 0.5 * (to - from) / (count.max(2) - 1) as f64;
+        let (from, to) = (from - half, to + half);
+        (from.min(to), from.max(to))
+    }
+}
+
 /// The colour of a cell without a value.
 const MISSING: &str = "#c8c8c8";
 
 /// A cell for each motion, grey where its value is no number, with the quantity and its unit at the scale of colours.
 fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, caption: &str) -> String {
-    let half = |axis: &Axis| 0.5 * (axis.to - axis.from) / (axis.count.max(2) - 1) as f64;
-    let range = |axis: &Axis| {
-        let (from, to) = (axis.from - half(axis), axis.to + half(axis));
-        (from.min(to), from.max(to))
-    };
-    let (x, y) = (range(across), range(down));
+    let (down_ruler, across_ruler) = (Ruler::of(down), Ruler::of(across));
+    let (x, y) = (
+        across_ruler.range(across.values().len()),
+        down_ruler.range(down.values().len()),
+    );
     let map = Heatmap::new()
-        .with_data(rising(grid, down.to >= down.from, across.to >= across.from))
+        .with_data(rising(grid, down_ruler.rises(), across_ruler.rises()))
         .with_color_map(ColorMap::Custom(Arc::new(|part: f64| match part.is_finite() {
             true => ColorMap::Viridis.map(part),
             false => MISSING.to_owned(),
         })))
         .with_x_range(x.0, x.1)
         .with_y_range(y.0, y.1);
-    let ticks = TickFormat::Custom(Arc::new(|value: f64| decimal((value * 1e12).round() / 1e12)));
     let mut layout = Layout::new(x, y)
         .with_title(quantity.title)
-        .with_x_label(parameter(&across.name)[0])
-        .with_y_label(parameter(&down.name)[0])
-        .with_tick_format(ticks);
+        .with_x_label(axis_label(across))
+        .with_y_label(axis_label(down))
+        .with_x_tick_format(across_ruler.ticks)
+        .with_y_tick_format(down_ruler.ticks);
+    (layout.x_tick_step, layout.y_tick_step) = (across_ruler.step, down_ruler.step);
     (layout.x_axis_min, layout.x_axis_max) = (Some(x.0), Some(x.1));
     (layout.y_axis_min, layout.y_axis_max) = (Some(y.0), Some(y.1));
     layout.show_colorbar = true;
@@ -391,12 +486,7 @@ mod tests {
     /// Where the one hot cell stands in the picture: left or right, above or below.
     #[test]
     fn cells_stand_at_their_values() {
-        let axis = |from, to| Axis {
-            name: "a".to_owned(),
-            from,
-            to,
-            count: 2,
-        };
+        let axis = |from, to| Axis::linear("a", from, to, 2).expect("an axis");
         // The second value of the ordinate, the first of the abscissa.
         let grid = [vec![0.0, 0.0], vec![1.0, 0.0]];
         let place = |down: &Axis, across: &Axis| {

@@ -4,11 +4,13 @@
 //! In: a [`Report`] of one motion or a [`SweepReport`] of many. Out: text in one format; that of a sweep goes to a writer a line
 //! at a time. Angles are in rad, times in units of 1/omega, energies in units of m g L, as in the motion itself.
 
+mod columns;
 mod csv;
 #[cfg(feature = "plot")]
 pub mod figure;
 mod text;
 
+pub use columns::{Column, columns};
 pub use csv::{simulation as csv, sweep as sweep_csv};
 pub use text::{simulation as text, sweep as sweep_text};
 
@@ -36,7 +38,7 @@ pub struct Report<'a> {
 /// What is handed on of a sweep.
 #[derive(Debug, Clone, Copy)]
 pub struct SweepReport<'a> {
-    /// One or two parameters; the last varies fastest.
+    /// The parameters; the last varies fastest.
     pub axes: &'a [Axis],
     /// A row for each motion.
     pub rows: &'a [Summary],

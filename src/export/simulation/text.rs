@@ -5,6 +5,7 @@ use std::io;
 
 use super::{COMPARED, Report, SweepReport, friction, notes};
 use crate::decimal::{decimal, significant};
+use crate::impact::sweep::Axis;
 use crate::impact::{Baseline, Integrator, Model, NoRest, Simulation};
 
 /// Impacts that are listed; a long run has thousands.
@@ -270,7 +271,7 @@ fn energy(text: &mut String, motion: &Simulation) {
     );
 }
 
-/// A sweep, a line at a time, for there may be a million.
+/// A sweep, a line at a time, for there may be a million. Of three parameters or more the last two make a block.
 ///
 /// # Errors
 /// What the writer says.
@@ -281,7 +282,7 @@ fn energy(text: &mut String, motion: &Simulation) {
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
-/// let motions: Vec<_> = axes[0].values().into_iter().map(|zeta| (Model { zeta, ..Model::default() }, start)).collect();
+/// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
 /// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// let mut text = Vec::new();
@@ -290,17 +291,25 @@ fn energy(text: &mut String, motion: &Simulation) {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
+    let width = |axis: &Axis| (axis.name().len() + 2).max(14);
     for axis in report.axes {
-        write!(to, "{:>14}", axis.name)?;
+        write!(to, "{:>1$}", axis.name(), width(axis))?;
     }
     writeln!(
         to,
         "{:>9}{:>13}{:>13}{:>11}{:>13}{:>13}",
         "impacts", "rest time", "penetration", "speed in", "energy lost", "stopped at"
     )?;
+    let block: usize = match report.axes {
+        [_, .., down, across] => down.values().len() * across.values().len(),
+        _ => usize::MAX,
+    };
     for (row, summary) in report.rows.iter().enumerate() {
-        for value in report.values(row) {
-            write!(to, "{:>14}", decimal(value))?;
+        if row > 0 && row % block == 0 {
+            writeln!(to)?;
+        }
+        for (axis, value) in report.axes.iter().zip(report.values(row)) {
+            write!(to, "{:>1$}", decimal(value), width(axis))?;
         }
         let rest = summary.rest_time.map_or("-".to_owned(), decimal);
         let warning = if summary.stop.is_complete() { "" } else { "  incomplete" };

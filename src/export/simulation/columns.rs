@@ -1,0 +1,69 @@
+//! The columns of the table of a sweep: what each is called, its unit, what it means.
+
+use crate::impact::Parameter;
+use crate::impact::sweep::Axis;
+
+/// A column of the table of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, one word.
+    pub name: String,
+    /// Its unit, as it is typed; 1 for a number without dimension, nothing for what is no number.
+    pub unit: Option<&'static str>,
+    /// What it means, in words.
+    pub meaning: &'static str,
+}
+
+/// Name, unit and meaning of what came of each motion.
+const RESULTS: [(&str, Option<&str>, &str); 10] = [
+    ("impacts", Some("1"), "the number of contacts"),
+    (
+        "rest_time",
+        Some("1/omega"),
+        "when the envelope of the amplitude falls to a tenth of the first swing; empty or null where it does not",
+    ),
+    (
+        "penetration",
+        Some("rad"),
+        "the greatest depth in a barrier; 0 without contact",
+    ),
+    (
+        "speed_in",
+        Some("rad*omega"),
+        "the greatest speed at a touch; 0 without contact",
+    ),
+    ("energy_lost", Some("m*g*L"), "the energy lost in contacts"),
+    ("t", Some("1/omega"), "the time at the end of the run"),
+    ("x", Some("rad"), "the displacement there"),
+    ("velocity", Some("rad*omega"), "the velocity there"),
+    ("complete", None, "whether the run got where it was to get"),
+    ("stopped", None, "why the run ended"),
+];
+
+/// The columns: the parameters in the order of the axes, then what came of each motion.
+///
+/// ```
+/// use lindstedt::export::simulation::columns;
+///
+/// let columns = columns(&["length=0.05:0.3:6".parse()?]);
+/// assert_eq!((columns[0].name.as_str(), columns[0].unit), ("length", Some("m")));
+/// assert_eq!((columns[2].name.as_str(), columns[2].unit), ("rest_time", Some("1/omega")));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn columns(axes: &[Axis]) -> Vec<Column> {
+    let swept = axes.iter().map(|axis| {
+        let parameter = axis.name().parse::<Parameter>().ok();
+        let unit = parameter.map(Parameter::unit).filter(|unit| !unit.is_empty());
+        Column {
+            name: axis.name().to_owned(),
+            unit: unit.or(Some("1")),
+            meaning: parameter.map_or("a parameter", Parameter::meaning),
+        }
+    });
+    let results = RESULTS.map(|(name, unit, meaning)| Column {
+        name: name.to_owned(),
+        unit,
+        meaning,
+    });
+    swept.chain(results).collect()
+}

@@ -45,7 +45,7 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 42] = [
+const LINES: [(&str, &str, &str); 47] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -64,8 +64,15 @@ const LINES: [(&str, &str, &str); 42] = [
     ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
     ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
+    ("[contact] mu_over_gamma", "[contact]\nmu_over_gamma = 0.25", ""),
     ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
     ("[contact] restitution", "[contact]\nrestitution = 0.75", ""),
+    (
+        "[contact] at_speed",
+        "at_speed = 0.25",
+        "[contact]\nrestitution = 0.75\n",
+    ),
+    ("[contact] damping", "[contact]\ndamping = 25", ""),
     ("[contact] law", "[contact]\nlaw = \"homotopy\"", ""),
     (
         "[contact] linearisation",
@@ -73,7 +80,9 @@ const LINES: [(&str, &str, &str); 42] = [
         "",
     ),
     ("[damping] zeta", "[damping]\nzeta = 0.25", ""),
+    ("[damping] viscous", "[damping]\nviscous = 0.01", ""),
     ("[damping] alpha", "[damping]\nalpha = 0.25", ""),
+    ("[damping] torque", "[damping]\ntorque = 1e-4", ""),
     (
         "[damping] friction",
         "friction = \"arctangent\"",
@@ -174,6 +183,28 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
         ),
         ("[damping]\nfriction = \"exact\"", vec![], ["friction", "alpha"]),
         ("[contact]\nmu = 1\nlambda = 1", vec![], ["mu", "lambda"]),
+        (
+            "[contact]\nrestitution = 0.8\ndamping = 1",
+            vec![],
+            ["restitution", "damping"],
+        ),
+        (
+            "[contact]\nlambda = 1\nmu_over_gamma = 1",
+            vec![],
+            ["lambda", "mu_over_gamma"],
+        ),
+        ("[contact]\nat_speed = 1", vec![], ["at_speed", "restitution"]),
+        ("[damping]\nzeta = 0.1\nviscous = 1", vec![], ["zeta", "viscous"]),
+        (
+            "[damping]\nalpha = 0.1",
+            vec!["--sweep", "torque=0:1e-4:3"],
+            ["alpha", "torque"],
+        ),
+        (
+            "[contact]\ngamma = 1e5\nmu_over_gamma = 0.1",
+            vec!["--sweep", "length=0.1:0.2:3"],
+            ["length", "gamma"],
+        ),
         (
             "[contact]\ngamma = 1e5",
             vec!["--sweep", "modulus=1e8:1e9:3"],

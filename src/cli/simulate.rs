@@ -113,6 +113,8 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Method::Taylor | Method::RungeKutta => None,
     };
     let others = baseline(&motion).map_err(|error| Failure::refused(&error, None))?;
+    let units = asked.units.as_ref();
+    let dissipation = asked.case.dissipation(units).map_err(|error| refused(error.into()))?;
     let report = Report {
         motion: &motion,
         baseline: others.as_ref(),
@@ -120,6 +122,8 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         sources: [asked.gamma_source, asked.mu_source],
         tolerance: problem.run.integrator_tolerance,
         samples: &arguments.sample,
+        dissipation: Some(&dissipation),
+        units,
     };
     let text = match arguments.common.format {
         Format::Csv => csv(&report),

@@ -5,24 +5,22 @@
 //!
 //! ```text
 //! gamma = (4/3) E sqrt(R) L^(3/2) / (m g)      where it is not given        equation (8), l = L
-//! mu    = gamma lambda sqrt(g L)               where lambda is given
+//! mu    = gamma lambda sqrt(g L)               where lambda is given; other forms of it, and of zeta and alpha: `dissipation`
 //! x(0)  = -A, x'(0) = 0                        where no other start is given
 //! ```
 
+use std::f64::consts::PI;
+
 use thiserror::Error;
 
+use super::dissipation::{
+    ContactDamping, ContactScales, DampingError, Dissipation, friction_of_torque, torque_of_friction,
+    viscous_coefficient, viscous_ratio,
+};
 use super::hertz::{Design, NotPositive};
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, Side, Start};
 use super::parameter::Parameter;
-
-/// What damps the contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ContactDamping {
-    /// mu of equation (7), dimensionless.
-    Mu(f64),
-    /// lambda of Hunt and Crossley, s/m: a property of the material.
-    Lambda(f64),
-}
+use super::units::Units;
 
 /// A pendulum, its barrier, and what damps and drives it; the default is the paper's, without losses.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,10 +39,16 @@ pub struct Case {
     pub gamma: Option<f64>,
     /// Damping of the contact.
     pub contact_damping: ContactDamping,
+    /// The speed, in units of L omega, at which a restitution is stated; without it that of the first touch without damping.
+    pub at_speed: Option<f64>,
     /// Viscous damping ratio zeta, dimensionless, not negative.
     pub zeta: f64,
+    /// The coefficient of the viscous force on the bob, N s/m, in place of zeta.
+    pub viscous: Option<f64>,
     /// Coulomb friction alpha, dimensionless, not negative.
     pub alpha: f64,
+    /// The torque of that friction, N m, in place of alpha.
+    pub torque: Option<f64>,
     /// The law of that friction.
     pub friction: Friction,
     /// Excitation beta = (A_e/L)(Omega/omega)^2 of a moving pivot, dimensionless.
@@ -65,8 +69,11 @@ impl Default for Case {
             right: Some(DEFAULT_BARRIER),
             gamma: None,
             contact_damping: ContactDamping::Mu(0.0),
+            at_speed: None,
             zeta: 0.0,
+            viscous: None,
             alpha: 0.0,
+            torque: None,
             friction: Friction::default(),
             beta: 0.0,
             frequency_ratio: 0.0,
@@ -98,9 +105,9 @@ pub enum CaseError {
     /// A design that has no stiffness.
     #[error("[design]: {0}")]
     Design(#[from] NotPositive),
-    /// A contact damping that makes no number.
-    #[error("[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material")]
-    Lambda(f64),
+    /// A damping that makes no number.
+    #[error(transparent)]
+    Damping(#[from] DampingError),
     /// An excitation without a frequency.
     #[error("[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing")]
     NoFrequency(f64),
@@ -118,16 +125,19 @@ impl Case {
             Parameter::Speed => Some(self.speed),
             Parameter::Barrier => self.right,
             Parameter::Gamma => self.gamma,
-            Parameter::Mu => match self.contact_damping {
-                ContactDamping::Mu(mu) => Some(mu),
-                ContactDamping::Lambda(_) => None,
-            },
-            Parameter::Lambda => match self.contact_damping {
-                ContactDamping::Lambda(lambda) => Some(lambda),
-                ContactDamping::Mu(_) => None,
-            },
-            Parameter::Zeta => Some(self.zeta),
-            Parameter::Alpha => Some(self.alpha),
+            Parameter::Mu
+            | Parameter::MuOverGamma
+            | Parameter::Lambda
+            | Parameter::Restitution
+            | Parameter::ContactDamping => {
+                let damping = self.contact_damping;
+                (damping.form() == parameter).then_some(damping.value())
+            }
+            Parameter::AtSpeed => self.at_speed,
+            Parameter::Zeta => self.viscous.is_none().then_some(self.zeta),
+            Parameter::Viscous => self.viscous,
+            Parameter::Alpha => self.torque.is_none().then_some(self.alpha),
+            Parameter::Torque => self.torque,
             Parameter::Beta => Some(self.beta),
             Parameter::FrequencyRatio => Some(self.frequency_ratio),
             Parameter::Mass => Some(self.design.mass),
@@ -147,9 +157,15 @@ impl Case {
             Parameter::Barrier => self.right = Some(value),
             Parameter::Gamma => self.gamma = Some(value),
             Parameter::Mu => self.contact_damping = ContactDamping::Mu(value),
+            Parameter::MuOverGamma => self.contact_damping = ContactDamping::MuOverGamma(value),
             Parameter::Lambda => self.contact_damping = ContactDamping::Lambda(value),
-            Parameter::Zeta => self.zeta = value,
-            Parameter::Alpha => self.alpha = value,
+            Parameter::Restitution => self.contact_damping = ContactDamping::Restitution(value),
+            Parameter::ContactDamping => self.contact_damping = ContactDamping::Coefficient(value),
+            Parameter::AtSpeed => self.at_speed = Some(value),
+            Parameter::Zeta => (self.zeta, self.viscous) = (value, None),
+            Parameter::Viscous => self.viscous = Some(value),
+            Parameter::Alpha => (self.alpha, self.torque) = (value, None),
+            Parameter::Torque => self.torque = Some(value),
             Parameter::Beta => self.beta = value,
             Parameter::FrequencyRatio => self.frequency_ratio = value,
             Parameter::Mass => self.design.mass = value,
@@ -194,22 +210,24 @@ impl Case {
             velocity: self.speed,
         };
         let gamma = self.stiffness()?;
-        let mu = match self.contact_damping {
-            ContactDamping::Mu(mu) => mu,
-            ContactDamping::Lambda(lambda) => {
-                let mu = gamma * lambda * (self.design.gravity * self.design.length).sqrt();
-                if !mu.is_finite() {
-                    return Err(CaseError::Lambda(lambda));
-                }
-                mu
-            }
+        let mu = self.contact_damping.mu(&self.scales(gamma, start))?;
+        let units = self.si();
+        let in_si = |key, value: Option<f64>, number: f64, convert: fn(f64, &Units) -> f64| match value {
+            None => Ok(number),
+            Some(value) if value.is_nan() || value < 0.0 => Err(DampingError::Negative { key, value }),
+            Some(value) => match convert(value, &units) {
+                number if number.is_finite() => Ok(number),
+                _ => Err(DampingError::NotFinite { key, value }),
+            },
         };
+        let zeta = in_si(Parameter::Viscous, self.viscous, self.zeta, viscous_ratio)?;
+        let alpha = in_si(Parameter::Torque, self.torque, self.alpha, friction_of_torque)?;
         if self.beta != 0.0 && self.frequency_ratio == 0.0 {
             return Err(CaseError::NoFrequency(self.beta));
         }
         let model = Model {
-            zeta: self.zeta,
-            alpha: self.alpha,
+            zeta,
+            alpha,
             friction: self.friction,
             beta: self.beta,
             frequency_ratio: self.frequency_ratio,
@@ -230,11 +248,119 @@ impl Case {
         }
         Ok((model, start))
     }
+
+    /// The design in SI units.
+    fn si(&self) -> Units {
+        Units {
+            mass: self.design.mass,
+            length: self.design.length,
+            gravity: self.design.gravity,
+            radius: None,
+            modulus: None,
+            sphere_yield: None,
+            barrier_yield: None,
+        }
+    }
+
+    /// What its contact damping is measured by.
+    fn scales(&self, gamma: f64, start: Start) -> ContactScales {
+        ContactScales {
+            gamma,
+            mass: self.design.mass,
+            length: self.design.length,
+            gravity: self.design.gravity,
+            speed: self.at_speed.or_else(|| self.touch_speed(start)),
+        }
+    }
+
+    /// The speed of the first touch from this start, by the energy of the swing: without damping and with the pivot at rest.
+    /// Nothing where no barrier is reached, or where the start is inside one.
+    fn touch_speed(&self, start: Start) -> Option<f64> {
+        let Start { x, velocity } = start;
+        if self.left.is_some_and(|left| x < left) || self.right.is_some_and(|right| x > right) {
+            return None;
+        }
+        // cos c - cos x = 2 sin((x - c)/2) sin((x + c)/2), with the digits of small swings.
+        let square = |barrier: f64| {
+            let fallen = 2.0 * (0.5 * (x - barrier)).sin() * (0.5 * (x + barrier)).sin();
+            velocity * velocity + 2.0 * fallen
+        };
+        // On the way to a barrier beyond the upright position the swing must get over it.
+        let over_the_top = 0.5 * velocity * velocity > 1.0 + x.cos();
+        let reached = |barrier: f64| barrier.abs() <= PI || over_the_top;
+        let speed = |barrier: Option<f64>| {
+            let barrier = barrier.filter(|barrier| reached(*barrier))?;
+            Some(square(barrier).sqrt()).filter(|speed| *speed > 0.0)
+        };
+        let rises = if velocity == 0.0 { x.sin() < 0.0 } else { velocity > 0.0 };
+        let (first, second) = if rises {
+            (self.right, self.left)
+        } else {
+            (self.left, self.right)
+        };
+        // Over the top the motion never turns back.
+        speed(first).or_else(|| speed(second).filter(|_| !over_the_top))
+    }
+
+    /// Every form of what damps this case; those in SI units where `units` are known.
+    ///
+    /// # Errors
+    /// As [`Case::motion`].
+    ///
+    /// ```
+    /// use lindstedt::impact::{Case, ContactDamping};
+    ///
+    /// let case = Case { contact_damping: ContactDamping::MuOverGamma(0.1), zeta: 0.02, ..Case::default() };
+    /// let forms = case.dissipation(None)?;
+    /// assert!((forms.touch_speed.unwrap_or_default() - 1.324_802).abs() < 1e-6); // sqrt(2 (cos xc - cos A))
+    /// assert!((forms.restitution.unwrap_or_default() - 0.918_794).abs() < 1e-6);
+    /// assert_eq!(forms.held_fixed(), ["mu_over_gamma", "zeta"]);
+    /// # Ok::<(), lindstedt::impact::CaseError>(())
+    /// ```
+    pub fn dissipation(&self, units: Option<&Units>) -> Result<Dissipation, CaseError> {
+        let (model, start) = self.motion()?;
+        let damping = self.contact_damping;
+        let scales = self.scales(model.gamma, start);
+        let touch_speed = self.touch_speed(start);
+        let form = |of: ContactDamping, scales: &ContactScales| Some(damping.in_form(of, scales).ok()?.value());
+        let at_touch = ContactScales {
+            speed: touch_speed,
+            ..scales
+        };
+        let of_touch = |mu| ContactDamping::Mu(mu).in_form(ContactDamping::Restitution(0.0), &at_touch);
+        let either = |si: Option<f64>, own, number| if si.is_some() { own } else { number };
+        Ok(Dissipation {
+            contact: damping,
+            mu: model.mu,
+            mu_over_gamma: model.mu / model.gamma,
+            lambda: match damping {
+                ContactDamping::Lambda(lambda) => Some(lambda),
+                _ => units.and_then(|_| form(ContactDamping::Lambda(0.0), &scales)),
+            },
+            coefficient: match damping {
+                ContactDamping::Coefficient(coefficient) => Some(coefficient),
+                _ => units.and_then(|_| form(ContactDamping::Coefficient(0.0), &scales)),
+            },
+            at_speed: match damping {
+                ContactDamping::Restitution(_) => scales.speed,
+                _ => None,
+            },
+            touch_speed,
+            restitution: of_touch(model.mu).ok().map(ContactDamping::value),
+            viscous_form: either(self.viscous, Parameter::Viscous, Parameter::Zeta),
+            zeta: model.zeta,
+            viscous: self.viscous.or_else(|| Some(viscous_coefficient(model.zeta, units?))),
+            friction_form: either(self.torque, Parameter::Torque, Parameter::Alpha),
+            alpha: model.alpha,
+            torque: self.torque.or_else(|| Some(torque_of_friction(model.alpha, units?))),
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::{Integrator, Settings, simulate};
 
     #[test]
     fn the_default_case_is_the_default_model() {
@@ -254,7 +380,8 @@ mod tests {
     fn every_parameter_keeps_what_it_is_given_and_changes_the_motion() {
         let usual = Case {
             start: None,
-            contact_damping: ContactDamping::Lambda(0.1),
+            contact_damping: ContactDamping::Restitution(0.9),
+            at_speed: Some(1.0),
             beta: 0.1,
             frequency_ratio: 0.5,
             ..Case::default()
@@ -265,6 +392,52 @@ mod tests {
             assert_eq!(case.get(parameter), Some(0.25), "{parameter}");
             assert_ne!(case.motion().unwrap(), usual.motion().unwrap(), "{parameter}");
         }
+    }
+
+    #[test]
+    fn the_speed_of_the_first_touch_is_that_of_the_undamped_motion() {
+        for (left, right, start, speed) in [
+            (None, Some(0.323), None, 0.0),
+            (None, Some(-0.5), None, 0.0),
+            (Some(-1.4), None, Some(1.2), 1.0),
+            (Some(-0.9), Some(0.4), Some(0.1), 1.2),
+            (Some(-0.9), Some(0.4), Some(0.1), -1.2),
+            (Some(-0.3), Some(2.0), Some(0.1), 1.0),
+            (None, Some(3.5), Some(0.1), 2.5),
+        ] {
+            let case = Case {
+                left,
+                right,
+                start,
+                speed,
+                ..Case::default()
+            };
+            let (model, start) = case.motion().unwrap();
+            let motion = simulate(&model, start, Integrator::RungeKutta, &Settings::default()).unwrap();
+            let found = case.dissipation(None).unwrap().touch_speed.unwrap();
+            assert!(
+                (found / motion.impacts[0].speed_in - 1.0).abs() < 1e-8,
+                "{case:?}: {found}"
+            );
+        }
+        let unreached = Case {
+            right: Some(1.6),
+            ..Case::default()
+        };
+        assert_eq!(unreached.dissipation(None).unwrap().touch_speed, None);
+        let upright = Case {
+            right: Some(3.5),
+            ..Case::default()
+        };
+        assert_eq!(upright.dissipation(None).unwrap().touch_speed, None);
+        let over_the_top = Case {
+            left: Some(-1.4),
+            right: None,
+            start: Some(1.2),
+            speed: 2.0,
+            ..Case::default()
+        };
+        assert_eq!(over_the_top.dissipation(None).unwrap().touch_speed, None);
     }
 
     #[test]

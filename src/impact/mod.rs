@@ -15,6 +15,7 @@
 //! - `form`: a [`Form`], the function of time that a phase is.
 //! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
 //! - `parameter`: the numbers that a study may vary, by name, group and unit.
+//! - `dissipation`: what damps, in every form in which it may be given, and which is held fixed: [`Dissipation`].
 //! - `model`: the forces of equation (7) and what its parameters may be.
 //! - `case`: a [`Case`], the same by dimensions and materials, any number of which a [`Parameter`] reads or writes.
 //! - `polynomial`: polynomials on an interval, and where their sign changes.
@@ -59,6 +60,7 @@ mod collision;
 mod compare;
 pub mod contact;
 mod derived;
+mod dissipation;
 mod form;
 pub mod hertz;
 mod judge;
@@ -77,11 +79,15 @@ mod trial;
 mod units;
 
 pub use baseline::{Baseline, baseline};
-pub use case::{Case, CaseError, ContactDamping};
+pub use case::{Case, CaseError};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight, NoFlight};
+pub use dissipation::{
+    ContactDamping, ContactScales, DampingError, Dissipation, friction_of_torque, torque_of_friction,
+    viscous_coefficient, viscous_ratio,
+};
 pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};

@@ -25,12 +25,24 @@ pub enum Parameter {
     Gamma,
     /// Damping of the contact.
     Mu,
+    /// Damping of the contact over its stiffness.
+    MuOverGamma,
     /// Damping of the contact by its material, of Hunt and Crossley.
     Lambda,
+    /// Damping of the contact by its coefficient of restitution.
+    Restitution,
+    /// The speed at which that is stated.
+    AtSpeed,
+    /// Damping of the contact in SI units.
+    ContactDamping,
     /// Viscous damping ratio.
     Zeta,
+    /// Viscous damping in SI units.
+    Viscous,
     /// Coulomb friction.
     Alpha,
+    /// Coulomb friction in SI units.
+    Torque,
     /// Excitation by the pivot.
     Beta,
     /// Omega/omega of that excitation.
@@ -52,16 +64,22 @@ type Row = (&'static str, &'static str, &'static str, &'static str);
 
 impl Parameter {
     /// Every parameter, in the order of the documentation.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 22] = [
         Self::Amplitude,
         Self::Start,
         Self::Speed,
         Self::Barrier,
         Self::Gamma,
         Self::Mu,
+        Self::MuOverGamma,
         Self::Lambda,
+        Self::Restitution,
+        Self::AtSpeed,
+        Self::ContactDamping,
         Self::Zeta,
+        Self::Viscous,
         Self::Alpha,
+        Self::Torque,
         Self::Beta,
         Self::FrequencyRatio,
         Self::Mass,
@@ -79,14 +97,40 @@ impl Parameter {
             Self::Barrier => ("barrier", "pendulum", "rad", "the place x_c of the right barrier"),
             Self::Gamma => ("gamma", "contact", "", "the stiffness of the contact"),
             Self::Mu => ("mu", "contact", "", "the damping of the contact"),
+            Self::MuOverGamma => (
+                "mu_over_gamma",
+                "contact",
+                "",
+                "the damping of the contact over its stiffness, mu/gamma",
+            ),
             Self::Lambda => (
                 "lambda",
                 "contact",
                 "s/m",
                 "the damping of the contact by its material, of Hunt and Crossley",
             ),
+            Self::Restitution => (
+                "restitution",
+                "contact",
+                "",
+                "the coefficient of restitution that damps the contact",
+            ),
+            Self::AtSpeed => ("at_speed", "contact", "rad*omega", "the speed at which that holds"),
+            Self::ContactDamping => (
+                "damping",
+                "contact",
+                "N s/m^(5/2)",
+                "the damping c of the contact, of the force (k + c d') d^(3/2)",
+            ),
             Self::Zeta => ("zeta", "damping", "", "the viscous damping ratio"),
+            Self::Viscous => (
+                "viscous",
+                "damping",
+                "N s/m",
+                "the coefficient of the viscous force on the bob",
+            ),
             Self::Alpha => ("alpha", "damping", "", "the Coulomb friction"),
+            Self::Torque => ("torque", "damping", "N m", "the torque of the Coulomb friction"),
             Self::Beta => ("beta", "excitation", "", "the excitation by the pivot"),
             Self::FrequencyRatio => ("frequency_ratio", "excitation", "", "Omega/omega of the excitation"),
             Self::Mass => ("mass", "design", "kg", "the mass of the pendulum"),

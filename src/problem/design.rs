@@ -232,6 +232,30 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// The units of a motion, by the rule of [`Problem::units`]: by the design where gamma follows from it, or something that damps
+    /// is given in SI units; otherwise where mass, length and gravity are given. What says nothing is no mistake here.
+    pub(super) fn simulation_units(&self, design: &Design) -> Option<Units> {
+        let given = |name: &str| {
+            let keys = [format!("[pendulum] {name}"), format!("[design] {name}")];
+            keys.iter().any(|key| self.gives(key))
+        };
+        let follows = self.contact.gamma.is_none() || self.damps_in_si_units();
+        let known = follows || ["mass", "length", "gravity"].into_iter().all(given);
+        let sizes = [design.mass, design.length, design.gravity];
+        let sound = sizes.iter().all(|size| size.is_finite() && *size > 0.0);
+        (known && sound).then_some(Units {
+            mass: design.mass,
+            length: design.length,
+            gravity: design.gravity,
+            radius: Some(design.radius),
+            modulus: None,
+            sphere_yield: None,
+            barrier_yield: None,
+        })
+    }
+}
+
 fn positive(key: &'static str, value: f64) -> Result<f64, DesignError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(value),

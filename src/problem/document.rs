@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::impact::hertz::Design;
-use crate::impact::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
+use crate::impact::{ContactDamping, DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
 
 /// A problem file as it was written.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -157,8 +157,14 @@ pub struct Contact {
     pub mu: Option<f64>,
     /// Contact damping of Hunt and Crossley, s/m.
     pub lambda: Option<f64>,
-    /// For an impact, the coefficient of restitution at the speed of the touch.
+    /// mu/gamma, dimensionless, in place of mu.
+    pub mu_over_gamma: Option<f64>,
+    /// The coefficient of restitution, in place of mu.
     pub restitution: Option<f64>,
+    /// The speed at which that holds, in units of L omega; without it that of the first touch without damping.
+    pub at_speed: Option<f64>,
+    /// c of F = (k + c d') d^(3/2), N s/m^(5/2), in place of mu.
+    pub damping: Option<f64>,
     /// For an impact, the law of the contact in the derived phases; `all` for a table of every law.
     pub law: Option<String>,
     /// The rule by which a line replaces the elastic force; `all` for a table of every law of the contact.
@@ -171,8 +177,12 @@ pub struct Contact {
 pub struct Damping {
     /// Viscous damping ratio, dimensionless.
     pub zeta: f64,
+    /// The coefficient of the viscous force on the bob, N s/m, in place of zeta.
+    pub viscous: Option<f64>,
     /// Coulomb friction alpha of equation (7), dimensionless.
     pub alpha: f64,
+    /// The torque of that friction, N m, in place of alpha.
+    pub torque: Option<f64>,
     /// `exact` or `arctangent`.
     pub friction: Option<String>,
 }
@@ -221,6 +231,22 @@ impl Problem {
         self.overriding.push(name.to_owned());
         self.values
             .insert(name.to_owned(), toml::Value::String(value.to_owned()));
+    }
+}
+
+impl Contact {
+    /// The damping of the contact in the form in which it is given, the first where there are several.
+    pub fn given_damping(&self) -> Option<ContactDamping> {
+        [
+            self.mu.map(ContactDamping::Mu),
+            self.mu_over_gamma.map(ContactDamping::MuOverGamma),
+            self.lambda.map(ContactDamping::Lambda),
+            self.restitution.map(ContactDamping::Restitution),
+            self.damping.map(ContactDamping::Coefficient),
+        ]
+        .into_iter()
+        .flatten()
+        .next()
     }
 }
 

@@ -6,7 +6,9 @@ use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, UnreadKe
 use crate::expr::{Expr, ParseError, parse_expression};
 use crate::impact::contact::{ContactLaw, UnknownContactLaw};
 use crate::impact::hertz::{Design, NotPositive};
-use crate::impact::{CollisionError, ContactLoss, Rule, Setup, Side, UnknownRule};
+use crate::impact::{
+    CollisionError, ContactDamping, ContactLoss, ContactScales, DampingError, Rule, Setup, Side, UnknownRule,
+};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Method};
 use crate::spelling::nearest;
@@ -37,6 +39,12 @@ pub enum ImpactFileError {
     /// Two losses of the contact.
     #[error("[contact] has both {0} and {1}: either says what the contact loses, give one of them")]
     TwoLosses(&'static str, &'static str),
+    /// A speed at which nothing is stated.
+    #[error("[contact] at_speed changes nothing without restitution: give that too, or leave it out")]
+    SpeedAlone,
+    /// A damping that makes no number of equation (7).
+    #[error(transparent)]
+    DampingBeyond(#[from] DampingError),
     /// A restitution that is none.
     #[error("[contact] restitution must lie above 0 and below 1, not {0}: leave it out for a contact without loss")]
     Restitution(f64),
@@ -158,7 +166,11 @@ impl TryFrom<&Problem> for Setup {
     fn try_from(problem: &Problem) -> Result<Self, ImpactFileError> {
         problem.check_keys(Reader::Impact)?;
         let (damping, contact) = (&problem.damping, &problem.contact);
-        if damping.zeta != 0.0 || damping.alpha != 0.0 {
+        let damps = [damping.zeta, damping.alpha]
+            .into_iter()
+            .chain(damping.viscous)
+            .chain(damping.torque);
+        if damps.into_iter().any(|number| number != 0.0) {
             return Err(ImpactFileError::Damped);
         }
         if problem.excitation.beta != 0.0 {
@@ -379,13 +391,18 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     let contact = &problem.contact;
     let losses = [
         ("mu", contact.mu),
+        ("mu_over_gamma", contact.mu_over_gamma),
         ("lambda", contact.lambda),
         ("restitution", contact.restitution),
+        ("damping", contact.damping),
     ];
     let given: Vec<(&'static str, f64)> = losses
         .into_iter()
         .filter_map(|(key, value)| value.map(|value| (key, value)))
         .collect();
+    if contact.at_speed.is_some() && contact.restitution.is_none() {
+        return Err(ImpactFileError::SpeedAlone);
+    }
     let (key, value) = match given[..] {
         [] => return Ok(None),
         [one] => one,
@@ -408,19 +425,33 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     if let Some((law, _)) = laws.into_iter().find(|(_, name)| name.is_some()) {
         return Err(ImpactFileError::LawBesideLoss { key: law, loss: key });
     }
-    let Design { length, gravity, .. } = problem.design().map_err(ProblemError::from)?;
-    Ok(Some(match key {
-        "restitution" => ContactLoss::Restitution(value),
-        "mu" => ContactLoss::Damping(value / stiffness),
-        _ => {
-            let lengths = [("length", length), ("gravity", gravity)];
-            match lengths
-                .into_iter()
-                .find(|(_, value)| !(value.is_finite() && *value > 0.0))
-            {
-                Some((quantity, value)) => return Err(NotPositive { quantity, value }.into()),
-                None => ContactLoss::Damping(value * (gravity * length).sqrt()),
-            }
-        }
-    }))
+    if of_restitution && contact.at_speed.is_none() {
+        return Ok(Some(ContactLoss::Restitution(value)));
+    }
+    let Design {
+        mass, length, gravity, ..
+    } = problem.design().map_err(ProblemError::from)?;
+    let needed: &[(&'static str, f64)] = match key {
+        "lambda" => &[("length", length), ("gravity", gravity)],
+        "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],
+        _ => &[],
+    };
+    let none = |value: &f64| !(value.is_finite() && *value > 0.0);
+    if let Some(&(quantity, value)) = needed.iter().find(|(_, value)| none(value)) {
+        return Err(NotPositive { quantity, value }.into());
+    }
+    let scales = ContactScales {
+        gamma: stiffness,
+        mass,
+        length,
+        gravity,
+        speed: contact.at_speed,
+    };
+    let Some(damping) = contact.given_damping() else {
+        return Ok(None);
+    };
+    match damping.in_form(ContactDamping::MuOverGamma(0.0), &scales)?.value() {
+        ratio if ratio.is_finite() => Ok(Some(ContactLoss::Damping(ratio))),
+        _ => Err(ImpactFileError::Damping { key, value }),
+    }
 }

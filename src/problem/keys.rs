@@ -33,7 +33,7 @@ impl fmt::Display for Reader {
 }
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 42] = [
+pub const KEYS: [(&str, &[Reader]); 47] = [
     ("equation", &[Derive, Compare, Impact, Simulate]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
@@ -52,12 +52,17 @@ pub const KEYS: [(&str, &[Reader]); 42] = [
     ("[contact] gamma", &[Impact, Simulate]),
     ("[contact] force", &[Impact]),
     ("[contact] mu", &[Impact, Simulate]),
+    ("[contact] mu_over_gamma", &[Impact, Simulate]),
     ("[contact] lambda", &[Impact, Simulate]),
-    ("[contact] restitution", &[Impact]),
+    ("[contact] restitution", &[Impact, Simulate]),
+    ("[contact] at_speed", &[Impact, Simulate]),
+    ("[contact] damping", &[Impact, Simulate]),
     ("[contact] law", &[Impact]),
     ("[contact] linearisation", &[Impact]),
     ("[damping] zeta", &[Impact, Simulate]),
+    ("[damping] viscous", &[Impact, Simulate]),
     ("[damping] alpha", &[Impact, Simulate]),
+    ("[damping] torque", &[Impact, Simulate]),
     ("[damping] friction", &[Simulate]),
     ("[excitation] beta", &[Impact, Simulate]),
     ("[excitation] frequency_ratio", &[Simulate]),

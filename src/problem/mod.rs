@@ -114,6 +114,12 @@ impl Problem {
         }
     }
 
+    /// Whether something that damps is given by mass, length and gravity.
+    fn damps_in_si_units(&self) -> bool {
+        let in_si = [self.contact.damping, self.damping.viscous, self.damping.torque];
+        in_si.iter().any(Option::is_some)
+    }
+
     /// Where the stiffness of the contact comes from, with this design.
     fn stiffness_source(&self, design: &Design) -> &'static str {
         if self.contact.gamma.is_none() {
@@ -122,10 +128,11 @@ impl Problem {
                 false => "equation (8) with the given design and l = L",
             };
         }
-        let without_say: &[&str] = match self.contact.lambda {
-            None => &["mass", "radius", "modulus", "length", "gravity"],
+        let without_say: &[&str] = match (self.damps_in_si_units(), self.contact.lambda) {
+            (true, _) => &["radius", "modulus"],
             // mu = gamma*lambda*sqrt(g*L)
-            Some(_) => &["mass", "radius", "modulus"],
+            (false, Some(_)) => &["mass", "radius", "modulus"],
+            (false, None) => &["mass", "radius", "modulus", "length", "gravity"],
         };
         let gives = |sections: &[&str]| {
             let mut keys = without_say

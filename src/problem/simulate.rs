@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::{Barrier, Problem, ProblemError, Reader, UnreadKey};
-use crate::impact::{Case, CaseError, ContactDamping, Friction, Parameter, Settings};
+use crate::impact::{Case, CaseError, ContactDamping, Friction, Parameter, Settings, Units};
 
 /// What a problem file says of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Simulate {
     pub gamma_source: &'static str,
     /// Where mu comes from.
     pub mu_source: &'static str,
+    /// The pendulum in SI units, where they are known.
+    pub units: Option<Units>,
 }
 
 /// Why a problem file is no motion.
@@ -61,9 +63,14 @@ pub enum SimulateError {
     /// A key that belongs to another command.
     #[error(transparent)]
     Unread(#[from] UnreadKey),
-    /// Two dampings of the contact.
-    #[error("[contact] has both mu and lambda: mu = gamma*lambda*sqrt(g*L), give one of them")]
-    TwoDampings,
+    /// The same by two keys.
+    #[error("`{key}` and `{other}` say the same: give one of them, which is then held fixed")]
+    Twice {
+        /// The key.
+        key: Parameter,
+        /// The other one.
+        other: Parameter,
+    },
     /// An unknown law of friction.
     #[error("[damping] friction `{0}` is neither \"exact\" nor \"arctangent\"")]
     Friction(String),
@@ -129,11 +136,18 @@ impl Problem {
     /// ```
     pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, SimulateError> {
         let gives = |parameter: Parameter| {
+            let (contact, damping) = (&self.contact, &self.damping);
             swept.contains(&parameter)
                 || match parameter {
-                    Parameter::Gamma => self.contact.gamma.is_some(),
-                    Parameter::Mu => self.contact.mu.is_some(),
-                    Parameter::Lambda => self.contact.lambda.is_some(),
+                    Parameter::Gamma => contact.gamma.is_some(),
+                    Parameter::Mu => contact.mu.is_some(),
+                    Parameter::MuOverGamma => contact.mu_over_gamma.is_some(),
+                    Parameter::Lambda => contact.lambda.is_some(),
+                    Parameter::Restitution => contact.restitution.is_some(),
+                    Parameter::AtSpeed => contact.at_speed.is_some(),
+                    Parameter::ContactDamping => contact.damping.is_some(),
+                    Parameter::Viscous => damping.viscous.is_some(),
+                    Parameter::Torque => damping.torque.is_some(),
                     _ => self.gives(&parameter.to_string()),
                 }
         };
@@ -142,26 +156,29 @@ impl Problem {
             return Err(SimulateError::Equation);
         }
         self.check_keys(Reader::Simulate)?;
-        if gives(Parameter::Mu) && gives(Parameter::Lambda) {
-            return Err(SimulateError::TwoDampings);
-        }
+        refuse_two_forms(gives)?;
         let case = self.case()?;
         let settings = self.settings()?;
         self.check_pairs(gives)?;
         Ok(Simulate {
             settings,
             gamma_source: self.stiffness_source(&case.design),
-            mu_source: match (self.contact.mu, self.contact.lambda) {
-                (Some(_), _) => "given",
-                (None, Some(_)) => "gamma*lambda*sqrt(g*L)",
-                (None, None) => "default",
+            mu_source: match case.contact_damping {
+                _ if !ContactDamping::FORMS.into_iter().any(gives) => "default",
+                ContactDamping::Mu(_) => "given",
+                ContactDamping::MuOverGamma(_) => "gamma*mu_over_gamma",
+                ContactDamping::Lambda(_) => "gamma*lambda*sqrt(g*L)",
+                ContactDamping::Restitution(_) if case.at_speed.is_some() => "for the restitution at at_speed",
+                ContactDamping::Restitution(_) => "for the restitution at the first touch without damping",
+                ContactDamping::Coefficient(_) => "damping*L^2/(m*sqrt(g))",
             },
+            units: self.simulation_units(&case.design),
             case,
         })
     }
 
     /// The numbers of the pendulum and its barrier, as they are given.
-    fn case(&self) -> Result<Case, SimulateError> {
+    pub(super) fn case(&self) -> Result<Case, SimulateError> {
         let (left, right) = match self.pendulum.barrier {
             Barrier::Absent(_) => (None, None),
             Barrier::Right(right) => (None, Some(right)),
@@ -179,12 +196,12 @@ impl Problem {
             left,
             right,
             gamma: self.contact.gamma,
-            contact_damping: match self.contact.lambda {
-                Some(lambda) => ContactDamping::Lambda(lambda),
-                None => ContactDamping::Mu(self.contact.mu.unwrap_or(0.0)),
-            },
+            contact_damping: self.contact.given_damping().unwrap_or(ContactDamping::Mu(0.0)),
+            at_speed: self.contact.at_speed,
             zeta: self.damping.zeta,
+            viscous: self.damping.viscous,
             alpha: self.damping.alpha,
+            torque: self.damping.torque,
             friction,
             beta: self.excitation.beta,
             frequency_ratio: self.excitation.frequency_ratio,
@@ -193,7 +210,7 @@ impl Problem {
     }
 
     /// `[run]`
-    fn settings(&self) -> Result<Settings, SimulateError> {
+    pub(super) fn settings(&self) -> Result<Settings, SimulateError> {
         let tolerance = self.run.integrator_tolerance;
         if !(1e-15..=0.01).contains(&tolerance) {
             return Err(SimulateError::Tolerance(tolerance));
@@ -218,25 +235,41 @@ impl Problem {
     /// Refuses to sweep what changes nothing: for want of a barrier, because gamma is given, or swept as well, or beside a zero.
     fn check_swept(&self, swept: &[Parameter], gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
         use Parameter::{
-            Barrier as Place, Beta, FrequencyRatio, Gamma, Gravity, Lambda, Length, Mass, Modulus, Mu, Radius,
+            AtSpeed, Barrier as Place, Beta, ContactDamping as Coefficient, FrequencyRatio, Gamma, Gravity, Lambda,
+            Length, Mass, Modulus, Mu, MuOverGamma, Radius, Restitution, Torque, Viscous,
         };
-        let of_contact =
-            |key: &Parameter| matches!(key, Gamma | Mu | Lambda | Mass | Radius | Modulus | Length | Gravity);
+        let zero = |key: Parameter, given: Option<f64>| !swept.contains(&key) && given.unwrap_or(0.0) == 0.0;
+        // c = 2*zeta*m*omega, torque = alpha*m*g*L
+        let swing_in_si = !zero(Viscous, self.damping.viscous) || !zero(Torque, self.damping.torque);
+        // c = mu*m*sqrt(g)/L^2
+        let in_si = swing_in_si || !zero(Coefficient, self.contact.damping);
+        let of_contact = |key: &Parameter| match key {
+            Gamma | Mu | MuOverGamma | Lambda | Restitution | AtSpeed | Coefficient | Radius | Modulus => true,
+            Mass | Length | Gravity => !swing_in_si,
+            _ => false,
+        };
         if matches!(self.pendulum.barrier, Barrier::Absent(_)) && !swept.contains(&Place) {
             let first = swept.iter().copied().find(of_contact);
             first.map_or(Ok(()), |key| Err(SimulateError::NoBarrier(key)))?;
         }
-        let zero = |key: Parameter, given: Option<f64>| !swept.contains(&key) && given.unwrap_or(0.0) == 0.0;
         if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta)) {
             return Err(SimulateError::Zero {
                 key: FrequencyRatio,
                 other: Beta,
             });
         }
+        let without_loss = self.contact.restitution == Some(1.0) && !swept.contains(&Restitution);
+        if swept.contains(&AtSpeed) && without_loss {
+            return Err(SimulateError::NoEffect {
+                key: AtSpeed,
+                other: Restitution,
+            });
+        }
         let without_say = |parameter: &Parameter| match parameter {
-            Mass | Radius | Modulus => true,
+            Radius | Modulus => true,
+            Mass => !in_si,
             // mu = gamma*lambda*sqrt(g*L)
-            Length | Gravity => zero(Lambda, self.contact.lambda),
+            Length | Gravity => !in_si && zero(Lambda, self.contact.lambda),
             _ => false,
         };
         match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {
@@ -257,8 +290,14 @@ impl Problem {
                 other: Parameter::Beta,
             });
         }
+        if gives(Parameter::AtSpeed) && !gives(Parameter::Restitution) {
+            return Err(SimulateError::Alone {
+                key: "[contact] at_speed",
+                other: Parameter::Restitution,
+            });
+        }
         let friction = "[damping] friction";
-        if self.gives(friction) && !gives(Parameter::Alpha) {
+        if self.gives(friction) && !gives(Parameter::Alpha) && !gives(Parameter::Torque) {
             return Err(SimulateError::Alone {
                 key: friction,
                 other: Parameter::Alpha,
@@ -266,6 +305,22 @@ impl Problem {
         }
         Ok(())
     }
+}
+
+/// Refuses what is given in two forms.
+pub(super) fn refuse_two_forms(gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+    let forms: [&[Parameter]; 3] = [
+        &ContactDamping::FORMS,
+        &[Parameter::Zeta, Parameter::Viscous],
+        &[Parameter::Alpha, Parameter::Torque],
+    ];
+    for forms in forms {
+        let mut given = forms.iter().copied().filter(|form| gives(*form));
+        if let (Some(key), Some(other)) = (given.next(), given.next()) {
+            return Err(SimulateError::Twice { key, other });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -303,11 +358,18 @@ mod tests {
             ("[pendulum]\nstart = 0.1", &[Parameter::Amplitude]),
             ("", &[Parameter::FrequencyRatio]),
             ("[contact]\nmu = 1", &[Parameter::Lambda]),
+            ("[contact]\nrestitution = 0.8", &[Parameter::ContactDamping]),
+            ("[contact]\nlambda = 0.1", &[Parameter::AtSpeed]),
+            ("[damping]\nviscous = 0.1", &[Parameter::Zeta]),
+            ("[damping]\nalpha = 0.1", &[Parameter::Torque]),
+            ("[contact]\ngamma = 1e6\nmu_over_gamma = 0.1", &[Parameter::Length]),
         ] {
             assert!(sweep(text, swept).is_err(), "{text} {swept:?}");
         }
         assert!(sweep("[excitation]\nbeta = 0.1", &[Parameter::FrequencyRatio]).is_ok());
         let lambda = "[contact]\ngamma = 1e6\nlambda = 0.1";
         assert!(sweep(lambda, &[Parameter::Length]).is_ok());
+        assert!(sweep("[contact]\nrestitution = 0.8", &[Parameter::AtSpeed]).is_ok());
+        assert!(sweep("[contact]\ngamma = 1e6\ndamping = 10", &[Parameter::Mass]).is_ok());
     }
 }

@@ -17,6 +17,10 @@ pub struct SimulationDocument {
     pub schema: String,
     /// The numbers of the problem.
     pub parameters: Parameters,
+    /// What damps, each damping in every form; null where only the numbers of equation (7) are known.
+    pub dissipation: Option<Dissipation>,
+    /// The unit of time sqrt(L/g), in seconds; null where mass, length and gravity are not known.
+    pub time_unit: Option<f64>,
     /// The integrator of the run: `taylor` with the contact in a variable in which it is analytic, or `runge-kutta` phase by phase.
     #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
     pub integrator: String,
@@ -28,6 +32,8 @@ pub struct SimulationDocument {
     pub impacts: Vec<Impact>,
     /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
     pub rest_time: Option<f64>,
+    /// The same in seconds; null where there is none, or where units are not known.
+    pub rest_time_in_seconds: Option<f64>,
     /// Why there is no rest time, in words; null where there is one.
     pub rest_reason: Option<String>,
     /// The last time at which |x| is a tenth of the first swing, in units of time; null where it never is.
@@ -97,6 +103,100 @@ pub struct Parameters {
     pub integrator_tolerance: f64,
     /// The relative tolerance of one step, a part of it.
     pub step_tolerance: f64,
+}
+
+/// What damps, each damping in every form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Dissipation {
+    /// The damping of the contact.
+    pub contact: ContactDissipation,
+    /// The viscous damping.
+    pub viscous: ViscousDissipation,
+    /// The dry friction.
+    pub friction: FrictionDissipation,
+}
+
+/// The damping of a contact, in every form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ContactDissipation {
+    /// The form in which it is given and held fixed, by its key in a file.
+    #[schemars(extend("enum" = impact::ContactDamping::FORMS.map(impact::Parameter::name)))]
+    pub held_fixed: String,
+    /// mu of equation (7), dimensionless.
+    pub mu: f64,
+    /// mu/gamma, dimensionless.
+    pub mu_over_gamma: f64,
+    /// lambda of Hunt and Crossley, in s/m; null where units are not known.
+    pub lambda: Option<f64>,
+    /// c of the force (k + c d') d^(3/2), in N s/m^(5/2); null where units are not known.
+    pub damping: Option<f64>,
+    /// The coefficient of restitution at `touch_speed`, dimensionless; null where no barrier is touched.
+    pub restitution: Option<f64>,
+    /// The speed of the first touch without damping, in radians per unit of time; null where no barrier is touched.
+    pub touch_speed: Option<f64>,
+    /// The restitution that is given, dimensionless; null where another form is.
+    pub stated_restitution: Option<f64>,
+    /// The speed at which that is stated, in radians per unit of time; null where another form is given.
+    pub at_speed: Option<f64>,
+}
+
+/// A viscous damping, in every form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ViscousDissipation {
+    /// The form in which it is given and held fixed, by its key in a file.
+    #[schemars(extend("enum" = [impact::Parameter::Zeta.name(), impact::Parameter::Viscous.name()]))]
+    pub held_fixed: String,
+    /// The fraction zeta of the critical damping.
+    pub zeta: f64,
+    /// The coefficient c = 2 zeta m omega of a force against the velocity of the bob, in N s/m; null where units are not known.
+    pub viscous: Option<f64>,
+}
+
+/// A dry friction, in every form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct FrictionDissipation {
+    /// The form in which it is given and held fixed, by its key in a file.
+    #[schemars(extend("enum" = [impact::Parameter::Alpha.name(), impact::Parameter::Torque.name()]))]
+    pub held_fixed: String,
+    /// The torque in units of m g L: the coefficient alpha of equation (7).
+    pub alpha: f64,
+    /// The torque, in N m; null where units are not known.
+    pub torque: Option<f64>,
+}
+
+impl From<&impact::Dissipation> for Dissipation {
+    fn from(damping: &impact::Dissipation) -> Self {
+        Self {
+            contact: ContactDissipation {
+                held_fixed: damping.contact.form().name().to_owned(),
+                mu: damping.mu,
+                mu_over_gamma: damping.mu_over_gamma,
+                lambda: damping.lambda,
+                damping: damping.coefficient,
+                restitution: damping.restitution,
+                touch_speed: damping.touch_speed,
+                stated_restitution: match damping.contact {
+                    impact::ContactDamping::Restitution(e) => Some(e),
+                    _ => None,
+                },
+                at_speed: damping.at_speed,
+            },
+            viscous: ViscousDissipation {
+                held_fixed: damping.viscous_form.name().to_owned(),
+                zeta: damping.zeta,
+                viscous: damping.viscous,
+            },
+            friction: FrictionDissipation {
+                held_fixed: damping.friction_form.name().to_owned(),
+                alpha: damping.alpha,
+                torque: damping.torque,
+            },
+        }
+    }
 }
 
 /// The places of the barriers.
@@ -215,7 +315,7 @@ const INTEGRATORS: [Integrator; 2] = [Integrator::Taylor, Integrator::RungeKutta
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None };
 /// let document = json::simulation(&report);
 /// assert_eq!((document.samples.len(), document.impacts.len()), (1, motion.impacts.len()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -252,11 +352,14 @@ pub fn simulation(report: &Report) -> SimulationDocument {
             integrator_tolerance: report.tolerance,
             step_tolerance: motion.settings.relative_tolerance,
         },
+        dissipation: report.dissipation.map(Dissipation::from),
+        time_unit: report.units.map(impact::Units::time),
         integrator: integrator(motion.integrator).to_owned(),
         final_state: final_state(motion),
         samples: report.samples.iter().map(sample).collect(),
         impacts: motion.impacts.iter().map(impact).collect(),
         rest_time: rest.time.ok(),
+        rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
         rest_reason: rest.time.err().map(|reason| reason.to_string()),
         last_crossing: rest.last_crossing,
         baseline: report.baseline.map(|baseline| Baseline {

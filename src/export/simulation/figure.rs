@@ -46,7 +46,7 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None };
 /// assert!(figure::simulation(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -217,9 +217,15 @@ fn parameter(name: &str) -> [&str; 2] {
         "barrier" => ["barrier x_c (rad)", "x_c"],
         "gamma" => ["stiffness γ", "γ"],
         "mu" => ["contact damping μ", "μ"],
+        "mu_over_gamma" => ["contact damping μ/γ", "μ/γ"],
         "lambda" => ["contact damping λ (s/m)", "λ"],
+        "restitution" => ["restitution e", "e"],
+        "at_speed" => ["speed of the restitution", "v"],
+        "damping" => ["contact damping c (N s/m^(5/2))", "c"],
         "zeta" => ["damping ratio ζ", "ζ"],
+        "viscous" => ["viscous damping c (N s/m)", "c"],
         "alpha" => ["friction α", "α"],
+        "torque" => ["torque of friction (N m)", "torque"],
         "beta" => ["excitation β", "β"],
         "frequency_ratio" => ["frequency ratio Ω/ω", "Ω/ω"],
         "mass" => ["mass m (kg)", "m"],

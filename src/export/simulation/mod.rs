@@ -16,7 +16,7 @@ pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::decimal::decimal;
 use crate::impact::sweep::{Axis, Summary, grid_values};
-use crate::impact::{Baseline, Friction, Simulation};
+use crate::impact::{Baseline, Dissipation, Friction, Simulation, Units};
 
 /// What is handed on of one run.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +33,10 @@ pub struct Report<'a> {
     pub samples: &'a [f64],
     /// The rest times of the same swing without a barrier and with a lossless one, where there is something to compare.
     pub baseline: Option<&'a Baseline>,
+    /// What damps it, in every form, where that is known.
+    pub dissipation: Option<&'a Dissipation>,
+    /// The pendulum in SI units, where they are known.
+    pub units: Option<&'a Units>,
 }
 
 /// What is handed on of a sweep.

@@ -6,7 +6,7 @@ use std::io;
 use super::{COMPARED, Report, SweepReport, friction, notes};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::Axis;
-use crate::impact::{Baseline, Integrator, Model, NoRest, Simulation};
+use crate::impact::{Baseline, ContactDamping, Dissipation, Integrator, Model, NoRest, Simulation};
 
 /// Impacts that are listed; a long run has thousands.
 const LISTED: usize = 24;
@@ -19,13 +19,19 @@ const LISTED: usize = 24;
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None };
 /// assert!(text(&report).contains("\nImpacts: "));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
     let mut text = header(report);
+    if let Some(dissipation) = report.dissipation {
+        text.push_str(&damping(
+            dissipation,
+            motion.model.left.or(motion.model.right).is_some(),
+        ));
+    }
     impacts(&mut text, motion);
     rest(&mut text, report);
     energy(&mut text, motion);
@@ -165,6 +171,65 @@ fn header(report: &Report) -> String {
     text
 }
 
+/// What damps, in every form, and which form is held fixed.
+fn damping(dissipation: &Dissipation, has_barrier: bool) -> String {
+    let &Dissipation {
+        mu,
+        mu_over_gamma,
+        lambda,
+        coefficient,
+        zeta,
+        viscous,
+        alpha,
+        torque,
+        ..
+    } = dissipation;
+    let contact = mu != 0.0 && has_barrier;
+    if !contact && zeta == 0.0 && alpha == 0.0 {
+        return String::new();
+    }
+    let held = dissipation.held_fixed();
+    let held: Vec<&str> = held
+        .into_iter()
+        .filter(|form| contact || *form != dissipation.contact.form().name())
+        .collect();
+    let mut text = format!("\nDamping, in every form; held fixed: {}\n", held.join(", "));
+    let mut entry = |name: &str, forms: Vec<String>| {
+        let _ = writeln!(text, "  {name:<9} {}", forms.join(", "));
+    };
+    let in_si = |name: &str, value: Option<f64>, unit: &str| {
+        let value = value.map(|value| format!("{name} = {} {unit}", decimal(value)));
+        value.into_iter().collect::<Vec<_>>()
+    };
+    if contact {
+        let mut forms = vec![
+            format!("mu = {}", decimal(mu)),
+            format!("mu/gamma = {}", decimal(mu_over_gamma)),
+        ];
+        forms.extend(in_si("lambda", lambda, "s/m"));
+        forms.extend(in_si("damping", coefficient, "N s/m^(5/2)"));
+        entry("contact", forms);
+        if let (ContactDamping::Restitution(e), Some(speed)) = (dissipation.contact, dissipation.at_speed) {
+            let given = format!("restitution = {} at the speed {}", decimal(e), decimal(speed));
+            entry("", vec![given]);
+        }
+        if let (Some(e), Some(speed)) = (dissipation.restitution, dissipation.touch_speed) {
+            let (e, speed) = (decimal(e), decimal(speed));
+            let words = format!("restitution {e} at {speed}, the speed of the first touch without damping");
+            entry("", vec![words]);
+        }
+    }
+    if zeta != 0.0 {
+        let zeta = vec![format!("zeta = {}", decimal(zeta))];
+        entry("viscous", [zeta, in_si("viscous", viscous, "N s/m")].concat());
+    }
+    if alpha != 0.0 {
+        let alpha = vec![format!("alpha = {}", decimal(alpha))];
+        entry("friction", [alpha, in_si("torque", torque, "N m")].concat());
+    }
+    text
+}
+
 fn impacts(text: &mut String, motion: &Simulation) {
     let count = motion.impacts.len();
     let _ = writeln!(text, "\nImpacts: {count}");
@@ -209,6 +274,10 @@ fn impacts(text: &mut String, motion: &Simulation) {
 
 fn rest(text: &mut String, report: &Report) {
     let rest = report.motion.rest();
+    let seconds = |time: f64| match report.units {
+        Some(units) => format!(", {} s", decimal(time * units.time())),
+        None => String::new(),
+    };
     let _ = match rest.amplitude {
         0.0 => writeln!(text, "\nRest"),
         amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}", decimal(amplitude)),
@@ -216,8 +285,9 @@ fn rest(text: &mut String, report: &Report) {
     let _ = match rest.time {
         Ok(time) => writeln!(
             text,
-            "  rest time      {}   (envelope of the turning points)",
-            decimal(time)
+            "  rest time      {}{}   (envelope of the turning points)",
+            decimal(time),
+            seconds(time)
         ),
         Err(reason) => writeln!(text, "  rest time      none: {reason}"),
     };

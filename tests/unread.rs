@@ -294,6 +294,8 @@ fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, Simulate
                     Parameter::Start => -0.55,
                     Parameter::Barrier => 0.1,
                     Parameter::Zeta | Parameter::Alpha | Parameter::Beta => 0.02,
+                    Parameter::Viscous => 5e-3,
+                    Parameter::Torque => 1e-4,
                     other => 0.2 + 0.01 * f64::from(other as u8),
                 };
                 // By another ratio each: gamma is that of modulus over mass.
@@ -309,7 +311,7 @@ fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, Simulate
 /// same, or the refusal names what is swept and what it would be overridden by.
 #[test]
 fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
-    const FILES: [&str; 14] = [
+    const FILES: [&str; 18] = [
         "",
         "[pendulum]\nbarrier = false",
         "[pendulum]\nbarrier = [-1.6, 0.1]",
@@ -321,6 +323,10 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
         "[contact]\nlambda = 0.2",
         "[contact]\ngamma = 1e3\nlambda = 0.2",
         "[contact]\ngamma = 1e3\nlambda = 0",
+        "[contact]\nrestitution = 0.8",
+        "[contact]\nrestitution = 1",
+        "[contact]\ngamma = 1e3\ndamping = 1",
+        "[contact]\ngamma = 1e3\n[damping]\nviscous = 5e-3\ntorque = 1e-4",
         "[damping]\nzeta = 0.02\nalpha = 0.01\nfriction = \"arctangent\"",
         "[excitation]\nbeta = 0.1\nfrequency_ratio = 0.7",
         "[excitation]\nbeta = 0\nfrequency_ratio = 0.7",

@@ -22,6 +22,7 @@
 //! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
 //! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
 //! - `judge`: Runge-Kutta on the equations as they stand, for one impact and for a whole motion.
+//! - [`chain`](mod@chain): the same motion by closed forms, swing and contact in turn.
 //! - `setup`: a [`Setup`], the whole question, and the equations and forces that it means.
 //! - `derived`: a [`Flight`], any derived motion as approach and return.
 //! - `trial`: the question with its true motion, and what methods are tried in turn.
@@ -55,6 +56,7 @@
 
 mod baseline;
 mod case;
+pub mod chain;
 mod closed_form;
 mod collision;
 mod compare;
@@ -80,6 +82,7 @@ mod units;
 
 pub use baseline::{Baseline, baseline};
 pub use case::{Case, CaseError};
+pub use chain::{ChainError, chain};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
@@ -98,8 +101,8 @@ pub use setup::{ContactLoss, Letters, Setup, SetupError};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{
-    Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime, Rest,
-    Settings, Simulation, Stop, Turn,
+    ClosedForm, Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime,
+    Rest, Settings, Simulation, Stop, Turn,
 };
 pub use trial::{Attempt, ImpactError};
 pub use units::{Elastic, FIRST_YIELD, Modulus, PRINTED_CONTACT_TIME, Units};

@@ -12,9 +12,11 @@
 //! - [`Integrator::Taylor`], the fast one: power series, in contact those of the regularised equation, and the events as
 //!   roots of polynomials.
 //! - [`Integrator::RungeKutta`], the judge: the library's Runge-Kutta in phases.
+//! - [`Integrator::Chain`], which does not integrate: closed forms, good to a part of a percent.
 
 use thiserror::Error;
 
+use super::chain::{ChainError, chain};
 use super::model::{Model, ModelError, Start};
 use super::simulation::{Integrator, Settings, Simulation, size};
 use super::{judge, taylor};
@@ -39,6 +41,9 @@ pub enum SimulationError {
     /// A tolerance no double-precision run can keep.
     #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
     Tolerance(f64),
+    /// There is no chain of closed forms.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
     /// Runge-Kutta cannot begin.
     #[error("Runge-Kutta: {0}")]
     RungeKutta(#[from] IntegrationError),
@@ -72,6 +77,7 @@ pub fn simulate(
     match integrator {
         Integrator::Taylor => Ok(taylor::alone(*model, start, *settings)),
         Integrator::RungeKutta => Ok(judge::follow(model, start, settings)?),
+        Integrator::Chain => Ok(chain(model, start, settings)?),
     }
 }
 

@@ -305,7 +305,7 @@ pub struct Difference {
     pub until: f64,
 }
 
-const INTEGRATORS: [Integrator; 2] = [Integrator::Taylor, Integrator::RungeKutta];
+const INTEGRATORS: [Integrator; 3] = [Integrator::Taylor, Integrator::RungeKutta, Integrator::Chain];
 
 /// The document of kind `simulation`.
 ///
@@ -417,6 +417,7 @@ fn integrator(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::Taylor => "taylor",
         Integrator::RungeKutta => "runge-kutta",
+        Integrator::Chain => "chain",
     }
 }
 

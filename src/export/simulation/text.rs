@@ -82,6 +82,7 @@ fn method(motion: &Simulation) -> &'static str {
     match motion.integrator {
         Integrator::Taylor => "Taylor series, contact regularised",
         Integrator::RungeKutta => "Runge-Kutta in phases",
+        Integrator::Chain => "closed forms, swing and contact in turn",
     }
 }
 

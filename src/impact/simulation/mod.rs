@@ -4,18 +4,22 @@
 //! the motion as a function of time, where its energy went, when it came to rest, how far it is from another.
 //!
 //! - `path`: the motion as a function of time, piece by piece.
+//! - `closed`: the formulas of a chain.
 //! - `energy`: the work of each force, and what is left over.
 //! - `rest`: the envelope and its 10 %.
 
+mod closed;
 pub(super) mod energy;
 pub(super) mod path;
 pub(super) mod rest;
 
 use std::fmt;
 
+pub use closed::ClosedForm;
 pub use energy::{EnergyBook, EnergyPoint};
 pub use path::{Path, Piece, Regime};
 pub use rest::{NoRest, REST_FRACTION, Rest};
+pub(super) use rest::{first_swing, has_rested};
 
 use super::model::{Model, Side, Start};
 use crate::decimal::significant;
@@ -29,6 +33,8 @@ pub enum Integrator {
     Taylor,
     /// The library's Runge-Kutta in phases: the judge.
     RungeKutta,
+    /// Not integrated: swing and contact in closed form, one after the other.
+    Chain,
 }
 
 /// How long and how closely to follow a motion.
@@ -46,6 +52,8 @@ pub struct Settings {
     pub rest_energy: Option<f64>,
     /// Who may ask the run to stop where it is.
     pub interrupt: Interrupt,
+    /// Stop as soon as the rest time is known, but for Runge-Kutta, which goes on to the end.
+    pub stop_at_rest: bool,
     /// Keep the motion as a function of time; without it there are impacts, turning points and the end.
     pub keep_path: bool,
 }
@@ -59,6 +67,7 @@ impl Default for Settings {
             maximum_steps: 250_000,
             rest_energy: None,
             interrupt: Interrupt::default(),
+            stop_at_rest: false,
             keep_path: true,
         }
     }
@@ -71,6 +80,8 @@ pub enum Stop {
     Duration,
     /// The energy fell to [`Settings::rest_energy`].
     RestEnergy,
+    /// The envelope fell to a tenth of the first swing, with [`Settings::stop_at_rest`].
+    AtRest,
     /// The numbers grew beyond all bounds.
     NotFinite {
         /// The last time reached.
@@ -101,7 +112,7 @@ pub enum Stop {
 impl Stop {
     /// Whether the run got where it was to get.
     pub fn is_complete(self) -> bool {
-        matches!(self, Self::Duration | Self::RestEnergy)
+        matches!(self, Self::Duration | Self::RestEnergy | Self::AtRest)
     }
 }
 
@@ -111,6 +122,7 @@ impl Stop {
         match self {
             Self::Duration => "duration",
             Self::RestEnergy => "rest energy",
+            Self::AtRest => "at rest",
             Self::NotFinite { .. } => "not finite",
             Self::Steps { .. } => "step limit",
             Self::Interrupted { .. } => "interrupted",
@@ -126,6 +138,7 @@ impl fmt::Display for Stop {
         match self {
             Self::Duration => write!(formatter, "the end of the duration was reached"),
             Self::RestEnergy => write!(formatter, "the energy fell to the rest energy"),
+            Self::AtRest => write!(formatter, "the rest time is known"),
             Self::NotFinite { t } => {
                 write!(
                     formatter,
@@ -178,6 +191,30 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// A contact that begins with a touch at this speed.
+    pub(super) fn touched(side: Side, t: f64, speed: f64) -> Self {
+        Self {
+            side,
+            entry_time: t,
+            exit_time: None,
+            speed_in: speed,
+            start_depth: 0.0,
+            speed_out: None,
+            penetration: 0.0,
+            restitution: None,
+            energy_lost: None,
+        }
+    }
+
+    /// The same so much later.
+    pub(super) fn later(&self, time: f64) -> Self {
+        Self {
+            entry_time: self.entry_time + time,
+            exit_time: self.exit_time.map(|exit| exit + time),
+            ..*self
+        }
+    }
+
     /// The contact ends, at this time and with this speed.
     pub(super) fn released(&mut self, model: &Model, t: f64, speed: f64) {
         self.exit_time = Some(t);
@@ -249,15 +286,9 @@ pub(super) fn enter(
         return;
     }
     impacts.push(Contact {
-        side,
-        entry_time: t,
-        exit_time: None,
-        speed_in: speed,
         start_depth: depth,
-        speed_out: None,
         penetration: depth,
-        restitution: None,
-        energy_lost: None,
+        ..Contact::touched(side, t, speed)
     });
 }
 

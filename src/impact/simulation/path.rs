@@ -1,8 +1,10 @@
-//! The motion as a function of time, piece by piece: the polynomials of the Taylor steps, or the Runge-Kutta path.
+//! The motion as a function of time, piece by piece: the polynomials of the Taylor steps, the Runge-Kutta path, or the formulas of a
+//! chain.
 //!
 //! In contact a piece is a polynomial in s with dt = w ds, x = x_r + w^2: to ask for a time is to solve t(s) = t first,
 //! which has one solution because t rises with s.
 
+use super::closed::ClosedForm;
 use crate::impact::model::Side;
 use crate::impact::polynomial::{crossing_of, value};
 use crate::numeric::ode::Trajectory;
@@ -45,6 +47,16 @@ pub struct Piece {
     form: Representation,
 }
 
+impl Piece {
+    /// The formula of this stretch, where it has one: in a chain.
+    pub fn closed_form(&self) -> Option<ClosedForm> {
+        match self.form {
+            Representation::Closed(form) => Some(form),
+            _ => None,
+        }
+    }
+}
+
 /// How x and x' are kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Representation {
@@ -63,6 +75,8 @@ enum Representation {
     Constant { x: f64 },
     /// See the trajectory of Runge and Kutta; in contact it counts from the barrier.
     Judged { origin: f64, sign: f64 },
+    /// A formula.
+    Closed(ClosedForm),
 }
 
 /// The whole motion.
@@ -183,6 +197,25 @@ impl Path {
         self.push(span, Regime::Contact(side), form);
     }
 
+    pub(in crate::impact) fn push_closed(&mut self, span: [f64; 2], regime: Regime, form: ClosedForm) {
+        self.push(span, regime, Representation::Closed(form));
+    }
+
+    /// Goes on with another path of power series, whose clock begins at this time.
+    pub(in crate::impact) fn extend(&mut self, other: &Self, from: f64) {
+        let shift = self.pool.len();
+        self.pool.extend_from_slice(&other.pool);
+        self.pieces.extend(other.pieces.iter().map(|piece| {
+            let mut piece = *piece;
+            piece.start += from;
+            piece.end += from;
+            if let Representation::Time { offset, .. } | Representation::Regularised { offset, .. } = &mut piece.form {
+                *offset += shift;
+            }
+            piece
+        }));
+    }
+
     pub(in crate::impact) fn push_rest(&mut self, span: [f64; 2], x: f64) {
         self.push(span, Regime::Stuck, Representation::Constant { x });
     }
@@ -282,6 +315,17 @@ impl Path {
                 self.node(piece, s / length)
             }
             Representation::Constant { x } => node(x, 0.0),
+            Representation::Closed(form) => {
+                let (x, velocity) = form.at(t - piece.start);
+                let depth = match form {
+                    ClosedForm::Contact { side, barrier, .. } => (side.sign() * (x - barrier)).max(0.0),
+                    ClosedForm::Swing { .. } => 0.0,
+                };
+                Node {
+                    depth,
+                    ..node(x, velocity)
+                }
+            }
             Representation::Judged { origin, sign } => {
                 // The end of a step may be the beginning of another phase, with another coordinate.
                 let inside = t.clamp(piece.start, piece.end.next_down().max(piece.start));

@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
 use super::{Simulation, Stop, Turn};
-use crate::impact::model::{Side, Start};
+use crate::impact::model::{Model, Side, Start};
 use crate::impact::polynomial::crossing_of;
 
 /// The part of the first amplitude that counts as rest.
@@ -90,11 +90,7 @@ impl Simulation {
     /// The amplitude of a swing with the energy of the start, so that a motion has the same wherever in its first swing
     /// it is taken up.
     fn first_swing(&self) -> f64 {
-        let Start { x, velocity } = self.start;
-        match velocity == 0.0 && self.model.depth(x).is_none() {
-            true => x.abs(),
-            false => swing_of(self.model.energy(x, velocity)).unwrap_or(PI.max(x.abs())),
-        }
+        first_swing(&self.model, self.start)
     }
 
     fn measure(&self) -> Measure {
@@ -216,6 +212,29 @@ impl Simulation {
         let edge = level.copysign(from.x);
         let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
         Some(crossing_of(excess, from.t, to.t))
+    }
+}
+
+/// The amplitude, rad, of a swing with the energy of the start.
+pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
+    let Start { x, velocity } = start;
+    match velocity == 0.0 && model.depth(x).is_none() {
+        true => x.abs(),
+        false => swing_of(model.energy(x, velocity)).unwrap_or(PI.max(x.abs())),
+    }
+}
+
+/// Whether the turning points show that the envelope is below this level, where nothing can raise it again.
+pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -> bool {
+    if model.beta != 0.0 {
+        return false;
+    }
+    let small = |turn: &Turn| turn.x.abs() <= level;
+    match (model.left, model.right, turns) {
+        (None, Some(right), [.., last]) => last.x < right.min(0.0) && small(last),
+        (Some(left), None, [.., last]) => last.x > left.max(0.0) && small(last),
+        (_, _, [.., before, last]) => small(before) && small(last),
+        _ => false,
     }
 }
 

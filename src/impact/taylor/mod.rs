@@ -29,7 +29,10 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
-use super::simulation::{Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled};
+use super::simulation::{
+    Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter, first_swing, has_rested,
+    scaled,
+};
 pub(super) use lanes::follow;
 use series::{Coefficients, End, HIGHEST_ORDER, Inputs, LAST, Terms};
 use step::step_length;
@@ -87,6 +90,8 @@ pub(super) struct Runner {
     steps: usize,
     idle: usize,
     stop: Option<Stop>,
+    /// A tenth of the amplitude of the first swing.
+    level: f64,
     impacts: Vec<Contact>,
     turns: Vec<Turn>,
     path: Path,
@@ -157,6 +162,7 @@ impl Runner {
             steps: 0,
             idle: 0,
             stop: None,
+            level: REST_FRACTION * first_swing(&model, start),
             impacts: Vec::new(),
             turns: Vec::new(),
             path: Path::new(),
@@ -323,7 +329,7 @@ impl Runner {
     /// Goes on with the series at the present moment: its values at the end of the step, and where they do not say
     /// enough, its coefficients: x and v, or w, v and t.
     fn advance(&mut self, end: End, load: impl FnOnce() -> [[f64; HIGHEST_ORDER + 1]; 3]) {
-        let before = self.t;
+        let (before, turns) = (self.t, self.turns.len());
         if !(end.place.is_finite() && end.variation.is_finite()) {
             self.stop = Some(Stop::NotFinite { t: self.t });
             return;
@@ -347,6 +353,10 @@ impl Runner {
                 Some(contact) => self.advance_contact(contact, end, [&place, &velocity, &time]),
                 None => self.advance_flight(end, &place, &velocity),
             }
+        }
+        let turned = self.settings.stop_at_rest && self.turns.len() > turns;
+        if turned && self.stop.is_none() && has_rested(&self.model, &self.turns, self.level) {
+            self.stop = Some(Stop::AtRest);
         }
         self.idle = if self.t > before { 0 } else { self.idle + 1 };
         if self.idle > MOST_IDLE && self.stop.is_none() {

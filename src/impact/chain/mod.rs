@@ -1,0 +1,763 @@
+//! The motion of equation (7) without integrating: swing, contact, swing, each in closed form, until it rests.
+//!
+//! Reference: N. N. Bogoliubov and Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-linear Oscillations*, 1961, chapter 1, for
+//! the slowly decaying amplitude; `swing` and `bounce` beside this file for the two kinds of phase.
+//!
+//! ```text
+//! S(E) = 2 int x' dx over a stretch of the undamped swing,  T(E) = dS/dE the time of it
+//! S -> S exp(-2 zeta T)                                   viscous damping: the action
+//! cos a' - cos a = alpha (a + a')                         Coulomb friction from one turning point to the next, exact
+//! E_before = E + alpha l + (S/T)(exp(2 zeta T) - 1)       both, over a stretch of length l, with S and T at its reference energy E:
+//! E_after  = E - alpha l - (S/T)(1 - exp(-2 zeta T))      that of the turning point, or of its middle
+//! ```
+//!
+//! Before and after a reference energy the stretches mirror each other. Damping of the opposite sign runs the motion backwards, so errors
+//! of even order cancel: one swing errs by the third power of zeta T.
+//!
+//! In: a model, a start, settings. Out: a [`Simulation`] like any other, whose pieces are [`ClosedForm`]s. What has none is integrated,
+//! and said: from there on, where the pendulum comes to lean on a barrier or sticks on its way.
+
+mod bounce;
+mod swing;
+
+use thiserror::Error;
+
+use super::model::{Friction, Model, Side, Start};
+use super::simulation::{
+    ClosedForm, Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, first_swing,
+    has_rested,
+};
+use super::taylor;
+use bounce::Barrier;
+use swing::{Spot, Stretch, Swing};
+
+/// Why a motion has no chain of closed forms.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ChainError {
+    /// A moving pivot.
+    #[error("the chain has no moving pivot: beta = {0} needs the simulation, leave out --chain")]
+    Driven(f64),
+    /// The arctangent law.
+    #[error("the chain takes dry friction by Coulomb's law: write friction = \"exact\", or leave out --chain")]
+    Arctangent,
+    /// Nothing that swings.
+    #[error(
+        "zeta = {0} is too much for a swing that decays slowly: below {MOST_DAMPING} the chain holds, leave out --chain"
+    )]
+    Overdamped(f64),
+    /// Over the top.
+    #[error(
+        "the pendulum turns over with an energy of {0} m g L: the chain is for swings, below 2 m g L; leave out --chain"
+    )]
+    TurnsOver(f64),
+    /// In the barrier.
+    #[error("the motion starts inside the {} barrier: the chain begins with a swing, leave out --chain", .0.name())]
+    Inside(Side),
+}
+
+/// The greatest zeta of a chain: beyond it a swing loses most of its energy.
+pub const MOST_DAMPING: f64 = 0.5;
+
+/// The motion from this start by closed forms.
+///
+/// The accuracy of the settings counts only where a part has to be integrated. Cost: a few elliptic integrals a swing.
+///
+/// # Errors
+/// [`ChainError`]: a pivot that moves, friction by the arctangent, a pendulum that turns over, heavy damping, a start in a barrier.
+///
+/// ```
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, chain, simulate};
+///
+/// let model = Model { zeta: 0.02, gamma: 1e6, mu: 1e5, ..Model::default() };
+/// let settings = Settings { duration: 250.0, stop_at_rest: true, ..Settings::default() };
+/// let (formulas, truth) = (
+///     chain(&model, Start::default(), &settings)?,
+///     simulate(&model, Start::default(), Integrator::Taylor, &settings)?,
+/// );
+/// assert!((formulas.rest().time? / truth.rest().time? - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulation, ChainError> {
+    if model.beta != 0.0 {
+        return Err(ChainError::Driven(model.beta));
+    }
+    if model.friction == Friction::Arctangent && model.alpha > 0.0 {
+        return Err(ChainError::Arctangent);
+    }
+    if model.zeta >= MOST_DAMPING {
+        return Err(ChainError::Overdamped(model.zeta));
+    }
+    let energy = model.swing_energy(start.x, start.velocity);
+    if energy >= 2.0 || start.x.abs() >= std::f64::consts::PI {
+        return Err(ChainError::TurnsOver(energy));
+    }
+    if let Some((side, _)) = model.depth(start.x) {
+        return Err(ChainError::Inside(side));
+    }
+    let barriers = [Side::Left, Side::Right].map(|side| Barrier::of(model, side));
+    let mut chain = Chain {
+        model,
+        settings,
+        barriers: &barriers,
+        t: 0.0,
+        state: [start.x, start.velocity],
+        count: 0,
+        remembered: [Remembered {
+            ratio: (-3.0 * model.zeta).exp(),
+            change: 0.0,
+            guessed: true,
+        }; 2],
+        impacts: Vec::with_capacity(MANY),
+        turns: Vec::with_capacity(2 * MANY),
+        path: Path::new(),
+        stop: None,
+        level: REST_FRACTION * first_swing(model, start),
+        integrated: None,
+    };
+    chain.run(start);
+    Ok(chain.finish(start))
+}
+
+/// Where the next stretch begins.
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead, where they are known.
+    Turn(Side, Spot, Option<(Swing, Stretch)>),
+    /// At this spot, counted towards this side, with this energy, on the way there.
+    Leaving(Side, Spot, f64),
+}
+
+/// A stretch from or to its reference energy.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    time: f64,
+    area: f64,
+    length: f64,
+    /// How much later or earlier damping lets the motion arrive, for the same phase.
+    lag: f64,
+}
+
+/// Which energies are alike from one swing to the next: of those that leave a barrier, and of free ones.
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    FromPlace,
+    FromTurn,
+}
+
+/// The reference energy of the last stretch of a kind in parts of that before it, and by how much that changed: the next one is near.
+#[derive(Debug, Clone, Copy)]
+struct Remembered {
+    ratio: f64,
+    change: f64,
+    guessed: bool,
+}
+
+struct Chain<'a> {
+    model: &'a Model,
+    settings: &'a Settings,
+    barriers: &'a [Option<Barrier>; 2],
+    t: f64,
+    /// x and x' now.
+    state: [f64; 2],
+    count: usize,
+    remembered: [Remembered; 2],
+    impacts: Vec<Contact>,
+    turns: Vec<Turn>,
+    path: Path,
+    stop: Option<Stop>,
+    /// A tenth of the amplitude of the first swing.
+    level: f64,
+    /// What of it was integrated, from now on.
+    integrated: Option<Simulation>,
+}
+
+impl<'a> Chain<'a> {
+    fn run(&mut self, start: Start) {
+        let Start { x, velocity } = start;
+        let energy = self.model.swing_energy(x, velocity);
+        let mut place = if velocity == 0.0 {
+            self.turns.push(Turn { t: 0.0, x });
+            if x == 0.0 || self.sticks(x) {
+                return self.held(x);
+            }
+            let side = if x > 0.0 { Side::Right } else { Side::Left };
+            Place::Turn(side, Spot::at(x.abs()), None)
+        } else {
+            let to = if velocity > 0.0 { Side::Right } else { Side::Left };
+            Place::Leaving(to, Spot::at(to.sign() * x), energy)
+        };
+        while self.stop.is_none() {
+            self.count += 1;
+            if self.count > self.settings.maximum_steps {
+                self.stop = Some(Stop::Steps { t: self.t });
+            } else if self.settings.interrupt.is_requested() {
+                self.stop = Some(Stop::Interrupted { t: self.t });
+            } else if self.t >= self.settings.duration {
+                self.stop = Some(Stop::Duration);
+            } else {
+                let next = match place {
+                    Place::Turn(side, turn, known) => self.from_turn(side, turn, known),
+                    Place::Leaving(to, spot, energy) => self.leave(to, spot, energy),
+                };
+                place = next.unwrap_or(place);
+            }
+        }
+    }
+
+    fn barrier(&self, side: Side) -> Option<&'a Barrier> {
+        match side {
+            Side::Left => self.barriers[0].as_ref(),
+            Side::Right => self.barriers[1].as_ref(),
+        }
+    }
+
+    /// Whether dry friction holds the pendulum at rest at this angle.
+    fn sticks(&self, x: f64) -> bool {
+        self.model.alpha > 0.0 && x.sin().abs() <= self.model.alpha
+    }
+
+    /// E_before - E of a leg, and how fast that grows with E.
+    fn above(&self, leg: &Leg, swing: &Swing) -> (f64, f64) {
+        let Model { zeta, alpha, .. } = *self.model;
+        let growth = (2.0 * zeta * (leg.time - leg.lag)).exp_m1();
+        let loss = leg.area / leg.time * growth;
+        match alpha == 0.0 || leg.length == 0.0 {
+            true => (loss, growth),
+            false => (
+                loss + alpha * leg.length,
+                growth + alpha / Spot::turn(swing.energy).x.sin(),
+            ),
+        }
+    }
+
+    /// E - E_after of a leg.
+    fn below(&self, leg: &Leg) -> f64 {
+        self.model.alpha * leg.length - leg.area / leg.time * (-2.0 * self.model.zeta * (leg.time + leg.lag)).exp_m1()
+    }
+
+    /// The swing from whose reference energy this leg, run backwards, leads to this energy; nothing where there is none.
+    fn reference(&mut self, energy: f64, kind: Kind, leg: impl Fn(&Swing) -> Leg) -> Option<(Swing, Leg)> {
+        if self.model.zeta == 0.0 && self.model.alpha == 0.0 {
+            let swing = Swing::new(energy);
+            return Some((swing, leg(&swing))).filter(|(_, leg)| leg.time > 0.0);
+        }
+        let last = self.remembered[kind as usize];
+        let mut reference = energy * (last.ratio + last.change);
+        for _ in 0..MOST_NEWTON {
+            let mut swing = Swing::new(reference);
+            let mut leg = leg(&swing);
+            if !(leg.time > 0.0) {
+                return None;
+            }
+            let (loss, growth) = self.above(&leg, &swing);
+            let error = reference + loss - energy;
+            let step = error / (1.0 + growth);
+            reference -= step;
+            if !(reference > 0.0) {
+                return None;
+            }
+            if error.abs() <= NEAR * energy {
+                // The areas grow with the energy as the times; what is left out is of the order of the square.
+                swing.energy = reference;
+                swing.quarter.area -= swing.quarter.time * step;
+                leg.area -= leg.time * step;
+                let ratio = reference / energy;
+                self.remembered[kind as usize] = Remembered {
+                    ratio,
+                    change: if last.guessed { 0.0 } else { ratio - last.ratio },
+                    guessed: false,
+                };
+                return Some((swing, leg));
+            }
+        }
+        None
+    }
+
+    /// How much later than at the energy of the swing its phase at this spot is reached, which is passed with another energy.
+    fn later(&self, swing: &Swing, spot: &Spot, energy: f64) -> f64 {
+        let (sine, cosine) = spot.phase(swing.energy);
+        let (own_sine, own_cosine) = spot.phase(energy);
+        let change = (own_sine * cosine - own_cosine * sine).atan2(own_cosine * cosine + own_sine * sine);
+        change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
+    }
+
+    /// From a turning point to the barrier ahead, or to the next turning point.
+    fn from_turn(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
+        let (to, energy) = (opposite(side), turn.energy);
+        if let Some(ahead) = self.barrier(to)
+            && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
+        {
+            let (swing, reach) = known.unwrap_or_else(|| {
+                let swing = Swing::new(energy);
+                (swing, swing.reach(&ahead.spot))
+            });
+            let leg = leg(self.model, &swing, &ahead.spot, reach);
+            if !(leg.time > 0.0) {
+                // It rests on the barrier and is pressed into it.
+                return self.integrate();
+            }
+            let arrived = energy - self.below(&leg);
+            if arrived > ahead.spot.energy {
+                let time = leg.time + leg.lag + self.later(&swing, &ahead.spot, arrived);
+                self.swing([energy, arrived], time, to, [-turn.x, ahead.spot.x]);
+                return self.contact(ahead, arrived);
+            }
+        }
+        self.free(side, turn)
+    }
+
+    /// From one turning point to the next, or the next two, where no barrier is in reach.
+    fn free(&mut self, side: Side, from: Spot) -> Option<Place> {
+        let out_of_reach = |barrier: &Barrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
+        let turns = match self.model.alpha == 0.0 && self.barriers.iter().flatten().all(out_of_reach) {
+            true => self.undulate(side, from),
+            false => self.rub(side, from),
+        };
+        turns.or_else(|| match self.stop {
+            Some(_) => None,
+            None => self.integrate(),
+        })
+    }
+
+    /// Two turning points under viscous damping, about the energy of the first; nothing where there is none.
+    fn undulate(&mut self, side: Side, from: Spot) -> Option<Place> {
+        let half = |swing: &Swing| Leg {
+            time: 2.0 * swing.quarter.time,
+            area: 2.0 * swing.quarter.area,
+            length: 0.0,
+            lag: 0.0,
+        };
+        let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
+        let energy = swing.energy - self.below(&leg);
+        if !(energy > 0.0) {
+            return None;
+        }
+        let [first, second] = [swing.energy, energy].map(Spot::turn);
+        // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 - m)) with E = 2 m.
+        let stretched = swing.quarter.area / (swing.energy * (2.0 - swing.energy));
+        for (energies, turn, side) in [([from, first], first, opposite(side)), ([first, second], second, side)] {
+            let [before, after] = energies;
+            let mean = 0.5 * (before.energy + after.energy);
+            let time = leg.time + stretched * (mean - swing.energy);
+            self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
+            self.turned(side, turn, None)?;
+            if self.stop.is_some() {
+                return None;
+            }
+        }
+        Some(Place::Turn(side, second, None))
+    }
+
+    /// The next turning point with dry friction: half of the viscous damping before it, half after it; nothing where there is none.
+    fn rub(&mut self, side: Side, from: Spot) -> Option<Place> {
+        let to = opposite(side);
+        let quarter = |swing: &Swing| Leg {
+            time: swing.quarter.time,
+            area: swing.quarter.area,
+            length: 0.0,
+            lag: 0.0,
+        };
+        let (before, _) = self.reference(from.energy, Kind::FromTurn, quarter)?;
+        let angle = match self.model.alpha == 0.0 {
+            true => Spot::turn(before.energy).x,
+            false => rubbed(Spot::turn(before.energy).x, self.model.alpha),
+        };
+        if angle <= 0.0 {
+            // It comes to rest before the bottom, where friction holds it.
+            return None;
+        }
+        let after = Swing::new(Spot::at(angle).energy);
+        let mut turn = Spot::turn(after.energy - self.below(&quarter(&after)));
+        if let Some(ahead) = self.barrier(to)
+            && turn.x > ahead.spot.x
+        {
+            // It was found not to get there.
+            turn = ahead.spot;
+        }
+        if !(turn.energy > 0.0) {
+            return None;
+        }
+        let time = before.quarter.time + after.quarter.time;
+        self.swing([from.energy, turn.energy], time, to, [-from.x, turn.x]);
+        self.turned(to, turn, None)
+    }
+
+    /// From a spot on the way to a side: to the barrier there, or to the turning point.
+    fn leave(&mut self, to: Side, spot: Spot, energy: f64) -> Option<Place> {
+        let ahead = self.barrier(to);
+        if let Some(ahead) = ahead
+            && energy > ahead.spot.energy
+        {
+            let crossing = |swing: &Swing| {
+                let (end, start) = (swing.reach(&ahead.spot), swing.reach(&spot));
+                Leg {
+                    time: 0.5 * (end.time - start.time),
+                    area: 0.5 * (end.area - start.area),
+                    length: 0.5 * (ahead.spot.x - spot.x),
+                    lag: 0.0,
+                }
+            };
+            if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {
+                let arrived = swing.energy - self.below(&leg);
+                if arrived > ahead.spot.energy {
+                    self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
+                    return self.contact(ahead, arrived);
+                }
+            }
+        }
+        let back = spot.mirrored();
+        let model = self.model;
+        let found = self.reference(energy, Kind::FromPlace, |swing| {
+            leg(model, swing, &back, swing.reach(&back))
+        });
+        let Some((swing, leg)) = found else {
+            return self.integrate();
+        };
+        let turn = Spot::turn(swing.energy);
+        if ahead.is_some_and(|ahead| turn.x > ahead.spot.x) || turn.x < spot.x {
+            return self.integrate();
+        }
+        let time = leg.time - leg.lag + self.later(&swing, &back, energy);
+        self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
+        let reach = Stretch {
+            time: leg.time - swing.quarter.time,
+            area: leg.area - swing.quarter.area,
+        };
+        self.turned(to, turn, Some((swing, reach)))
+    }
+
+    /// The pendulum rests at this spot for a moment, or for good.
+    fn turned(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
+        if self.stop.is_some() {
+            return None;
+        }
+        let x = side.sign() * turn.x;
+        self.turns.push(Turn { t: self.t, x });
+        self.state = [x, 0.0];
+        if self.sticks(x) {
+            self.held(x);
+            return None;
+        }
+        if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
+            self.stop = Some(Stop::RestEnergy);
+        } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
+            self.stop = Some(Stop::AtRest);
+        }
+        Some(Place::Turn(side, turn, known))
+    }
+
+    /// A contact entered with this energy.
+    fn contact(&mut self, barrier: &Barrier, energy: f64) -> Option<Place> {
+        if self.stop.is_some() {
+            return None;
+        }
+        let Barrier { side, spot, .. } = *barrier;
+        let speed = (2.0 * (energy - spot.energy)).sqrt();
+        let x = side.sign() * spot.x;
+        self.state = [x, side.sign() * speed];
+        let Some(bounce) = barrier.bounce(speed) else {
+            return self.integrate();
+        };
+        let mut contact = Contact::touched(side, self.t, speed);
+        contact.penetration = bounce.depth;
+        let deepest = self.t + 0.5 * bounce.duration;
+        if deepest <= self.settings.duration {
+            let x = x + side.sign() * bounce.depth;
+            self.turns.push(Turn { t: deepest, x });
+        }
+        self.advance(bounce.duration, Regime::Contact(side), || {
+            ClosedForm::contact((side, x), [bounce.depth, bounce.duration], [speed, bounce.speed_out])
+        });
+        let away = opposite(side);
+        let energy = spot.energy + 0.5 * bounce.speed_out * bounce.speed_out;
+        if self.stop.is_none() {
+            contact.released(self.model, self.t, bounce.speed_out);
+            self.state = [x, away.sign() * bounce.speed_out];
+            if self.settings.rest_energy.is_some_and(|rest| energy <= rest) {
+                self.stop = Some(Stop::RestEnergy);
+            }
+        }
+        self.impacts.push(contact);
+        Some(Place::Leaving(away, spot.mirrored(), energy))
+    }
+
+    /// A stretch of the swing between two energies and two places, towards a side.
+    fn swing(&mut self, energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) {
+        self.advance(time, Regime::Free, || closed(energies, time, to, places));
+    }
+
+    /// The clock goes on by so much, or to the end of the duration.
+    fn advance(&mut self, time: f64, regime: Regime, form: impl Fn() -> ClosedForm) {
+        let (start, end) = (self.t, (self.t + time).min(self.settings.duration));
+        if self.settings.keep_path && end > start {
+            self.path.push_closed([start, end], regime, form());
+        }
+        if self.t + time > self.settings.duration {
+            self.state = form().at(end - start).into();
+            self.stop = Some(Stop::Duration);
+        }
+        self.t = end;
+    }
+
+    /// At rest to the end.
+    fn held(&mut self, x: f64) {
+        let end = self.settings.duration;
+        if self.settings.keep_path && end > self.t {
+            self.path.push_rest([self.t, end], x);
+        }
+        if end > self.t && self.model.sticks() {
+            self.turns.push(Turn { t: end, x });
+        }
+        self.t = end;
+        self.state = [x, 0.0];
+        self.stop = Some(Stop::Duration);
+    }
+
+    /// What has no closed form: the rest of the motion is followed by Taylor series.
+    fn integrate(&mut self) -> Option<Place> {
+        let left = Settings {
+            duration: self.settings.duration - self.t,
+            ..*self.settings
+        };
+        let [x, velocity] = self.state;
+        let motion = taylor::alone(*self.model, Start { x, velocity }, left);
+        self.stop = Some(motion.stop);
+        self.integrated = Some(motion);
+        None
+    }
+
+    fn finish(mut self, start: Start) -> Simulation {
+        let mut end_time = self.t;
+        let mut steps = self.count;
+        if let Some(motion) = self.integrated.take() {
+            let from = self.t;
+            let [x, velocity] = [motion.end_x, motion.end_velocity];
+            self.state = [x, velocity];
+            end_time = from + motion.end_time;
+            steps += motion.steps;
+            self.turns
+                .extend(motion.turns.iter().filter(|turn| turn.t > 0.0).map(|turn| Turn {
+                    t: from + turn.t,
+                    ..*turn
+                }));
+            self.impacts
+                .extend(motion.impacts.iter().map(|impact| impact.later(from)));
+            self.path.extend(&motion.path, from);
+        }
+        let [end_x, end_velocity] = self.state;
+        Simulation {
+            model: *self.model,
+            start,
+            settings: *self.settings,
+            integrator: Integrator::Chain,
+            path: self.path,
+            impacts: self.impacts,
+            turns: self.turns,
+            end_time,
+            end_x,
+            end_velocity,
+            stop: self.stop.unwrap_or(Stop::Duration),
+            steps,
+        }
+    }
+}
+
+fn opposite(side: Side) -> Side {
+    match side {
+        Side::Left => Side::Right,
+        Side::Right => Side::Left,
+    }
+}
+
+/// The leg between the turning point of a swing and a spot, which is counted from the bottom away from the turning point.
+fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
+    let Model { zeta, alpha, .. } = *model;
+    let (length, lag) = match (zeta == 0.0, alpha == 0.0) {
+        (true, true) => (0.0, 0.0),
+        (_, no_friction) => {
+            let (_, cosine) = spot.phase(swing.energy);
+            let viscous = zeta * cosine * cosine;
+            match no_friction {
+                true => (0.0, viscous),
+                false => {
+                    let turn = Spot::turn(swing.energy);
+                    (turn.x + spot.x, viscous + cosine * alpha / turn.x.sin().max(alpha))
+                }
+            }
+        }
+    };
+    Leg {
+        time: swing.quarter.time + reach.time,
+        area: swing.quarter.area + reach.area,
+        length,
+        lag,
+    }
+}
+
+/// The turning point a' that follows a under friction alone, cos a' - cos a = alpha (a + a'), counted to the other side.
+///
+/// With h = (a + a')/2: sin((a - a')/2) = alpha h/sin h, which has lost the root a' = -a.
+fn rubbed(turn: f64, alpha: f64) -> f64 {
+    let mut next = turn - 2.0 * alpha;
+    for _ in 0..MOST_NEWTON {
+        let half = 0.5 * (turn + next);
+        let spread = if half.abs() < 1e-8 { 1.0 } else { half / half.sin() };
+        let found = turn - 2.0 * (alpha * spread).min(1.0).asin();
+        let change = found - next;
+        next = found;
+        if change.abs() <= 1e-15 * turn {
+            break;
+        }
+    }
+    next
+}
+
+/// The closed form of a stretch between two energies and two places, towards a side.
+fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedForm {
+    let moduli = energies.map(|energy| (0.5 * energy).sqrt());
+    let mean = (moduli[0] * moduli[1]).sqrt();
+    let parameter = mean * mean;
+    let middle = Swing::new(2.0 * parameter);
+    // The time from the bottom of the swing of mean energy to the phase that the place has in its own.
+    let phase = |energy: f64, place: f64| {
+        let (sine, _) = Spot::at(place).phase(energy);
+        middle
+            .reach(&Spot::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin()))
+            .time
+    };
+    let [start, end] = [0, 1].map(|index| phase(energies[index], places[index]));
+    ClosedForm::Swing {
+        sign: to.sign(),
+        modulus: moduli[0],
+        rate: (moduli[0] / moduli[1]).ln() / time,
+        speed: (end - start) / time,
+        phase: start,
+        parameter,
+    }
+}
+
+/// Impacts that there is room for from the beginning.
+const MANY: usize = 32;
+
+/// How near the reference energy is to be, in parts of the energy, for one more step without another elliptic integral.
+const NEAR: f64 = 5e-4;
+
+/// The most turns of an iteration that closes in within a few.
+const MOST_NEWTON: usize = 60;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_damping_the_chain_is_the_exact_pendulum() {
+        let model = Model {
+            right: None,
+            ..Model::default()
+        };
+        let settings = Settings {
+            duration: 40.0,
+            ..Settings::default()
+        };
+        for amplitude in [0.01, 1.5, 3.0] {
+            let start = Start {
+                x: -amplitude,
+                velocity: 0.0,
+            };
+            let formulas = chain(&model, start, &settings).expect("a chain");
+            let truth = taylor::alone(model, start, settings);
+            let difference = formulas.difference(&truth, 2001);
+            assert!(
+                difference.displacement < 1e-9 * amplitude,
+                "{amplitude}: {difference:?}"
+            );
+            assert!(difference.velocity < 1e-9 * amplitude, "{amplitude}: {difference:?}");
+        }
+    }
+
+    #[test]
+    fn dry_friction_alone_turns_where_the_energy_says() {
+        let model = Model {
+            alpha: 0.03,
+            right: None,
+            ..Model::default()
+        };
+        let settings = Settings {
+            duration: 120.0,
+            ..Settings::default()
+        };
+        let formulas = chain(&model, Start::default(), &settings).expect("a chain");
+        let turns: Vec<f64> = formulas.turns.iter().map(|turn| turn.x.abs()).collect();
+        for pair in turns.windows(2).take(10) {
+            let [before, after] = [pair[0], pair[1]];
+            assert!((after.cos() - before.cos() - 0.03 * (before + after)).abs() < 1e-14);
+        }
+        // Held where the weight is less than the friction, as by the integration, to the end.
+        let truth = taylor::alone(model, Start::default(), settings);
+        assert!(
+            (formulas.end_x - truth.end_x).abs() < 1e-3,
+            "{} {}",
+            formulas.end_x,
+            truth.end_x
+        );
+        assert_eq!(formulas.end_velocity, 0.0);
+    }
+
+    #[test]
+    fn the_pieces_join() {
+        let model = Model {
+            zeta: 0.03,
+            alpha: 0.01,
+            gamma: 1e5,
+            mu: 2e4,
+            left: Some(-0.6),
+            ..Model::default()
+        };
+        let start = Start { x: 0.1, velocity: 1.2 };
+        let settings = Settings {
+            duration: 30.0,
+            ..Settings::default()
+        };
+        let motion = chain(&model, start, &settings).expect("a chain");
+        let pieces = motion.path.pieces();
+        assert!(pieces.len() > 10);
+        let (x, _) = motion.path.at(0.0).expect("the start");
+        assert!((x - start.x).abs() < 1e-12);
+        for pair in pieces.windows(2) {
+            assert_eq!(pair[0].end, pair[1].start);
+            let (Some(before), Some(after)) = (pair[0].closed_form(), pair[1].closed_form()) else {
+                continue;
+            };
+            let (left, right) = (before.at(pair[0].end - pair[0].start).0, after.at(0.0).0);
+            assert!((left - right).abs() < 1e-8, "{left} {right} at {}", pair[0].end);
+        }
+    }
+
+    #[test]
+    fn what_has_no_chain_says_why() {
+        let start = Start::default();
+        let refused = |model: Model, start: Start| chain(&model, start, &Settings::default()).unwrap_err().to_string();
+        let driven = Model {
+            beta: 0.1,
+            frequency_ratio: 1.0,
+            ..Model::default()
+        };
+        assert!(refused(driven, start).contains("beta = 0.1"));
+        let arctangent = Model {
+            alpha: 0.1,
+            friction: Friction::Arctangent,
+            ..Model::default()
+        };
+        assert!(refused(arctangent, start).contains("exact"));
+        let heavy = Model {
+            zeta: 0.7,
+            ..Model::default()
+        };
+        assert!(refused(heavy, start).contains("0.7"));
+        let over = Start { x: 0.0, velocity: 2.1 };
+        assert!(refused(Model::default(), over).contains("turns over"));
+        let inside = Start { x: 0.4, velocity: 0.0 };
+        assert!(refused(Model::default(), inside).contains("right barrier"));
+    }
+}

@@ -7,8 +7,8 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, CatalogDocument, ComparisonDocument, ImpactComparisonDocument, ImpactDocument, Kind, SimulationDocument,
-    SolutionDocument, SweepDocument,
+    self, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
+    SimulationDocument, SolutionDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -99,6 +99,7 @@ fn reads_back(document: &Value) {
         Kind::ImpactComparison => again::<ImpactComparisonDocument>(document),
         Kind::Simulation => again::<SimulationDocument>(document),
         Kind::Sweep => again::<SweepDocument>(document),
+        Kind::Friction => again::<FrictionDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
     };
     assert_eq!(written.to_string(), document.to_string());
@@ -125,6 +126,8 @@ fn documents() -> Vec<(String, Value)> {
     add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
     let three = ["gamma=1e4:1e6:2:log", "zeta=0.1,0.3,0.2", "alpha=0.1:0:2"];
     add(&[&["simulate"], three.map(|axis| ["--sweep", axis]).as_flattened()].concat());
+    add(&["friction"]);
+    add(&["friction", "--alpha", "0.02", "--speed", "0.01"]);
     add(&["catalog"]);
     documents
 }
@@ -183,6 +186,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/impact-comparison/1") => "/methods/0/speed",
         Some("lindstedt/simulation/1") => "/parameters/barrier",
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
+        Some("lindstedt/friction/1") => "/speeds/0/printed_value",
         _ => "/entries/0/methods/0",
     };
     document.pointer_mut(place).expect("an object")

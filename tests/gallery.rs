@@ -170,6 +170,22 @@ fn every_method_on_one_impact_prints_what_it_printed() {
     });
 }
 
+/// The study of friction in every format: where the arctangent creeps, and, with less friction, where it swings.
+#[test]
+fn the_study_of_friction_prints_what_it_printed() {
+    let weak = ["friction", "--alpha", "0.02", "--speed", "0.01"];
+    snapshots(|| {
+        insta::assert_snapshot!("friction-text", output(&["friction"]));
+        insta::assert_snapshot!("friction-weak", output(&weak));
+        insta::assert_snapshot!("friction-latex", output(&["friction", "--format", "latex"]));
+        let mut document: Value =
+            serde_json::from_str(&output(&["friction", "--format", "json"])).expect("the output is JSON");
+        rounded(&mut document);
+        insta::assert_json_snapshot!("json@friction", document);
+        insta::assert_snapshot!("help-friction", output(&["friction", "--help"]));
+    });
+}
+
 #[test]
 fn every_example_reads_back_to_the_same_solution() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");

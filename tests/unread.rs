@@ -515,6 +515,14 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             [&long[1..], &["--timeout", "1e-9"]].concat(),
             vec!["--quiet"],
         ),
+        ("friction", vec![], vec!["--alpha", "0.1"]),
+        ("friction", vec![], vec!["--amplitude", "1"]),
+        ("friction", vec![], vec!["--speed", "0.01"]),
+        ("friction", vec![], vec!["--format", "latex"]),
+        ("friction", vec![], vec!["--output", file]),
+        ("friction", vec![], vec!["--plot", "-"]),
+        ("friction", vec![], vec!["--tolerance", "0.1"]),
+        ("friction", vec![], vec!["--timeout", "1e-9"]),
         ("catalog", vec![], vec!["--format", "csv"]),
         ("catalog", vec![], vec!["--format", "json"]),
         ("catalog", vec![], vec!["--output", file]),
@@ -525,7 +533,9 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("schema", vec!["impact"], vec!["--output", file]),
         ("schema", vec!["impact"], vec!["--quiet"]),
     ];
-    for command in ["derive", "compare", "impact", "simulate", "catalog", "schema"] {
+    for command in [
+        "derive", "compare", "impact", "simulate", "friction", "catalog", "schema",
+    ] {
         for name in options_of(command) {
             let option = format!("--{name}");
             assert!(

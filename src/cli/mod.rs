@@ -10,6 +10,7 @@ mod catalog;
 mod compare;
 mod derive;
 mod files;
+mod friction;
 mod impact;
 mod problem;
 mod schema;
@@ -53,6 +54,8 @@ enum Command {
     Impact(impact::Arguments),
     /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time
     Simulate(simulate::Arguments),
+    /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
+    Friction(friction::Arguments),
     /// List the classical oscillators that `derive` knows by name
     Catalog(catalog::Arguments),
     /// Print the JSON Schema of a kind of document: every key with its meaning and unit
@@ -182,6 +185,7 @@ pub fn run() -> ExitCode {
         Command::Compare(arguments) => arguments.common.clone(),
         Command::Impact(arguments) => arguments.common.clone(),
         Command::Simulate(arguments) => arguments.common.clone(),
+        Command::Friction(arguments) => arguments.common.clone(),
         Command::Catalog(arguments) => arguments.common.clone(),
         Command::Schema(arguments) => arguments.common(),
     };
@@ -190,7 +194,7 @@ pub fn run() -> ExitCode {
         Command::Compare(arguments) => problem::path(&arguments.problem),
         Command::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
         Command::Simulate(arguments) => arguments.file.as_deref(),
-        Command::Catalog(_) | Command::Schema(_) => None,
+        Command::Friction(_) | Command::Catalog(_) | Command::Schema(_) => None,
     };
     let checked = files::check(&common, input);
     if let Err(Failure::Refused(message)) = &checked {
@@ -223,6 +227,7 @@ pub fn run() -> ExitCode {
             Command::Compare(arguments) => compare::run(&arguments),
             Command::Impact(arguments) => impact::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
+            Command::Friction(arguments) => friction::run(&arguments),
             Command::Catalog(arguments) => catalog::run(&arguments),
             Command::Schema(arguments) => schema::run(&arguments),
         });

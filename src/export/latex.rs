@@ -18,8 +18,9 @@ use num_traits::Zero;
 use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
+use crate::impact::friction::FrictionStudy;
 use crate::impact::{Impact, ImpactComparison};
-use crate::report::{self, Block, Document};
+use crate::report::{self, Block, Document, Heading};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{Solution, Sum, long_fraction};
@@ -120,6 +121,19 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
 /// ```
 pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> String {
     document(&report::impact_comparison(table, tolerance))
+}
+
+/// Equation (6) beside Coulomb's law: the tables, with the numbers beside them in comments.
+///
+/// ```
+/// use lindstedt::impact::friction::{FrictionSetup, study};
+///
+/// let study = study(FrictionSetup::default())?;
+/// assert!(lindstedt::export::latex::friction(&study).contains(r"\begin{tabular}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn friction(study: &FrictionStudy) -> String {
+    document(&report::friction(study))
 }
 
 /// Every method in one table; those that do not apply stand in comments below it.
@@ -225,6 +239,12 @@ impl Page {
                 equation, frequency, ..
             } => self.comment(Rank::Note, comparison::truth(equation, frequency)),
             Block::Methods { rows, at, .. } => self.table(&comparison::methods(rows, at)),
+            Block::Facts(facts) => {
+                for (name, value) in facts {
+                    self.comment(Rank::Remark, format!("{name}: {value}"));
+                }
+            }
+            Block::Table { head, rows } => self.table(&table(head, rows)),
             Block::Refused(refused) => {
                 for refused in *refused {
                     let (title, reason) = (refused.method.title(), &refused.reason);
@@ -293,6 +313,19 @@ impl Page {
                 .push_str(&format!("\\begin{{align*}}\n{rows}\n\\end{{align*}}\n"));
         }
     }
+}
+
+/// A table: numbers in mathematics, words as they are.
+fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
+    let line = |cells: Vec<String>| cells.join(" & ") + " \\\\\n";
+    let cell = |cell: &String| match cell.parse::<f64>() {
+        Ok(_) => format!("${}$", scientific_text(cell)),
+        Err(_) => cell.clone(),
+    };
+    let rows: String = rows.iter().map(|row| line(row.iter().map(cell).collect())).collect();
+    let names = line(head.iter().map(|heading| heading.latex.to_owned()).collect());
+    let columns = "r".repeat(head.len());
+    format!("\\begin{{tabular}}{{{columns}}}\n{names}\\hline\n{rows}\\end{{tabular}}\n")
 }
 
 /// The verdict in one line.

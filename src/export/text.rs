@@ -11,8 +11,9 @@ use std::fmt::Write as _;
 pub use super::steps::text as steps;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
+use crate::impact::friction::FrictionStudy;
 use crate::impact::{Impact, ImpactComparison};
-use crate::report::{self, Block, Document};
+use crate::report::{self, Block, Document, Heading};
 use crate::series::terms;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
@@ -97,6 +98,19 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64, width: usize)
     document(&report::impact_comparison(table, tolerance), width)
 }
 
+/// Equation (6) beside Coulomb's law.
+///
+/// ```
+/// use lindstedt::impact::friction::{FrictionSetup, study};
+///
+/// let study = study(FrictionSetup::default())?;
+/// assert!(lindstedt::export::text::friction(&study).contains("Coulomb's law stops it for good"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn friction(study: &FrictionStudy) -> String {
+    document(&report::friction(study), usize::MAX)
+}
+
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.
 ///
 /// ```
@@ -174,6 +188,8 @@ impl Page {
             } => comparison::truth(equation, at, frequency),
             Block::Methods { rows, tolerance, .. } => comparison::methods(rows, *tolerance, self),
             Block::Entries { heading, entries } => comparison::entries(heading, entries, self),
+            Block::Facts(facts) => facts_in_lines(facts),
+            Block::Table { head, rows } => table(head, rows),
             Block::Refused(refused) => comparison::refused(refused, self),
             Block::TrueMotion(lines) => comparison::true_motion(lines, self.width),
             Block::Closing(words) => comparison::wrapped(words, self.width, "", "") + "\n",
@@ -217,6 +233,38 @@ fn name_of_value(block: &Block) -> Option<Symbol> {
         Block::Value { name, .. } => Some(*name),
         _ => None,
     }
+}
+
+/// Quantities and their numbers, one a line.
+fn facts_in_lines(facts: &[(&str, String)]) -> String {
+    let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}\n");
+    facts.iter().map(line).collect()
+}
+
+/// Columns as wide as they must be, flush right.
+fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
+    let head: Vec<&str> = head.iter().map(|heading| heading.text).collect();
+    let rows = rows.iter().map(|row| row.iter().map(String::as_str).collect());
+    let lines: Vec<Vec<&str>> = std::iter::once(head).chain(rows).collect();
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        lines
+            .iter()
+            .filter_map(|line| line.get(column))
+            .map(|cell| cell.chars().count())
+            .max()
+    };
+    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    let line = |cells: &Vec<&str>| {
+        let cells: String = cells
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("  {cell:>width$}"))
+            .collect();
+        cells.trim_end().to_owned() + "\n"
+    };
+    lines.iter().map(line).collect()
 }
 
 /// The motion, one harmonic a line.

@@ -32,6 +32,7 @@
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
 //! - `baseline`: the same swing without a barrier, and with one that loses nothing.
 //! - [`sweep`]: parameters over a range, on all cores.
+//! - [`friction`]: equation (6) beside Coulomb's law, at some speeds and near rest.
 //!
 //! ```
 //! use lindstedt::impact::hertz::{Design, elastic_force};
@@ -64,6 +65,7 @@ pub mod contact;
 mod derived;
 mod dissipation;
 mod form;
+pub mod friction;
 pub mod hertz;
 mod judge;
 mod linearisation;

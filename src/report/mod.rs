@@ -1,15 +1,17 @@
 //! What a report says, before any format says how: one file for each kind of result, which makes a [`Document`] of it.
 //!
 //! In come results: a [`Solution`] with its [`Verification`], a [`Comparison`](crate::verify::comparison::Comparison), an
-//! [`Impact`](crate::impact::Impact). Out go documents, sections of blocks; every format of `export` knows each kind of block
+//! [`Impact`](crate::impact::Impact), a [`FrictionStudy`](crate::impact::friction::FrictionStudy). Out go documents, sections of blocks; every format of `export` knows each kind of block
 //! and nothing of the results. Which law is shown, what is left out and what stands beside what is chosen here, once.
 
 mod comparison;
+mod friction;
 mod impact;
 mod impact_comparison;
 mod solution;
 
 pub use comparison::comparison;
+pub use friction::friction;
 pub use impact::impact;
 pub use impact_comparison::impact_comparison;
 pub use solution::solution;
@@ -131,6 +133,15 @@ pub enum Block<'a> {
         /// The names and the words.
         entries: Vec<(String, String)>,
     },
+    /// Quantities, and the number of each with what is said of it.
+    Facts(Vec<(&'static str, String)>),
+    /// A table of numbers as they are to be written, and words; an empty cell says nothing.
+    Table {
+        /// What stands above each column.
+        head: Vec<Heading>,
+        /// A cell for each column.
+        rows: Vec<Vec<String>>,
+    },
     /// The methods that do not apply.
     Refused(&'a [Refused]),
     /// Where the true motion is periodic.
@@ -228,6 +239,15 @@ pub enum Block<'a> {
         /// The cause.
         cause: String,
     },
+}
+
+/// What stands above a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Heading {
+    /// In plain letters.
+    pub text: &'static str,
+    /// In LaTeX.
+    pub latex: &'static str,
 }
 
 /// A row of a table of methods.

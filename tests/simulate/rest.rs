@@ -28,6 +28,22 @@ fn rest_times_of_the_plain_pendulum() {
     }
 }
 
+/// Held by friction soon after a crest above the level: when it came to rest does not change with how long the run goes on.
+#[test]
+fn how_long_a_run_is_does_not_change_when_its_motion_rests() {
+    let model = Model {
+        alpha: 0.3,
+        ..Model::default()
+    };
+    for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
+        let [short, long] = [10.0, 200.0].map(|duration| run(&model, REST, 1e-12, duration, integrator).rest());
+        let time = short.time.expect("it rests");
+        assert!((long.time.expect("it rests") - time).abs() < 1e-9, "{short:?} {long:?}");
+        // Between the last crest beyond the level and the place where it is held.
+        assert!((5.0..7.5).contains(&time), "{time}");
+    }
+}
+
 /// The rest time by its definition, from nothing but samples of the Runge-Kutta motion: crests on the left, each by a
 /// parabola through three samples, and the straight line of log|x| between the two around the level.
 fn rest_by_samples(model: &Model, level: f64, duration: f64) -> f64 {

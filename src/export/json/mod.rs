@@ -14,6 +14,7 @@
 
 pub mod catalog;
 pub mod comparison;
+pub mod friction;
 pub mod impact;
 pub mod impact_comparison;
 pub mod number;
@@ -29,6 +30,7 @@ use serde_json::Value;
 
 pub use catalog::{CatalogDocument, catalog};
 pub use comparison::{ComparisonDocument, comparison};
+pub use friction::{FrictionDocument, friction};
 pub use impact::{ImpactDocument, impact};
 pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};
 pub use number::{Constant, Map, Polynomial, Term};

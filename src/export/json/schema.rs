@@ -5,8 +5,8 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    CatalogDocument, ComparisonDocument, ImpactComparisonDocument, ImpactDocument, JsonError, SimulationDocument,
-    SolutionDocument, SweepDocument, unexpected,
+    CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, JsonError,
+    SimulationDocument, SolutionDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -25,19 +25,22 @@ pub enum Kind {
     Simulation,
     /// `simulate --sweep`.
     Sweep,
+    /// `friction`.
+    Friction,
     /// `catalog`.
     Catalog,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
         Self::ImpactComparison,
         Self::Simulation,
         Self::Sweep,
+        Self::Friction,
         Self::Catalog,
     ];
 
@@ -50,6 +53,7 @@ impl Kind {
             Self::ImpactComparison => "lindstedt/impact-comparison/1",
             Self::Simulation => "lindstedt/simulation/1",
             Self::Sweep => "lindstedt/sweep/1",
+            Self::Friction => "lindstedt/friction/1",
             Self::Catalog => "lindstedt/catalog/1",
         }
     }
@@ -82,6 +86,7 @@ impl Kind {
             Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
             Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
+            Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
         };
         schema.insert("title".to_owned(), self.schema().into());

@@ -141,12 +141,15 @@ impl Simulation {
         let held = self.model.sticks()
             && self.end_velocity == 0.0
             && self.turns.last().is_some_and(|turn| turn.t == self.end_time);
-        if held || self.stop == Stop::RestEnergy {
-            let x = match held {
-                true => self.end_x,
-                false => self.last_swing(),
-            };
-            envelope.push(Turn { t: self.end_time, x });
+        if held {
+            // Since when, not until when: how long a run is does not change when its motion came to rest.
+            let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
+            envelope.extend(at_rest.last().copied());
+        } else if self.stop == Stop::RestEnergy {
+            envelope.push(Turn {
+                t: self.end_time,
+                x: self.last_swing(),
+            });
         }
         envelope
     }

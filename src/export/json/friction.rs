@@ -1,0 +1,265 @@
+//! Kind `friction`: equation (6) beside Coulomb's law.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Kind;
+use crate::impact::STEEPNESS;
+use crate::impact::friction::{Entry, FrictionStudy};
+
+/// The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law: Table 1 of the paper, and a swing
+/// near rest. Angles are in radians, time is in units of 1/omega of small swings, sqrt(L/g).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct FrictionDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Friction.schema()))]
+    pub schema: String,
+    /// The friction alpha, the torque in units of m g L.
+    pub alpha: f64,
+    /// The release, from rest at x = -amplitude, in radians.
+    pub amplitude: f64,
+    /// The factor of the velocity in the arctangent.
+    pub steepness: f64,
+    /// The two laws at the paper's speeds, then at those asked for.
+    pub speeds: Vec<Speed>,
+    /// The number of entries that the paper prints, values and errors.
+    pub printed_entries: usize,
+    /// The value of pi with which most of them come out, by its name in `readings`.
+    pub pi: String,
+    /// The least and the greatest pi with which all of them come out, rounded or cut; null where none does.
+    pub pi_range: Option<[f64; 2]>,
+    /// Every value of pi that was tried.
+    pub readings: Vec<Reading>,
+    /// The first cycle of the swing by the arctangent.
+    pub first_cycle: FirstCycle,
+    /// Where Coulomb's law stops the swing for good.
+    pub stop: Stop,
+    /// What the arctangent does from rest at that place.
+    pub creep: Creep,
+    /// The rest times on the paper's damper, pendulum and barrier, with this friction alone.
+    pub rest_time: RestTime,
+}
+
+/// The two laws at one speed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Speed {
+    /// The speed, in radians per unit of time.
+    pub speed: f64,
+    /// Coulomb's law, sgn(x').
+    pub sign: f64,
+    /// Equation (6), with pi itself.
+    pub arctangent: f64,
+    /// How far it is from Coulomb's law, in per cent.
+    pub error: f64,
+    /// The value that the paper prints; null at a speed that is not the paper's.
+    pub printed_value: Option<Printed>,
+    /// The error in per cent that the paper prints; null likewise.
+    pub printed_error: Option<Printed>,
+}
+
+/// A number that the paper prints, and how its digits come out with the best value of pi.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Printed {
+    /// The number as it is printed.
+    pub text: String,
+    /// Whether its digits are those of the rounded number.
+    pub rounded: bool,
+    /// Whether its digits are those of the number cut off.
+    pub cut: bool,
+}
+
+/// How many of the printed entries come out with one value of pi.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "PiReading")]
+pub struct Reading {
+    /// The value as it is written, such as `22/7`.
+    pub pi: String,
+    /// The value.
+    pub value: f64,
+    /// The number of entries that come out rounded.
+    pub rounded: usize,
+    /// The number of entries that come out cut off.
+    pub cut: usize,
+    /// The number of entries that come out in one of the two ways.
+    pub either: usize,
+    /// What the arctangent tends to at high speed.
+    pub limit: f64,
+    /// The speed beyond which it is larger than 1, in radians per unit of time; null where there is none.
+    pub exceeds_from: Option<f64>,
+}
+
+/// The first cycle by the arctangent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct FirstCycle {
+    /// When it ends, in units of time.
+    pub until: f64,
+    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns back.
+    pub largest_error: f64,
+    /// The part of the time in which the force errs by more than 1 % of alpha.
+    pub over_one_percent: f64,
+    /// The part of the time in which it errs by more than 10 %.
+    pub over_ten_percent: f64,
+    /// The work of the arctangent along this motion over that of Coulomb's law.
+    pub work_share: f64,
+    /// The same by the formula of a harmonic swing, (sqrt(1 + k^2) - 1)/k with k = 100 times the greatest speed.
+    pub work_share_formula: f64,
+}
+
+/// Where Coulomb's law stops the swing for good.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Stop {
+    /// When, in units of time.
+    pub t: f64,
+    /// Where, in radians.
+    pub x: f64,
+    /// After how many half swings.
+    pub half_swings: usize,
+    /// Where the arctangent has taken the swing by then, in radians.
+    pub arctangent_x: f64,
+    /// The velocity by the arctangent, in radians per unit of time.
+    pub arctangent_velocity: f64,
+}
+
+/// The motion by the arctangent near rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Creep {
+    /// The linear damping c near rest, x'' + c x' + x = 0: 200 alpha/pi.
+    pub damping: f64,
+    /// Whether it creeps, c > 2; it swings about zero otherwise.
+    pub creeps: bool,
+    /// The rate without inertia, pi/(200 alpha), per unit of time; null where it swings.
+    pub rate_overdamped: Option<f64>,
+    /// The rate of the linear equation, per unit of time.
+    pub rate_linear: f64,
+    /// The rate of the simulated motion when it is small, per unit of time; null where it does not move.
+    pub rate: Option<f64>,
+    /// Some states.
+    pub samples: Vec<Sample>,
+}
+
+/// A state after the stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "CreepSample")]
+pub struct Sample {
+    /// The time since both were at rest where Coulomb's law stops the swing, in units of time.
+    pub t: f64,
+    /// Where the arctangent has taken it, in radians; Coulomb's law leaves it where it is.
+    pub x: f64,
+    /// The same by the formula without inertia, in radians; null where it swings.
+    pub formula: Option<f64>,
+}
+
+/// Rest times by either law, in units of time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct RestTime {
+    /// By Coulomb's law; null where there is none.
+    pub coulomb: Option<f64>,
+    /// Why there is none, in words; null where there is one.
+    pub coulomb_reason: Option<String>,
+    /// By the arctangent; null where there is none.
+    pub arctangent: Option<f64>,
+    /// Why there is none, in words; null where there is one.
+    pub arctangent_reason: Option<String>,
+    /// How much later the arctangent comes to rest; null where one of them does not.
+    pub difference: Option<f64>,
+}
+
+/// The document of kind `friction`.
+///
+/// ```
+/// use lindstedt::impact::friction::{FrictionSetup, study};
+///
+/// let study = study(FrictionSetup::default())?;
+/// let document = lindstedt::export::json::friction(&study);
+/// assert_eq!((document.pi.as_str(), document.speeds.len()), ("3.14", 11));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn friction(study: &FrictionStudy) -> FrictionDocument {
+    let (table, near_rest) = (&study.table, &study.near_rest);
+    let speeds = table.rows.iter().map(|row| {
+        let [value, error] = row
+            .printed
+            .map_or([None, None], |entries| entries.map(|entry| Some(printed(entry))));
+        Speed {
+            speed: row.speed,
+            sign: row.sign,
+            arctangent: row.arctangent,
+            error: row.error,
+            printed_value: value,
+            printed_error: error,
+        }
+    });
+    let readings = table.readings.iter().map(|reading| Reading {
+        pi: reading.name.to_owned(),
+        value: reading.value,
+        rounded: reading.rounded,
+        cut: reading.cut,
+        either: reading.either,
+        limit: reading.limit(),
+        exceeds_from: reading.exceeds_from(),
+    });
+    let cycle = near_rest.first_cycle;
+    let creep = &near_rest.creep;
+    let samples = creep.samples.iter().map(|sample| Sample {
+        t: sample.t,
+        x: sample.x,
+        formula: sample.formula,
+    });
+    let times = near_rest.rest_times;
+    FrictionDocument {
+        schema: Kind::Friction.schema().to_owned(),
+        alpha: study.setup.alpha,
+        amplitude: study.setup.amplitude,
+        steepness: STEEPNESS,
+        speeds: speeds.collect(),
+        printed_entries: table.entries(),
+        pi: table.best().name.to_owned(),
+        pi_range: table.pi_range,
+        readings: readings.collect(),
+        first_cycle: FirstCycle {
+            until: cycle.until,
+            largest_error: cycle.largest_error,
+            over_one_percent: cycle.over_one_percent,
+            over_ten_percent: cycle.over_ten_percent,
+            work_share: cycle.work_share,
+            work_share_formula: cycle.work_share_formula,
+        },
+        stop: Stop {
+            t: near_rest.stop.t,
+            x: near_rest.stop.x,
+            half_swings: near_rest.half_swings,
+            arctangent_x: near_rest.meanwhile[0],
+            arctangent_velocity: near_rest.meanwhile[1],
+        },
+        creep: Creep {
+            damping: creep.damping,
+            creeps: creep.creeps,
+            rate_overdamped: creep.rate_overdamped,
+            rate_linear: creep.rate_linear,
+            rate: creep.rate,
+            samples: samples.collect(),
+        },
+        rest_time: RestTime {
+            coulomb: times.coulomb.ok(),
+            coulomb_reason: times.coulomb.err().map(|reason| reason.to_string()),
+            arctangent: times.arctangent.ok(),
+            arctangent_reason: times.arctangent.err().map(|reason| reason.to_string()),
+            difference: times.difference(),
+        },
+    }
+}
+
+fn printed(entry: Entry) -> Printed {
+    Printed {
+        text: entry.printed.to_owned(),
+        rounded: entry.rounded,
+        cut: entry.cut,
+    }
+}

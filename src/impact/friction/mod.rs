@@ -1,0 +1,127 @@
+//! What an arctangent in place of Coulomb's sgn does to a pendulum: the paper's equation (6), its Table 1, and the swing near rest.
+//!
+//! In: a [`FrictionSetup`]: how strong the friction is, and where the swing is released. Out: a [`FrictionStudy`]:
+//!
+//! - `table`: equation (6) beside sgn at the paper's speeds, and which value of pi makes the printed digits.
+//! - `near_rest`: where Coulomb's law stops the swing, and how the arctangent creeps on.
+//!
+//! ```text
+//! x'' + alpha sgn(x') + sin x = 0              it stops for good where it turns back with |sin x| <= alpha
+//! x'' + alpha (2/pi) atan(100 x') + sin x = 0  equation (6): it never stops
+//! ```
+
+mod near_rest;
+mod table;
+
+use thiserror::Error;
+
+pub use near_rest::{Creep, CreepSample, FirstCycle, NearRest, RestTimes, slow_rate, work_share};
+pub use table::{Entry, PiReading, Printed, SpeedRow, TABLE, Table, arctangent};
+
+use super::model::DEFAULT_AMPLITUDE;
+use super::simulate::SimulationError;
+
+/// What is asked of the friction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionSetup {
+    /// The friction alpha, between 0 and 1: dimensionless, the torque in units of m g L.
+    pub alpha: f64,
+    /// The release, from rest at x = -A, rad: positive and below pi.
+    pub amplitude: f64,
+    /// Speeds beside those of the paper's table, units of omega.
+    pub speeds: Vec<f64>,
+}
+
+/// Friction of this strength stops the paper's swing after fifteen half swings.
+pub const DEFAULT_ALPHA: f64 = 0.05;
+
+impl Default for FrictionSetup {
+    /// The paper's swing, at [`DEFAULT_ALPHA`], for the paper prints no alpha.
+    fn default() -> Self {
+        Self {
+            alpha: DEFAULT_ALPHA,
+            amplitude: DEFAULT_AMPLITUDE,
+            speeds: Vec::new(),
+        }
+    }
+}
+
+/// Why there is nothing to say of a friction.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FrictionError {
+    /// A friction that is none, or that holds the pendulum everywhere.
+    #[error("alpha must lie above 0 and below 1, not {0}: at 1 friction holds the pendulum wherever it is")]
+    Alpha(f64),
+    /// A release that is none.
+    #[error("the amplitude must lie above 0 and below pi, not {0}: the pendulum is released from rest at x = -A")]
+    Amplitude(f64),
+    /// A speed that is no number.
+    #[error("a speed must be a finite number, not {0}")]
+    Speed(f64),
+    /// A release that is held.
+    #[error("alpha = {alpha} holds the pendulum where it is released, at x = -{amplitude}: sin A must be above alpha")]
+    Held {
+        /// The friction.
+        alpha: f64,
+        /// The release, rad.
+        amplitude: f64,
+    },
+    /// A friction too weak to be followed to the end.
+    #[error("alpha = {0} takes more steps to stop the swing than a run may have: give a larger one")]
+    Restless(f64),
+    /// A motion that cannot begin.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// Equation (6) beside Coulomb's law.
+#[derive(Debug, Clone)]
+pub struct FrictionStudy {
+    /// What was asked.
+    pub setup: FrictionSetup,
+    /// The two laws at some speeds, with what the paper prints.
+    pub table: Table,
+    /// The swing by both laws, to rest.
+    pub near_rest: NearRest,
+}
+
+/// Equation (6) beside Coulomb's law, at the paper's speeds and in a swing.
+///
+/// # Errors
+/// [`FrictionError`] names the number that makes no swing.
+///
+/// ```
+/// use lindstedt::impact::friction::{FrictionSetup, study};
+///
+/// let study = study(FrictionSetup::default())?;
+/// assert_eq!((study.table.best().name, study.table.best().either), ("3.14", study.table.entries()));
+/// let stop = study.near_rest.stop;
+/// assert!(stop.x.sin().abs() <= 0.05);
+/// assert!(study.near_rest.creep.rate.is_some_and(|rate| rate > 0.3)); // per unit of time
+/// # Ok::<(), lindstedt::impact::friction::FrictionError>(())
+/// ```
+pub fn study(setup: FrictionSetup) -> Result<FrictionStudy, FrictionError> {
+    let FrictionSetup {
+        alpha,
+        amplitude,
+        ref speeds,
+    } = setup;
+    if !(alpha > 0.0 && alpha < 1.0) {
+        return Err(FrictionError::Alpha(alpha));
+    }
+    if !(amplitude > 0.0 && amplitude < std::f64::consts::PI) {
+        return Err(FrictionError::Amplitude(amplitude));
+    }
+    if amplitude.sin() <= alpha {
+        return Err(FrictionError::Held { alpha, amplitude });
+    }
+    if let Some(speed) = speeds.iter().find(|speed| !speed.is_finite()) {
+        return Err(FrictionError::Speed(*speed));
+    }
+    Ok(FrictionStudy {
+        table: Table::of(speeds),
+        near_rest: near_rest::near_rest(alpha, amplitude)?,
+        setup,
+    })
+}

@@ -1,0 +1,346 @@
+//! A swing with friction, to rest: Coulomb's law stops it for good, the arctangent of equation (6) lets it creep.
+//!
+//! ```text
+//! c     = alpha (2/pi) 100                                  the damping of equation (6) near rest, x'' + c x' + x = 0
+//! rate  = (c - sqrt(c^2 - 4))/2                             its slow motion where c > 2, and c/2 where it swings
+//! rate ~ pi/(200 alpha)                                     for c far above 2
+//! sin(pi x/(2 alpha)) = sin(pi x_0/(2 alpha)) e^(-rate t)   from rest at x_0, x'' left out: alpha (2/pi) atan(100 x') = -x
+//! W/W_C = (sqrt(1 + k^2) - 1)/k                             the work of a harmonic swing of speed V = k/100 over Coulomb's
+//! ```
+//!
+//! The last is the average of averaging, (1/2) int_0^pi (2/pi) atan(k sin s) sin s ds. Every formula stands beside the number that
+//! the simulation of the whole equation gives.
+
+use std::f64::consts::{FRAC_2_PI, PI, TAU};
+
+use super::FrictionError;
+use crate::impact::model::{Friction, Model, STEEPNESS, Start};
+use crate::impact::simulate::simulate;
+use crate::impact::simulation::{Integrator, NoRest, Regime, Settings, Simulation, Stop, Turn};
+
+/// The first cycle by the arctangent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstCycle {
+    /// When it ends, units of 1/omega: at the second turning point, or after 2 pi where there is none.
+    pub until: f64,
+    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns back.
+    pub largest_error: f64,
+    /// The part of that time in which the force errs by more than 1 % of alpha.
+    pub over_one_percent: f64,
+    /// The part of that time in which it errs by more than 10 %.
+    pub over_ten_percent: f64,
+    /// The work of the arctangent along this motion over that of Coulomb's law.
+    pub work_share: f64,
+    /// The same by the formula of a harmonic swing, with the greatest speed of the cycle.
+    pub work_share_formula: f64,
+}
+
+/// What is left of the motion some time after the stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CreepSample {
+    /// Time since both were at rest where Coulomb's law stops the swing, units of 1/omega.
+    pub t: f64,
+    /// Where the arctangent has taken it, rad.
+    pub x: f64,
+    /// The same by the formula of the creep, rad; nothing where it swings.
+    pub formula: Option<f64>,
+}
+
+/// The motion by the arctangent from rest at the place where Coulomb's law holds the pendulum.
+#[derive(Debug, Clone)]
+pub struct Creep {
+    /// c, the linear damping near rest.
+    pub damping: f64,
+    /// Whether it creeps, c > 2; it swings about zero otherwise.
+    pub creeps: bool,
+    /// The rate for c far above 2, pi/(200 alpha); nothing where it swings.
+    pub rate_overdamped: Option<f64>,
+    /// The rate of the linear equation.
+    pub rate_linear: f64,
+    /// The rate of the simulated motion, when it is small; nothing where there is no motion.
+    pub rate: Option<f64>,
+    /// Some states.
+    pub samples: Vec<CreepSample>,
+    /// The motion.
+    pub motion: Simulation,
+}
+
+impl Creep {
+    /// The place by the formula of the creep, this long after rest, rad; nothing where it swings.
+    pub fn formula(&self, t: f64) -> Option<f64> {
+        let (alpha, x) = (self.motion.model.alpha, self.motion.start.x);
+        self.creeps.then(|| crept(alpha, x, t))
+    }
+}
+
+/// Rest times on the paper's damper, pendulum and barrier, with friction alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RestTimes {
+    /// By Coulomb's law.
+    pub coulomb: Result<f64, NoRest>,
+    /// By the arctangent.
+    pub arctangent: Result<f64, NoRest>,
+}
+
+impl RestTimes {
+    /// How much later the arctangent comes to rest, where both do.
+    pub fn difference(&self) -> Option<f64> {
+        Some(self.arctangent.ok()? - self.coulomb.ok()?)
+    }
+}
+
+/// A swing with friction, by both laws.
+#[derive(Debug, Clone)]
+pub struct NearRest {
+    /// When and where Coulomb's law stops it for good.
+    pub stop: Turn,
+    /// The half swings until then.
+    pub half_swings: usize,
+    /// The state by the arctangent at that time: displacement and velocity.
+    pub meanwhile: [f64; 2],
+    /// What the arctangent does to the first cycle.
+    pub first_cycle: FirstCycle,
+    /// What it does at rest.
+    pub creep: Creep,
+    /// Rest times on the paper's damper.
+    pub rest_times: RestTimes,
+    /// The motions from the release, by Coulomb's law and by the arctangent, until well after the stop.
+    pub motions: [Simulation; 2],
+}
+
+/// The rate at which the arctangent's motion dies near rest, from its linear damping c: the slow one of two, or that of both.
+///
+/// ```
+/// use lindstedt::impact::friction::slow_rate;
+///
+/// assert_eq!(slow_rate(2.5), 0.5); // (s + 2)(s + 1/2)
+/// assert_eq!(slow_rate(0.2), 0.1);
+/// ```
+pub fn slow_rate(damping: f64) -> f64 {
+    match damping > 2.0 {
+        // 2/(c + sqrt(c^2 - 4)), which does not cancel.
+        true => 2.0 / (damping + ((damping - 2.0) * (damping + 2.0)).sqrt()),
+        false => 0.5 * damping,
+    }
+}
+
+/// The work that equation (6) takes of a harmonic swing of this greatest speed, over that of Coulomb's law.
+///
+/// ```
+/// use lindstedt::impact::friction::work_share;
+///
+/// assert!((work_share(0.01) - (2.0_f64.sqrt() - 1.0)).abs() < 1e-15);
+/// assert!(work_share(1.0) < 0.991 && work_share(10.0) > 0.999);
+/// ```
+pub fn work_share(speed: f64) -> f64 {
+    let k = STEEPNESS * speed;
+    // (sqrt(1 + k^2) - 1)/k, which does not cancel.
+    k / (1.0 + k.hypot(1.0))
+}
+
+/// A pendulum without a barrier.
+fn swing(alpha: f64, friction: Friction, x: f64, duration: f64) -> Result<Simulation, FrictionError> {
+    let model = Model {
+        alpha,
+        friction,
+        right: None,
+        ..Model::default()
+    };
+    followed(&model, x, duration)
+}
+
+fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, FrictionError> {
+    let settings = Settings {
+        duration,
+        ..Settings::default()
+    };
+    let motion = simulate(model, Start { x, velocity: 0.0 }, Integrator::Taylor, &settings)?;
+    match motion.stop {
+        Stop::Duration => Ok(motion),
+        _ => Err(FrictionError::Restless(model.alpha)),
+    }
+}
+
+/// Where Coulomb's law stops it for good, and after how many half swings.
+fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
+    let mut duration = 50.0;
+    loop {
+        let motion = swing(alpha, Friction::Exact, -amplitude, duration)?;
+        let held = motion
+            .path
+            .pieces()
+            .last()
+            .filter(|piece| piece.regime == Regime::Stuck);
+        if let Some(held) = held {
+            let half_swings = motion
+                .turns
+                .iter()
+                .filter(|turn| turn.t > 0.0 && turn.t <= held.start)
+                .count();
+            let stop = Turn {
+                t: held.start,
+                x: motion.end_x,
+            };
+            return Ok((stop, half_swings));
+        }
+        duration *= 2.0;
+    }
+}
+
+pub(super) fn near_rest(alpha: f64, amplitude: f64) -> Result<NearRest, FrictionError> {
+    let (stop, half_swings) = stop(alpha, amplitude)?;
+    let creep = creep(alpha, stop.x)?;
+    let until = (stop.t + (8.0 / creep.rate_linear).min(40.0)).max(TAU);
+    let coulomb = swing(alpha, Friction::Exact, -amplitude, until)?;
+    let arctangent = swing(alpha, Friction::Arctangent, -amplitude, until)?;
+    let (x, velocity) = arctangent.path.at(stop.t).unwrap_or((stop.x, 0.0));
+    Ok(NearRest {
+        stop,
+        half_swings,
+        meanwhile: [x, velocity],
+        first_cycle: first_cycle(&arctangent),
+        rest_times: rest_times(alpha, amplitude, stop.t)?,
+        creep,
+        motions: [coulomb, arctangent],
+    })
+}
+
+fn first_cycle(motion: &Simulation) -> FirstCycle {
+    const POINTS: usize = 40_000;
+    let mut turns = motion.turns.iter().filter(|turn| turn.t > 0.0);
+    let until = turns.nth(1).map_or(TAU.min(motion.end_time), |turn| turn.t);
+    // The middles of equal times.
+    let speeds: Vec<f64> = (0..POINTS)
+        .filter_map(|index| motion.path.at(until * (index as f64 + 0.5) / POINTS as f64))
+        .map(|(_, velocity)| velocity.abs())
+        .collect();
+    let law = |speed: f64| FRAC_2_PI * (STEEPNESS * speed).atan();
+    let part =
+        |error: f64| speeds.iter().filter(|speed| 1.0 - law(**speed) > error).count() as f64 / speeds.len() as f64;
+    let way: f64 = speeds.iter().sum();
+    let work: f64 = speeds.iter().map(|speed| law(*speed) * speed).sum();
+    let at_the_turn = motion.path.at(until).map_or(0.0, |(_, velocity)| velocity.abs());
+    let slowest = speeds.iter().copied().fold(at_the_turn, f64::min);
+    FirstCycle {
+        until,
+        largest_error: 1.0 - law(slowest),
+        over_one_percent: part(0.01),
+        over_ten_percent: part(0.1),
+        work_share: work / way,
+        work_share_formula: work_share(speeds.iter().copied().fold(0.0, f64::max)),
+    }
+}
+
+fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
+    let damping = alpha * FRAC_2_PI * STEEPNESS;
+    let (creeps, rate_linear) = (damping > 2.0, slow_rate(damping));
+    let duration = 10.0 / rate_linear;
+    let motion = swing(alpha, Friction::Arctangent, x, duration)?;
+    let at = |t: f64| motion.path.at(t).map_or(f64::NAN, |(x, _)| x);
+    // Eight times slower than the rate |100 x'| is small, and the motion is that of the linear equation.
+    let step = (0.5 / rate_linear).min(1.0);
+    let rate = rate_of(
+        [0.0, 1.0, 2.0, 3.0].map(|number| at(8.0 / rate_linear + number * step)),
+        step,
+    );
+    let samples = [0.0, 0.5, 1.0, 2.0, 4.0, 8.0].map(|part| part / rate_linear);
+    Ok(Creep {
+        damping,
+        creeps,
+        rate_overdamped: creeps.then_some(1.0 / damping),
+        rate_linear,
+        rate,
+        samples: samples
+            .map(|t| CreepSample {
+                t,
+                x: at(t),
+                formula: creeps.then(|| crept(alpha, x, t)),
+            })
+            .into(),
+        motion,
+    })
+}
+
+/// The rate at which a linear motion dies, from four places at equal distances of time: the slow one of two, or that of both
+/// where it swings; nothing where there is no motion. (R. Prony, 1795: x_2 = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
+fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
+    let determinant = x1 * x1 - x0 * x2;
+    let decay = match determinant.abs() < 1e-6 * x1 * x1 {
+        // One exponential is left.
+        true => x1 / x0,
+        false => {
+            let (p, q) = ((x1 * x2 - x0 * x3) / determinant, (x1 * x3 - x2 * x2) / determinant);
+            match 0.25 * p * p + q {
+                square if square > 0.0 => 0.5 * p + square.sqrt(),
+                _ => (-q).sqrt(),
+            }
+        }
+    };
+    Some(-decay.ln() / step).filter(|rate| rate.is_finite())
+}
+
+/// The creep without inertia from rest at x, after this time: sin(pi x/(2 alpha)) dies at the rate pi/(200 alpha).
+fn crept(alpha: f64, x: f64, t: f64) -> f64 {
+    let rate = 0.5 * PI / (STEEPNESS * alpha);
+    FRAC_2_PI * alpha * ((0.5 * PI * x / alpha).sin() * (-rate * t).exp()).asin()
+}
+
+/// On the paper's damper; as long as it takes four times to stop the swing without a barrier.
+fn rest_times(alpha: f64, amplitude: f64, stop: f64) -> Result<RestTimes, FrictionError> {
+    let rest = |friction| {
+        let model = Model {
+            alpha,
+            friction,
+            ..Model::default()
+        };
+        Ok::<_, FrictionError>(followed(&model, -amplitude, (4.0 * stop).max(50.0))?.rest().time)
+    };
+    Ok(RestTimes {
+        coulomb: rest(Friction::Exact)?,
+        arctangent: rest(Friction::Arctangent)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slow_rate_of_a_linear_motion_is_found() {
+        let places = |motion: fn(f64) -> f64| [8.0, 8.5, 9.0, 9.5].map(motion);
+        for (found, rate) in [
+            (rate_of(places(|t| 2.0 * (-0.3 * t).exp()), 0.5), 0.3),
+            (rate_of(places(|t| (-0.9 * t).exp() - 3.0 * (-1.1 * t).exp()), 0.5), 0.9),
+            (rate_of(places(|t| (-0.4 * t).exp() * (0.9 * t).cos()), 0.5), 0.4),
+        ] {
+            assert!((found.unwrap() / rate - 1.0).abs() < 1e-9, "{found:?} {rate}");
+        }
+        assert_eq!(rate_of([0.0; 4], 0.5), None);
+    }
+
+    /// The average of averaging, by the rule of the middle.
+    #[test]
+    fn the_share_of_the_work_is_its_integral() {
+        for speed in [1e-4, 0.01, 0.3, 2.0] {
+            let count = 20_000;
+            let term = |index: i32| {
+                let sine = (PI * (f64::from(index) + 0.5) / f64::from(count)).sin();
+                FRAC_2_PI * (STEEPNESS * speed * sine).atan() * sine
+            };
+            let integral: f64 = (0..count).map(term).sum::<f64>() * PI / f64::from(count) / 2.0;
+            assert!((work_share(speed) / integral - 1.0).abs() < 1e-6, "{speed}");
+        }
+    }
+
+    /// The formula of the creep solves its equation, alpha (2/pi) atan(100 x') = -x.
+    #[test]
+    fn the_creep_solves_its_equation() {
+        let (alpha, start, step) = (0.3, 0.2, 1e-4);
+        assert!((crept(alpha, start, 0.0) - start).abs() < 1e-15);
+        for t in [0.5, 5.0, 40.0] {
+            let velocity = (crept(alpha, start, t + step) - crept(alpha, start, t - step)) / (2.0 * step);
+            let force = alpha * FRAC_2_PI * (STEEPNESS * velocity).atan();
+            assert!((force + crept(alpha, start, t)).abs() < 1e-8, "{t}");
+        }
+    }
+}

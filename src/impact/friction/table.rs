@@ -1,0 +1,351 @@
+//! Table 1 of the paper, recomputed, and the value of pi that its digits were made with.
+//!
+//! ```text
+//! sgn(x') ~ (2/pi) atan(100 x')                          equation (6)
+//! error   = 100 (1 - (2/pi) atan(100 |x'|)) %
+//! ```
+//!
+//! The printed digits stand in [`TABLE`] to be compared with; nothing is computed from them but the range of pi that they
+//! allow. They are read from Table 1 of the paper as it is printed, signs and number of digits included.
+
+use std::f64::consts::PI;
+
+use crate::impact::model::STEEPNESS;
+
+/// What the paper prints at a speed: the arctangent and its error in per cent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Printed {
+    /// (2/pi) atan(100 x').
+    pub value: &'static str,
+    /// The error in per cent.
+    pub error: &'static str,
+}
+
+/// The speeds of Table 1 and what is printed there.
+pub const TABLE: [(f64, Printed); 11] = [
+    (
+        -5.0,
+        Printed {
+            value: "-0.99923",
+            error: "0.07667",
+        },
+    ),
+    (
+        -4.0,
+        Printed {
+            value: "-0.99891",
+            error: "0.10851",
+        },
+    ),
+    (
+        -3.0,
+        Printed {
+            value: "-0.99838",
+            error: "0.16159",
+        },
+    ),
+    (
+        -2.0,
+        Printed {
+            value: "-0.99732",
+            error: "0.26775",
+        },
+    ),
+    (
+        -1.0,
+        Printed {
+            value: "-0.99414",
+            error: "0.58620",
+        },
+    ),
+    (
+        0.0,
+        Printed {
+            value: "0.00000",
+            error: "0.00000",
+        },
+    ),
+    (
+        1.0,
+        Printed {
+            value: "+0.99413",
+            error: "0.58620",
+        },
+    ),
+    (
+        2.0,
+        Printed {
+            value: "+0.99732",
+            error: "0.267747",
+        },
+    ),
+    (
+        3.0,
+        Printed {
+            value: "+0.99838",
+            error: "0.161592",
+        },
+    ),
+    (
+        4.0,
+        Printed {
+            value: "+0.99891",
+            error: "0.108514",
+        },
+    ),
+    (
+        5.0,
+        Printed {
+            value: "+0.99923",
+            error: "0.076667",
+        },
+    ),
+];
+
+/// The values of pi that are tried: short ones, fractions, and pi itself.
+const TRIED: [(&str, f64); 11] = [
+    ("3", 3.0),
+    ("3.1", 3.1),
+    ("22/7", 22.0 / 7.0),
+    ("3.14", 3.14),
+    ("3.141", 3.141),
+    ("3.142", 3.142),
+    ("3.1415", 3.1415),
+    ("3.1416", 3.1416),
+    ("3.14159", 3.14159),
+    ("355/113", 355.0 / 113.0),
+    ("pi", PI),
+];
+
+/// The approximation of sgn by equation (6), with this value of pi.
+///
+/// ```
+/// use lindstedt::impact::friction::arctangent;
+///
+/// assert!((arctangent(1.0, std::f64::consts::PI) - 0.993634).abs() < 1e-6);
+/// assert!((arctangent(1.0, 3.14) - 0.994138).abs() < 1e-6);
+/// ```
+pub fn arctangent(speed: f64, pi: f64) -> f64 {
+    2.0 / pi * (STEEPNESS * speed).atan()
+}
+
+/// Its error in per cent; at rest both laws are zero.
+fn error(speed: f64, pi: f64) -> f64 {
+    match speed == 0.0 {
+        true => 0.0,
+        false => 100.0 * (1.0 - arctangent(speed.abs(), pi)),
+    }
+}
+
+/// Whether a number has the printed digits, as many as are printed, rounded and cut off.
+fn has_digits(printed: &str, number: f64) -> [bool; 2] {
+    let wanted = printed.trim_start_matches('+');
+    let decimals = wanted.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let unit = 10_f64.powi(decimals as i32);
+    [number, (number * unit).trunc() / unit].map(|number| {
+        // No sign stands before a zero.
+        let written = format!("{number:.decimals$}");
+        written == wanted || number == 0.0 && written.trim_start_matches('-') == wanted
+    })
+}
+
+/// A printed number, and how the number that belongs there comes to its digits with some pi.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry {
+    /// What is printed.
+    pub printed: &'static str,
+    /// Whether they are those of the rounded number.
+    pub rounded: bool,
+    /// Whether they are those of the number cut off.
+    pub cut: bool,
+}
+
+impl Entry {
+    fn of(printed: &'static str, number: f64) -> Self {
+        let [rounded, cut] = has_digits(printed, number);
+        Self { printed, rounded, cut }
+    }
+
+    /// `rounded`, `cut`, `either` or `neither`.
+    pub fn treatment(self) -> &'static str {
+        match (self.rounded, self.cut) {
+            (true, true) => "either",
+            (true, false) => "rounded",
+            (false, true) => "cut",
+            (false, false) => "neither",
+        }
+    }
+}
+
+/// The two laws at one speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpeedRow {
+    /// x', units of omega.
+    pub speed: f64,
+    /// Coulomb's sgn(x').
+    pub sign: f64,
+    /// (2/pi) atan(100 x').
+    pub arctangent: f64,
+    /// How far that is from sgn, per cent.
+    pub error: f64,
+    /// What the paper prints there, where it is one of its speeds: value and error, with what the best pi makes of them.
+    pub printed: Option<[Entry; 2]>,
+}
+
+/// How many of the printed entries come out with one value of pi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PiReading {
+    /// How it is written, `22/7`.
+    pub name: &'static str,
+    /// The value.
+    pub value: f64,
+    /// Entries that it gives rounded.
+    pub rounded: usize,
+    /// Entries that it gives cut off.
+    pub cut: usize,
+    /// Entries that it gives in one of the two ways.
+    pub either: usize,
+}
+
+impl PiReading {
+    fn of(name: &'static str, value: f64) -> Self {
+        let entries: Vec<Entry> = TABLE
+            .iter()
+            .flat_map(|(speed, printed)| entries(*speed, printed, value))
+            .collect();
+        let count = |wanted: fn(&Entry) -> bool| entries.iter().filter(|entry| wanted(entry)).count();
+        Self {
+            name,
+            value,
+            rounded: count(|entry| entry.rounded),
+            cut: count(|entry| entry.cut),
+            either: count(|entry| entry.rounded || entry.cut),
+        }
+    }
+
+    /// What the arctangent tends to at high speed with it, 1 with pi itself.
+    pub fn limit(&self) -> f64 {
+        PI / self.value
+    }
+
+    /// The speed beyond which it is larger than 1, where there is one.
+    pub fn exceeds_from(&self) -> Option<f64> {
+        (self.value < PI).then(|| (0.5 * self.value).tan() / STEEPNESS)
+    }
+}
+
+fn entries(speed: f64, printed: &Printed, pi: f64) -> [Entry; 2] {
+    [
+        Entry::of(printed.value, arctangent(speed, pi)),
+        Entry::of(printed.error, error(speed, pi)),
+    ]
+}
+
+/// Table 1, recomputed and searched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// The two laws at the paper's speeds, then at those asked for.
+    pub rows: Vec<SpeedRow>,
+    /// Every value of pi that was tried.
+    pub readings: Vec<PiReading>,
+    /// The least and the greatest pi with which every printed entry comes out, rounded or cut off; nothing where none does.
+    pub pi_range: Option<[f64; 2]>,
+    best: usize,
+}
+
+impl Table {
+    /// Table 1 of the paper, and these speeds beside its own.
+    pub(super) fn of(speeds: &[f64]) -> Self {
+        let readings: Vec<PiReading> = TRIED.map(|(name, value)| PiReading::of(name, value)).into();
+        // Of equals the first, which is the shortest.
+        let best = (0..readings.len())
+            .rev()
+            .max_by_key(|index| (readings[*index].either, readings[*index].rounded));
+        let best = best.unwrap_or_default();
+        let row = |speed: f64, printed| SpeedRow {
+            speed,
+            sign: if speed == 0.0 { 0.0 } else { speed.signum() },
+            arctangent: arctangent(speed, PI),
+            error: error(speed, PI),
+            printed,
+        };
+        let pi = readings[best].value;
+        let own = TABLE
+            .iter()
+            .map(|(speed, printed)| row(*speed, Some(entries(*speed, printed, pi))));
+        let others = speeds.iter().map(|speed| row(*speed, None));
+        Self {
+            rows: own.chain(others).collect(),
+            pi_range: pi_range(),
+            readings,
+            best,
+        }
+    }
+
+    /// The pi with which most printed entries come out.
+    pub fn best(&self) -> &PiReading {
+        &self.readings[self.best]
+    }
+
+    /// The number of printed entries, values and errors.
+    pub fn entries(&self) -> usize {
+        2 * TABLE.len()
+    }
+}
+
+/// The values of pi with which every printed entry comes out: each allows a range, since value and error are monotonic in pi.
+fn pi_range() -> Option<[f64; 2]> {
+    let mut range = [f64::MIN_POSITIVE, f64::MAX];
+    for (speed, printed) in TABLE.iter().filter(|(speed, _)| *speed != 0.0) {
+        let twice = 2.0 * (STEEPNESS * speed.abs()).atan();
+        let allowed = |text: &str| -> Option<[f64; 2]> {
+            let size = text.trim_start_matches(['+', '-']);
+            let unit = 0.1_f64.powi(size.split_once('.')?.1.len() as i32);
+            let size: f64 = size.parse().ok()?;
+            // From half a unit below, rounded up, to a whole one above, cut off.
+            Some([size - 0.5 * unit, size + unit])
+        };
+        let [least, greatest] = allowed(printed.value)?;
+        let by_value = [twice / greatest, twice / least];
+        let by_error = allowed(printed.error)?.map(|error| twice / (1.0 - error / 100.0));
+        for [least, greatest] in [by_value, by_error] {
+            range = [range[0].max(least), range[1].min(greatest)];
+        }
+    }
+    (range[0] <= range[1]).then_some(range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_rounded_or_cut() {
+        assert_eq!(has_digits("+0.99413", 0.994138), [false, true]);
+        assert_eq!(has_digits("-0.99414", -0.994138), [true, false]);
+        assert_eq!(has_digits("0.00000", -0.0), [true, true]);
+        assert_eq!(has_digits("0.5", 0.61), [false, false]);
+        assert_eq!(Entry::of("-0.5", -0.54).treatment(), "either");
+    }
+
+    #[test]
+    fn the_range_of_pi_is_where_every_entry_comes_out() {
+        let [least, greatest] = pi_range().unwrap();
+        let all = |pi: f64| PiReading::of("", pi).either == 2 * TABLE.len();
+        let width = greatest - least;
+        assert!(width > 0.0 && width < 1e-6, "{width}");
+        for part in [0.01, 0.5, 0.99] {
+            assert!(all(least + part * width), "{part}");
+        }
+        assert!(!all(least - 0.01 * width) && !all(greatest + 0.01 * width));
+    }
+
+    #[test]
+    fn a_short_pi_overshoots() {
+        let reading = PiReading::of("3.14", 3.14);
+        let speed = reading.exceeds_from().unwrap();
+        assert!((arctangent(speed, 3.14) - 1.0).abs() < 1e-14);
+        assert!(arctangent(1e9, 3.14) > 1.0005 && (reading.limit() - arctangent(1e12, 3.14)).abs() < 1e-12);
+        assert_eq!(PiReading::of("pi", PI).exceeds_from(), None);
+    }
+}

@@ -103,19 +103,18 @@ pub const TABLE: [(f64, Printed); 11] = [
 ];
 
 /// The values of pi that are tried: short ones, fractions, and pi itself.
-const TRIED: [(&str, f64); 11] = [
-    ("3", 3.0),
-    ("3.1", 3.1),
-    ("22/7", 22.0 / 7.0),
-    ("3.14", 3.14),
-    ("3.141", 3.141),
-    ("3.142", 3.142),
-    ("3.1415", 3.1415),
-    ("3.1416", 3.1416),
-    ("3.14159", 3.14159),
-    ("355/113", 355.0 / 113.0),
-    ("pi", PI),
+const TRIED: [&str; 11] = [
+    "3", "3.1", "22/7", "3.14", "3.141", "3.142", "3.1415", "3.1416", "3.14159", "355/113", "pi",
 ];
+
+/// The number that is written so: a decimal or a fraction; pi itself for its name.
+fn value_of(name: &str) -> f64 {
+    let (above, below) = name.split_once('/').unwrap_or((name, "1"));
+    match (above.parse::<f64>(), below.parse::<f64>()) {
+        (Ok(above), Ok(below)) => above / below,
+        _ => PI,
+    }
+}
 
 /// The approximation of sgn by equation (6), with this value of pi.
 ///
@@ -123,7 +122,7 @@ const TRIED: [(&str, f64); 11] = [
 /// use lindstedt::impact::friction::arctangent;
 ///
 /// assert!((arctangent(1.0, std::f64::consts::PI) - 0.993634).abs() < 1e-6);
-/// assert!((arctangent(1.0, 3.14) - 0.994138).abs() < 1e-6);
+/// assert!((arctangent(1.0, 314.0 / 100.0) - 0.994138).abs() < 1e-6);
 /// ```
 pub fn arctangent(speed: f64, pi: f64) -> f64 {
     2.0 / pi * (STEEPNESS * speed).atan()
@@ -256,7 +255,7 @@ pub struct Table {
 impl Table {
     /// Table 1 of the paper, and these speeds beside its own.
     pub(super) fn of(speeds: &[f64]) -> Self {
-        let readings: Vec<PiReading> = TRIED.map(|(name, value)| PiReading::of(name, value)).into();
+        let readings: Vec<PiReading> = TRIED.map(|name| PiReading::of(name, value_of(name))).into();
         // Of equals the first, which is the shortest.
         let best = (0..readings.len())
             .rev()
@@ -341,11 +340,18 @@ mod tests {
     }
 
     #[test]
+    fn every_value_tried_is_near_pi() {
+        assert!(TRIED.iter().all(|name| (value_of(name) - PI).abs() < 0.2));
+        assert_eq!((value_of("22/7"), value_of("pi")), (22.0 / 7.0, PI));
+    }
+
+    #[test]
     fn a_short_pi_overshoots() {
-        let reading = PiReading::of("3.14", 3.14);
+        let short = value_of("3.14");
+        let reading = PiReading::of("3.14", short);
         let speed = reading.exceeds_from().unwrap();
-        assert!((arctangent(speed, 3.14) - 1.0).abs() < 1e-14);
-        assert!(arctangent(1e9, 3.14) > 1.0005 && (reading.limit() - arctangent(1e12, 3.14)).abs() < 1e-12);
+        assert!((arctangent(speed, short) - 1.0).abs() < 1e-14);
+        assert!(arctangent(1e9, short) > 1.0005 && (reading.limit() - arctangent(1e12, short)).abs() < 1e-12);
         assert_eq!(PiReading::of("pi", PI).exceeds_from(), None);
     }
 }

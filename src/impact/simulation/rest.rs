@@ -140,7 +140,7 @@ impl Simulation {
         // Held by friction to the end, or down to the rest energy: it will not be larger any more.
         let held = self.model.sticks()
             && self.end_velocity == 0.0
-            && self.turns.last().is_some_and(|turn| turn.t == self.end_time);
+            && self.turns.last().is_some_and(|turn| turn.x == self.end_x);
         if held {
             // Since when, not until when: how long a run is does not change when its motion came to rest.
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);

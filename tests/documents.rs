@@ -8,7 +8,7 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
-    SimulationDocument, SolutionDocument, SweepDocument,
+    MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -100,6 +100,7 @@ fn reads_back(document: &Value) {
         Kind::Simulation => again::<SimulationDocument>(document),
         Kind::Sweep => again::<SweepDocument>(document),
         Kind::Friction => again::<FrictionDocument>(document),
+        Kind::Materials => again::<MaterialsDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
     };
     assert_eq!(written.to_string(), document.to_string());
@@ -120,6 +121,9 @@ fn documents() -> Vec<(String, Value)> {
     }
     for file in files("examples/simulate", ".toml") {
         add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
+    }
+    for file in files("examples/materials", ".toml") {
+        add(&["materials", &file.to_string_lossy()]);
     }
     add(&["impact", "--compare"]);
     add(&["simulate", "--integrator", "both"]);
@@ -185,6 +189,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",
         Some("lindstedt/impact-comparison/1") => "/methods/0/speed",
         Some("lindstedt/simulation/1") => "/parameters/barrier",
+        Some("lindstedt/materials/1") => "/materials/0/rest",
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         Some("lindstedt/friction/1") => "/speeds/0/printed_value",
         _ => "/entries/0/methods/0",

@@ -135,6 +135,28 @@ fn every_comparison_prints_what_it_printed() {
     });
 }
 
+/// The same swing against barriers of several materials, in text, LaTeX and JSON.
+#[test]
+fn every_study_of_materials_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("materials-text", output(&["materials", path]));
+                insta::assert_snapshot!("materials-latex", output(&["materials", path, "--format", "latex"]));
+                let mut document: Value = serde_json::from_str(&output(&["materials", path, "--format", "json"]))
+                    .expect("the output is JSON");
+                rounded(&mut document);
+                insta::assert_json_snapshot!("materials-json", document);
+            }
+        );
+        let table_2 = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials/table-2.toml");
+        assert_eq!(output(&["materials"]), output(&["materials", table_2]));
+    });
+}
+
 /// The table of every method on one impact, in text, LaTeX and JSON: one for a page, one for a narrow terminal.
 #[test]
 fn every_method_on_one_impact_prints_what_it_printed() {
@@ -234,6 +256,7 @@ fn help_says_what_there_is() {
         insta::assert_snapshot!("help-derive", output(&["derive", "--help"]));
         insta::assert_snapshot!("help-compare", output(&["compare", "--help"]));
         insta::assert_snapshot!("help-impact", output(&["impact", "--help"]));
+        insta::assert_snapshot!("help-materials", output(&["materials", "--help"]));
         insta::assert_snapshot!("help-catalog", output(&["catalog", "--help"]));
         insta::assert_snapshot!("help-schema", output(&["schema", "--help"]));
         insta::assert_snapshot!("catalog", output(&["catalog"]));
@@ -360,6 +383,13 @@ fn latex_documents() -> Vec<(String, String)> {
             let arguments = ["derive", equation, "--method", method, "--steps", "--format", "latex"];
             documents.push((format!("{method} {equation}"), output(&arguments)));
         }
+    }
+    for study in ["table-2", "further"] {
+        let path = format!("{folder}/materials/{study}.toml");
+        documents.push((
+            format!("materials {study}"),
+            output(&["materials", &path, "--format", "latex"]),
+        ));
     }
     documents.push(("catalog".to_owned(), output(&["catalog", "--format", "latex"])));
     documents.sort();

@@ -45,7 +45,7 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 47] = [
+const LINES: [(&str, &str, &str); 48] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -117,6 +117,7 @@ const LINES: [(&str, &str, &str); 47] = [
     ("[run] duration", "[run]\nduration = 25", ""),
     ("[run] integrator_tolerance", "[run]\nintegrator_tolerance = 1e-6", ""),
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
+    ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
 ];
 
 #[test]
@@ -131,6 +132,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             ("compare", Reader::Compare),
             ("impact", Reader::Impact),
             ("simulate", Reader::Simulate),
+            ("materials", Reader::Materials),
         ] {
             // Keys of the top stand first; those of a section that is there already stand in it.
             let (with, without) = match (key.starts_with('['), line.starts_with('[')) {
@@ -138,12 +140,16 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 (true, true) => (format!("{beside}{line}\n"), beside.to_owned()),
                 (false, _) => (format!("{line}\n{beside}"), beside.to_owned()),
             };
-            // An impact takes nothing of [excitation].
+            // An impact and a study of materials take nothing of [excitation].
             let (with, without) = match (reader, key) {
                 (Reader::Impact, "[excitation] beta") => ("[excitation]\nbeta = 0.25\n".to_owned(), String::new()),
+                (Reader::Materials, "[excitation] frequency_ratio") => {
+                    ("[excitation]\nfrequency_ratio = 0.75\n".to_owned(), String::new())
+                }
                 _ => (with, without),
             };
-            let foreign = matches!(reader, Reader::Impact | Reader::Simulate) && beside.starts_with("equation");
+            let foreign = matches!(reader, Reader::Impact | Reader::Simulate | Reader::Materials)
+                && beside.starts_with("equation");
             let (with, without) = match foreign {
                 true => (format!("{line}\n"), String::new()),
                 false => (with, without),
@@ -523,6 +529,13 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("friction", vec![], vec!["--plot", "-"]),
         ("friction", vec![], vec!["--tolerance", "0.1"]),
         ("friction", vec![], vec!["--timeout", "1e-9"]),
+        ("materials", vec![], vec!["--only-own"]),
+        ("materials", vec![], vec!["--format", "latex"]),
+        ("materials", vec![], vec!["--output", file]),
+        ("materials", vec![], vec!["--plot", "-"]),
+        ("materials", vec![], vec!["--tolerance", "0.1"]),
+        ("materials", vec![], vec!["--timeout", "1e-9"]),
+        ("materials", vec![], vec!["--quiet"]),
         ("catalog", vec![], vec!["--format", "csv"]),
         ("catalog", vec![], vec!["--format", "json"]),
         ("catalog", vec![], vec!["--output", file]),
@@ -534,7 +547,14 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("schema", vec!["impact"], vec!["--quiet"]),
     ];
     for command in [
-        "derive", "compare", "impact", "simulate", "friction", "catalog", "schema",
+        "derive",
+        "compare",
+        "impact",
+        "simulate",
+        "friction",
+        "materials",
+        "catalog",
+        "schema",
     ] {
         for name in options_of(command) {
             let option = format!("--{name}");

@@ -12,6 +12,7 @@ mod derive;
 mod files;
 mod friction;
 mod impact;
+mod materials;
 mod problem;
 mod schema;
 mod simulate;
@@ -56,6 +57,8 @@ enum Command {
     Simulate(simulate::Arguments),
     /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
     Friction(friction::Arguments),
+    /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
+    Materials(materials::Arguments),
     /// List the classical oscillators that `derive` knows by name
     Catalog(catalog::Arguments),
     /// Print the JSON Schema of a kind of document: every key with its meaning and unit
@@ -186,6 +189,7 @@ pub fn run() -> ExitCode {
         Command::Impact(arguments) => arguments.common.clone(),
         Command::Simulate(arguments) => arguments.common.clone(),
         Command::Friction(arguments) => arguments.common.clone(),
+        Command::Materials(arguments) => arguments.common.clone(),
         Command::Catalog(arguments) => arguments.common.clone(),
         Command::Schema(arguments) => arguments.common(),
     };
@@ -194,6 +198,7 @@ pub fn run() -> ExitCode {
         Command::Compare(arguments) => problem::path(&arguments.problem),
         Command::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
         Command::Simulate(arguments) => arguments.file.as_deref(),
+        Command::Materials(arguments) => arguments.file.as_deref(),
         Command::Friction(_) | Command::Catalog(_) | Command::Schema(_) => None,
     };
     let checked = files::check(&common, input);
@@ -205,7 +210,7 @@ pub fn run() -> ExitCode {
     }
     // Only a simulation has parts worth waiting for; to add up what a long one did takes a while.
     let patience = match &command {
-        Command::Simulate(_) => Duration::from_secs(60),
+        Command::Simulate(_) | Command::Materials(_) => Duration::from_secs(60),
         _ => Duration::ZERO,
     };
     let (sender, receiver) = channel();
@@ -228,6 +233,7 @@ pub fn run() -> ExitCode {
             Command::Impact(arguments) => impact::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Friction(arguments) => friction::run(&arguments),
+            Command::Materials(arguments) => materials::run(&arguments),
             Command::Catalog(arguments) => catalog::run(&arguments),
             Command::Schema(arguments) => schema::run(&arguments),
         });

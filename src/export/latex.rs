@@ -9,6 +9,7 @@
 mod comparison;
 mod expression;
 mod impact;
+mod table;
 
 pub use expression::{expression, symbol};
 
@@ -19,8 +20,8 @@ use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
 use crate::impact::friction::FrictionStudy;
-use crate::impact::{Impact, ImpactComparison};
-use crate::report::{self, Block, Document, Heading};
+use crate::impact::{Impact, ImpactComparison, MaterialStudy};
+use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{Solution, Sum, long_fraction};
@@ -136,6 +137,19 @@ pub fn friction(study: &FrictionStudy) -> String {
     document(&report::friction(study))
 }
 
+/// The same swing against barriers of several materials: the numbers, and what they say.
+///
+/// ```
+/// use lindstedt::impact::{MaterialQuestion, study_materials};
+///
+/// let study = study_materials(MaterialQuestion::default())?;
+/// assert!(lindstedt::export::latex::materials(&study).contains(r"\begin{tabular}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn materials(study: &MaterialStudy) -> String {
+    document(&report::materials(study))
+}
+
 /// Every method in one table; those that do not apply stand in comments below it.
 ///
 /// ```
@@ -194,7 +208,8 @@ impl Page {
             Block::Question(question) => self.questions.push(equation(question).replacen(" = ", " &= ", 1)),
             Block::QuestionAsTyped(question) => self.questions.push(typed(question).replacen(" = ", " &= ", 1)),
             Block::Title { words, amplitude } => self.comment(Rank::Note, format!("{words}; {amplitude}")),
-            Block::Note(words) => self.comment(Rank::Note, words.clone()),
+            Block::Note(words) | Block::Sentence(words) => self.comment(Rank::Note, words.clone()),
+            Block::Table { head, rows } => self.table(&table::table(head, rows)),
             Block::Remark(words) => self.comment(Rank::Remark, words.clone()),
             // What an article says in words of its own.
             Block::Heading(_)
@@ -244,7 +259,6 @@ impl Page {
                     self.comment(Rank::Remark, format!("{name}: {value}"));
                 }
             }
-            Block::Table { head, rows } => self.table(&table(head, rows)),
             Block::Refused(refused) => {
                 for refused in *refused {
                     let (title, reason) = (refused.method.title(), &refused.reason);
@@ -313,19 +327,6 @@ impl Page {
                 .push_str(&format!("\\begin{{align*}}\n{rows}\n\\end{{align*}}\n"));
         }
     }
-}
-
-/// A table: numbers in mathematics, words as they are.
-fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
-    let line = |cells: Vec<String>| cells.join(" & ") + " \\\\\n";
-    let cell = |cell: &String| match cell.parse::<f64>() {
-        Ok(_) => format!("${}$", scientific_text(cell)),
-        Err(_) => cell.clone(),
-    };
-    let rows: String = rows.iter().map(|row| line(row.iter().map(cell).collect())).collect();
-    let names = line(head.iter().map(|heading| heading.latex.to_owned()).collect());
-    let columns = "r".repeat(head.len());
-    format!("\\begin{{tabular}}{{{columns}}}\n{names}\\hline\n{rows}\\end{{tabular}}\n")
 }
 
 /// The verdict in one line.

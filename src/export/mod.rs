@@ -11,6 +11,7 @@ pub mod friction;
 #[cfg(feature = "json")]
 pub mod json;
 pub mod latex;
+pub mod materials;
 pub mod simulation;
 pub(crate) mod steps;
 pub mod text;

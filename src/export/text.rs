@@ -5,6 +5,7 @@
 
 mod comparison;
 mod impact;
+mod table;
 
 use std::fmt::Write as _;
 
@@ -12,8 +13,8 @@ pub use super::steps::text as steps;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
 use crate::impact::friction::FrictionStudy;
-use crate::impact::{Impact, ImpactComparison};
-use crate::report::{self, Block, Document, Heading};
+use crate::impact::{Impact, ImpactComparison, MaterialStudy};
+use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
@@ -111,6 +112,19 @@ pub fn friction(study: &FrictionStudy) -> String {
     document(&report::friction(study), usize::MAX)
 }
 
+/// The same swing against barriers of several materials, in lines of at most `width` characters where words allow it.
+///
+/// ```
+/// use lindstedt::impact::{MaterialQuestion, study_materials};
+///
+/// let study = study_materials(MaterialQuestion::default())?;
+/// assert!(lindstedt::export::text::materials(&study, 120).contains("What is held fixed decides"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn materials(study: &MaterialStudy, width: usize) -> String {
+    document(&report::materials(study), width)
+}
+
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.
 ///
 /// ```
@@ -150,6 +164,8 @@ impl Page {
             Block::Title { words, amplitude } => format!("{words}, {amplitude}\n"),
             Block::Heading(words) => format!("{words}\n"),
             Block::Note(words) | Block::Remark(words) | Block::Detail(words) => format!("  {words}\n"),
+            Block::Sentence(words) => comparison::wrapped(words, self.width, "  ", "  ") + "\n",
+            Block::Table { head, rows } => table::table(head, rows),
             Block::Law { left, right } => format!("  {:<8}= {right}\n", left.to_string()),
             Block::Relation(sum) => format!("  0       = {sum}\n"),
             Block::Equality { left, right } => format!("  {left} = {right}\n"),
@@ -189,7 +205,6 @@ impl Page {
             Block::Methods { rows, tolerance, .. } => comparison::methods(rows, *tolerance, self),
             Block::Entries { heading, entries } => comparison::entries(heading, entries, self),
             Block::Facts(facts) => facts_in_lines(facts),
-            Block::Table { head, rows } => table(head, rows),
             Block::Refused(refused) => comparison::refused(refused, self),
             Block::TrueMotion(lines) => comparison::true_motion(lines, self.width),
             Block::Closing(words) => comparison::wrapped(words, self.width, "", "") + "\n",
@@ -240,31 +255,6 @@ fn facts_in_lines(facts: &[(&str, String)]) -> String {
     let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}\n");
     facts.iter().map(line).collect()
-}
-
-/// Columns as wide as they must be, flush right.
-fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
-    let head: Vec<&str> = head.iter().map(|heading| heading.text).collect();
-    let rows = rows.iter().map(|row| row.iter().map(String::as_str).collect());
-    let lines: Vec<Vec<&str>> = std::iter::once(head).chain(rows).collect();
-    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| {
-        lines
-            .iter()
-            .filter_map(|line| line.get(column))
-            .map(|cell| cell.chars().count())
-            .max()
-    };
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
-    let line = |cells: &Vec<&str>| {
-        let cells: String = cells
-            .iter()
-            .zip(&widths)
-            .map(|(cell, width)| format!("  {cell:>width$}"))
-            .collect();
-        cells.trim_end().to_owned() + "\n"
-    };
-    lines.iter().map(line).collect()
 }
 
 /// The motion, one harmonic a line.

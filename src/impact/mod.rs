@@ -31,6 +31,7 @@
 //! - `compare`: [`compare`], every method in one table.
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
 //! - `baseline`: the same swing without a barrier, and with one that loses nothing.
+//! - `materials`: [`study_materials`], the same swing against barriers of several materials.
 //! - [`sweep`]: parameters over a range, on all cores.
 //! - [`friction`]: equation (6) beside Coulomb's law, at some speeds and near rest.
 //!
@@ -69,6 +70,7 @@ pub mod friction;
 pub mod hertz;
 mod judge;
 mod linearisation;
+mod materials;
 mod model;
 mod parameter;
 mod phases;
@@ -96,6 +98,10 @@ pub use dissipation::{
 pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
+pub use materials::{
+    Course, DEFAULT_DURATION, DEFAULT_ZETA, FirstContact, HeldFixed, Material, MaterialQuestion, MaterialRow,
+    MaterialStudy, MaterialsError, TABLE_2, course, default_lambda, study_materials,
+};
 pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, Phase, PhasesError, Swing, ThreePhases, three_phases};

@@ -133,15 +133,26 @@ impl Problem {
     fn modulus(&self) -> Result<Modulus, DesignError> {
         let keys = ["[barrier] modulus", "[design] modulus"];
         let alone = self.one_of(keys, self.barrier.modulus, self.design.modulus)?;
+        let key = keys[usize::from(self.barrier.modulus.is_none())];
+        self.modulus_of([key, "[barrier] poisson"], alone, self.barrier.poisson)
+    }
+
+    /// The modulus of the contact of the sphere with a barrier, whose modulus and Poisson's ratio stand under these keys.
+    pub(super) fn modulus_of(
+        &self,
+        [modulus_key, poisson_key]: [&'static str; 2],
+        alone: f64,
+        poisson_of_barrier: Option<f64>,
+    ) -> Result<Modulus, DesignError> {
         let poisson = |key, value: Option<f64>| match value {
             Some(value) if !(value > -1.0 && value <= 0.5) => Err(DesignError::Poisson { key, value }),
             other => Ok(other),
         };
-        let of_barrier = poisson("[barrier] poisson", self.barrier.poisson)?;
+        let of_barrier = poisson(poisson_key, poisson_of_barrier)?;
         let of_sphere = poisson("[sphere] poisson", self.sphere.poisson)?;
         let needs = |key, missing| Err(DesignError::Needs { key, missing });
         let barrier = |poisson| {
-            let modulus = positive(keys[usize::from(self.barrier.modulus.is_none())], alone)?;
+            let modulus = positive(modulus_key, alone)?;
             Ok(Elastic { modulus, poisson })
         };
         match (of_barrier, self.sphere.modulus, of_sphere) {
@@ -156,7 +167,7 @@ impl Problem {
             }),
             (_, Some(_), None) => needs("[sphere] modulus", "[sphere] poisson"),
             (_, None, Some(_)) => needs("[sphere] poisson", "[sphere] modulus"),
-            (None, Some(_), Some(_)) => needs("[sphere] modulus", "[barrier] poisson"),
+            (None, Some(_), Some(_)) => needs("[sphere] modulus", poisson_key),
         }
     }
 
@@ -256,7 +267,7 @@ impl Problem {
     }
 }
 
-fn positive(key: &'static str, value: f64) -> Result<f64, DesignError> {
+pub(super) fn positive(key: &'static str, value: f64) -> Result<f64, DesignError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(value),
         false => Err(DesignError::NotPositive { key, value }),

@@ -39,6 +39,8 @@ pub struct Problem {
     pub barrier: BarrierSection,
     /// Duration and accuracy of integrations.
     pub run: Run,
+    /// The materials of a study.
+    pub material: Vec<MaterialSection>,
     /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
     #[serde(skip)]
     pub given: Vec<String>,
@@ -105,6 +107,33 @@ pub struct BarrierSection {
     /// Yield limit, Pa.
     #[serde(rename = "yield")]
     pub yield_limit: Option<f64>,
+}
+
+/// `[[material]]`, SI units: a barrier that a study tries.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSection {
+    /// Its name.
+    pub name: String,
+    /// Young's modulus, Pa.
+    pub modulus: f64,
+    /// Poisson's ratio; without it the modulus stands alone, as in the paper.
+    pub poisson: Option<f64>,
+    /// Yield limit, Pa.
+    #[serde(rename = "yield")]
+    pub yield_limit: Option<f64>,
+    /// Its own damping in equation (7), dimensionless.
+    pub mu: Option<f64>,
+    /// The same over gamma, dimensionless.
+    pub mu_over_gamma: Option<f64>,
+    /// The same by Hunt and Crossley, s/m.
+    pub lambda: Option<f64>,
+    /// The same by its coefficient of restitution.
+    pub restitution: Option<f64>,
+    /// The speed at which that holds, in units of L omega; without it that of the first touch without damping.
+    pub at_speed: Option<f64>,
+    /// c of F = (k + c d') d^(3/2), N s/m^(5/2).
+    pub damping: Option<f64>,
 }
 
 /// The side of its place on which a barrier is.
@@ -237,17 +266,24 @@ impl Problem {
 impl Contact {
     /// The damping of the contact in the form in which it is given, the first where there are several.
     pub fn given_damping(&self) -> Option<ContactDamping> {
-        [
-            self.mu.map(ContactDamping::Mu),
-            self.mu_over_gamma.map(ContactDamping::MuOverGamma),
-            self.lambda.map(ContactDamping::Lambda),
-            self.restitution.map(ContactDamping::Restitution),
-            self.damping.map(ContactDamping::Coefficient),
-        ]
-        .into_iter()
-        .flatten()
-        .next()
+        let forms = [self.mu, self.mu_over_gamma, self.lambda, self.restitution, self.damping];
+        dampings(forms).first().copied()
     }
+}
+
+impl MaterialSection {
+    /// The damping of its contact in every form in which it is given: one, or none, where it makes sense.
+    pub fn given_dampings(&self) -> Vec<ContactDamping> {
+        dampings([self.mu, self.mu_over_gamma, self.lambda, self.restitution, self.damping])
+    }
+}
+
+/// The forms that are there, in the order of [`ContactDamping::FORMS`].
+fn dampings(values: [Option<f64>; 5]) -> Vec<ContactDamping> {
+    let forms = ContactDamping::FORMS.into_iter().zip(values);
+    forms
+        .filter_map(|(form, value)| ContactDamping::given(form, value?))
+        .collect()
 }
 
 impl Default for Pendulum {

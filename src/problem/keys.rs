@@ -17,9 +17,11 @@ pub enum Reader {
     Impact,
     /// `lindstedt simulate`
     Simulate,
+    /// `lindstedt materials`
+    Materials,
 }
 
-use Reader::{Compare, Derive, Impact, Simulate};
+use Reader::{Compare, Derive, Impact, Materials, Simulate};
 
 impl fmt::Display for Reader {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -28,12 +30,13 @@ impl fmt::Display for Reader {
             Compare => "lindstedt compare",
             Impact => "lindstedt impact",
             Simulate => "lindstedt simulate",
+            Materials => "lindstedt materials",
         })
     }
 }
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 47] = [
+pub const KEYS: [(&str, &[Reader]); 48] = [
     ("equation", &[Derive, Compare, Impact, Simulate]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
@@ -41,46 +44,47 @@ pub const KEYS: [(&str, &[Reader]); 47] = [
     ("amplitude", &[Derive, Impact]),
     ("about", &[Derive, Compare, Impact]),
     ("[values]", &[Derive, Compare, Impact]),
-    ("[pendulum] amplitude", &[Impact, Simulate]),
-    ("[pendulum] barrier", &[Impact, Simulate]),
+    ("[pendulum] amplitude", &[Impact, Simulate, Materials]),
+    ("[pendulum] barrier", &[Impact, Simulate, Materials]),
     ("[pendulum] side", &[Impact]),
-    ("[pendulum] start", &[Impact, Simulate]),
-    ("[pendulum] speed", &[Impact, Simulate]),
-    ("[pendulum] mass", &[Impact, Simulate]),
-    ("[pendulum] length", &[Impact, Simulate]),
-    ("[pendulum] gravity", &[Impact, Simulate]),
+    ("[pendulum] start", &[Impact, Simulate, Materials]),
+    ("[pendulum] speed", &[Impact, Simulate, Materials]),
+    ("[pendulum] mass", &[Impact, Simulate, Materials]),
+    ("[pendulum] length", &[Impact, Simulate, Materials]),
+    ("[pendulum] gravity", &[Impact, Simulate, Materials]),
     ("[contact] gamma", &[Impact, Simulate]),
     ("[contact] force", &[Impact]),
-    ("[contact] mu", &[Impact, Simulate]),
-    ("[contact] mu_over_gamma", &[Impact, Simulate]),
-    ("[contact] lambda", &[Impact, Simulate]),
-    ("[contact] restitution", &[Impact, Simulate]),
-    ("[contact] at_speed", &[Impact, Simulate]),
-    ("[contact] damping", &[Impact, Simulate]),
+    ("[contact] mu", &[Impact, Simulate, Materials]),
+    ("[contact] mu_over_gamma", &[Impact, Simulate, Materials]),
+    ("[contact] lambda", &[Impact, Simulate, Materials]),
+    ("[contact] restitution", &[Impact, Simulate, Materials]),
+    ("[contact] at_speed", &[Impact, Simulate, Materials]),
+    ("[contact] damping", &[Impact, Simulate, Materials]),
     ("[contact] law", &[Impact]),
     ("[contact] linearisation", &[Impact]),
-    ("[damping] zeta", &[Impact, Simulate]),
-    ("[damping] viscous", &[Impact, Simulate]),
-    ("[damping] alpha", &[Impact, Simulate]),
-    ("[damping] torque", &[Impact, Simulate]),
-    ("[damping] friction", &[Simulate]),
+    ("[damping] zeta", &[Impact, Simulate, Materials]),
+    ("[damping] viscous", &[Impact, Simulate, Materials]),
+    ("[damping] alpha", &[Impact, Simulate, Materials]),
+    ("[damping] torque", &[Impact, Simulate, Materials]),
+    ("[damping] friction", &[Simulate, Materials]),
     ("[excitation] beta", &[Impact, Simulate]),
     ("[excitation] frequency_ratio", &[Simulate]),
-    ("[design] mass", &[Impact, Simulate]),
-    ("[design] radius", &[Impact, Simulate]),
-    ("[design] length", &[Impact, Simulate]),
-    ("[design] modulus", &[Impact, Simulate]),
-    ("[design] gravity", &[Impact, Simulate]),
-    ("[sphere] radius", &[Impact, Simulate]),
-    ("[sphere] modulus", &[Impact]),
-    ("[sphere] poisson", &[Impact]),
-    ("[sphere] yield", &[Impact]),
-    ("[barrier] modulus", &[Impact, Simulate]),
+    ("[design] mass", &[Impact, Simulate, Materials]),
+    ("[design] radius", &[Impact, Simulate, Materials]),
+    ("[design] length", &[Impact, Simulate, Materials]),
+    ("[design] modulus", &[Impact, Simulate, Materials]),
+    ("[design] gravity", &[Impact, Simulate, Materials]),
+    ("[sphere] radius", &[Impact, Simulate, Materials]),
+    ("[sphere] modulus", &[Impact, Materials]),
+    ("[sphere] poisson", &[Impact, Materials]),
+    ("[sphere] yield", &[Impact, Materials]),
+    ("[barrier] modulus", &[Impact, Simulate, Materials]),
     ("[barrier] poisson", &[Impact]),
     ("[barrier] yield", &[Impact]),
-    ("[run] duration", &[Simulate]),
-    ("[run] integrator_tolerance", &[Impact, Simulate]),
-    ("[run] step_limit", &[Impact, Simulate]),
+    ("[run] duration", &[Simulate, Materials]),
+    ("[run] integrator_tolerance", &[Impact, Simulate, Materials]),
+    ("[run] step_limit", &[Impact, Simulate, Materials]),
+    ("[[material]]", &[Materials]),
 ];
 
 /// The keys that a file gives.
@@ -89,6 +93,7 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
     for (name, value) in file {
         match value {
             toml::Value::Table(_) if name == "values" => keys.push("[values]".to_owned()),
+            toml::Value::Array(_) if name == "material" => keys.push("[[material]]".to_owned()),
             toml::Value::Table(section) => keys.extend(section.keys().map(|key| format!("[{name}] {key}"))),
             _ => keys.push(name.clone()),
         }
@@ -181,7 +186,7 @@ mod tests {
             assert!(expected.len() > 1, "{error}");
             for name in expected {
                 let key = format!("{prefix}{name}");
-                let is_section = KEYS.iter().any(|(known, _)| known.starts_with(&format!("[{name}]")));
+                let is_section = KEYS.iter().any(|(known, _)| known.contains(&format!("[{name}]")));
                 let known = KEYS.iter().any(|(known, _)| *known == key);
                 assert!(known || prefix.is_empty() && is_section, "{key}");
             }

@@ -6,13 +6,15 @@
 //!
 //! - [`Problem::formula`], what `derive` and `compare` read;
 //! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
-//! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept.
+//! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept;
+//! - barriers of several materials, [`Problem::materials`].
 
 mod design;
 mod document;
 mod formula;
 mod impact;
 mod keys;
+mod materials;
 mod mistakes;
 mod simulate;
 
@@ -25,12 +27,13 @@ use crate::values::ValueError;
 
 pub use design::DesignError;
 pub use document::{
-    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, NoBarrier, Order, Pendulum,
-    Problem, Run, SphereSection,
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, MaterialSection, NoBarrier,
+    Order, Pendulum, Problem, Run, SphereSection,
 };
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
 pub use keys::{KEYS, Reader, UnreadKey};
+pub use materials::MaterialsFileError;
 pub use simulate::{Simulate, SimulateError};
 
 /// The largest file that is read, in bytes.

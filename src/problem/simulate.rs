@@ -135,22 +135,7 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, SimulateError> {
-        let gives = |parameter: Parameter| {
-            let (contact, damping) = (&self.contact, &self.damping);
-            swept.contains(&parameter)
-                || match parameter {
-                    Parameter::Gamma => contact.gamma.is_some(),
-                    Parameter::Mu => contact.mu.is_some(),
-                    Parameter::MuOverGamma => contact.mu_over_gamma.is_some(),
-                    Parameter::Lambda => contact.lambda.is_some(),
-                    Parameter::Restitution => contact.restitution.is_some(),
-                    Parameter::AtSpeed => contact.at_speed.is_some(),
-                    Parameter::ContactDamping => contact.damping.is_some(),
-                    Parameter::Viscous => damping.viscous.is_some(),
-                    Parameter::Torque => damping.torque.is_some(),
-                    _ => self.gives(&parameter.to_string()),
-                }
-        };
+        let gives = |parameter: Parameter| swept.contains(&parameter) || self.gives_parameter(parameter);
         self.check_swept(swept, gives)?;
         if self.equation.is_some() {
             return Err(SimulateError::Equation);
@@ -175,6 +160,23 @@ impl Problem {
             units: self.simulation_units(&case.design),
             case,
         })
+    }
+
+    /// Whether a file, or whoever made this problem, gives a parameter.
+    pub(super) fn gives_parameter(&self, parameter: Parameter) -> bool {
+        let (contact, damping) = (&self.contact, &self.damping);
+        match parameter {
+            Parameter::Gamma => contact.gamma.is_some(),
+            Parameter::Mu => contact.mu.is_some(),
+            Parameter::MuOverGamma => contact.mu_over_gamma.is_some(),
+            Parameter::Lambda => contact.lambda.is_some(),
+            Parameter::Restitution => contact.restitution.is_some(),
+            Parameter::AtSpeed => contact.at_speed.is_some(),
+            Parameter::ContactDamping => contact.damping.is_some(),
+            Parameter::Viscous => damping.viscous.is_some(),
+            Parameter::Torque => damping.torque.is_some(),
+            _ => self.gives(&parameter.to_string()),
+        }
     }
 
     /// The numbers of the pendulum and its barrier, as they are given.
@@ -279,7 +281,7 @@ impl Problem {
     }
 
     /// Refuses a key that another one leaves nothing to say, or that says nothing alone.
-    fn check_pairs(&self, gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+    pub(super) fn check_pairs(&self, gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
         let (key, other) = (Parameter::Amplitude, Parameter::Start);
         if gives(key) && gives(other) {
             return Err(SimulateError::NoEffect { key, other });

@@ -8,12 +8,14 @@ mod comparison;
 mod friction;
 mod impact;
 mod impact_comparison;
+mod materials;
 mod solution;
 
 pub use comparison::comparison;
 pub use friction::friction;
 pub use impact::impact;
 pub use impact_comparison::impact_comparison;
+pub use materials::{material_sentences, materials};
 pub use solution::solution;
 
 use crate::derivation::Line;
@@ -55,6 +57,8 @@ pub enum Block<'a> {
     Note(String),
     /// A note of second rank, such as a list of the other limit cycles.
     Remark(String),
+    /// A sentence that follows from the numbers; it is broken where a line ends.
+    Sentence(String),
     /// What only the longest format has room for.
     Detail(String),
     /// A law: omega^2, omega, or zero.
@@ -248,6 +252,12 @@ pub struct Heading {
     pub text: &'static str,
     /// In LaTeX.
     pub latex: &'static str,
+}
+
+/// Whether the first column of a table has names, no number among them: then it stands on the left.
+pub(crate) fn are_names(rows: &[Vec<String>]) -> bool {
+    let mut first = rows.iter().filter_map(|row| row.first()).peekable();
+    first.peek().is_some() && first.all(|name| name.parse::<f64>().is_err())
 }
 
 /// A row of a table of methods.

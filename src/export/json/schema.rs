@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{
     CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, JsonError,
-    SimulationDocument, SolutionDocument, SweepDocument, unexpected,
+    MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -27,13 +27,15 @@ pub enum Kind {
     Sweep,
     /// `friction`.
     Friction,
+    /// `materials`.
+    Materials,
     /// `catalog`.
     Catalog,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -41,6 +43,7 @@ impl Kind {
         Self::Simulation,
         Self::Sweep,
         Self::Friction,
+        Self::Materials,
         Self::Catalog,
     ];
 
@@ -54,6 +57,7 @@ impl Kind {
             Self::Simulation => "lindstedt/simulation/1",
             Self::Sweep => "lindstedt/sweep/1",
             Self::Friction => "lindstedt/friction/1",
+            Self::Materials => "lindstedt/materials/1",
             Self::Catalog => "lindstedt/catalog/1",
         }
     }
@@ -87,6 +91,7 @@ impl Kind {
             Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
+            Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
         };
         schema.insert("title".to_owned(), self.schema().into());

@@ -76,7 +76,7 @@ impl Simulation {
             };
         }
         let last_crossing = self.last_crossing(level);
-        let time = match self.envelope_crossing(amplitude) {
+        let time = match self.envelope_crossing(&self.envelope_from(amplitude), amplitude) {
             Err(_) if !self.stop.is_complete() => Err(NoRest::BrokeOff),
             time => time,
         };
@@ -101,8 +101,14 @@ impl Simulation {
         }
     }
 
-    /// The points of the envelope in order, the first swing at the start; only those that are known to belong to it.
-    fn envelope(&self, amplitude: f64) -> Vec<Turn> {
+    /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|) are what is joined by straight lines
+    /// of log|x|.
+    pub fn envelope(&self) -> Vec<Turn> {
+        self.envelope_from(self.first_swing())
+    }
+
+    /// The same from this first swing; only the points that are known to belong to it.
+    fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
         let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
         // From where it came tells on which side a turning point lies; a moment of rest without motion before it, as
         // under friction, lies where the last one did.
@@ -159,9 +165,8 @@ impl Simulation {
         swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY)
     }
 
-    fn envelope_crossing(&self, amplitude: f64) -> Result<f64, NoRest> {
+    fn envelope_crossing(&self, envelope: &[Turn], amplitude: f64) -> Result<f64, NoRest> {
         let level = REST_FRACTION * amplitude;
-        let envelope = self.envelope(amplitude);
         let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
             return Err(NoRest::StaysAbove);
         };

@@ -1,0 +1,80 @@
+//! `lindstedt materials [FILE]`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use lindstedt::Interrupt;
+use lindstedt::export::{json, latex, materials, text};
+use lindstedt::impact::{MaterialStudy, MaterialsError, Settings, study_materials};
+use lindstedt::problem::Problem;
+
+use super::files::width;
+use super::problem::from_file;
+use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A TOML file, or - for standard input; without it the paper's design and the materials of its Table 2
+    pub file: Option<PathBuf>,
+    /// Only the materials of the file, without those of the paper's Table 2
+    #[arg(long)]
+    only_own: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = match &arguments.file {
+        None => Problem::default(),
+        Some(path) => from_file(path)?,
+    };
+    let common = &arguments.common;
+    if common.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "--tolerance belongs to a verdict, and a study of materials has none: leave it out".to_owned(),
+        ));
+    }
+    let mut question = problem
+        .materials(arguments.only_own)
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    question.settings = Settings {
+        interrupt: Interrupt::by(&STOP),
+        ..question.settings
+    };
+    let study = study_materials(question).map_err(|error| {
+        let none = error == MaterialsError::NoMaterial;
+        Failure::refused(
+            &error,
+            none.then(|| "leave out --only-own, or list materials in a file".to_owned()),
+        )
+    })?;
+    let text = match common.format {
+        Format::Text => text::materials(&study, width(common.output.as_deref())),
+        Format::Latex => latex::materials(&study),
+        Format::Csv => materials::csv(&study),
+        Format::Json => json_text(&json::materials(&study))?,
+    };
+    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&study)));
+    let broken = study.rows.iter().find(|row| !row.course.stop.is_complete());
+    let note = broken.map(|row| {
+        let (name, stop) = (&row.material.name, row.course.stop);
+        format!("warning: {name} stopped early, what there is is kept: {stop}")
+    });
+    Ok(Outcome {
+        result: whole(text),
+        picture,
+        note,
+        verdict: None,
+        partial: broken.is_some(),
+    })
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &MaterialStudy) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(study: &MaterialStudy) -> Result<String, Failure> {
+    materials::figure::materials(study).map_err(|error| Failure::refused(&error, None))
+}

@@ -1,0 +1,209 @@
+//! The paper's Figure 4 with its answer: the swing against every barrier, and its decay under two things held fixed.
+
+use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
+use crate::decimal::{decimal, significant};
+use crate::impact::{ContactDamping, HeldFixed, MaterialStudy, MaterialsError, Parameter, REST_FRACTION, Simulation};
+
+/// Points of a motion, equally spaced in time.
+const POINTS: usize = 1200;
+
+/// The curves of the materials, as many as can be told apart: the first are drawn. Black is what stands beside them.
+const STYLES: [CurveStyle; 8] = [
+    CurveStyle::SERIES[0],
+    CurveStyle::SERIES[1],
+    CurveStyle::SERIES[2],
+    CurveStyle::SERIES[3],
+    CurveStyle::SERIES[5],
+    CurveStyle::SERIES[7],
+    CurveStyle::SERIES[8],
+    CurveStyle::SERIES[9],
+];
+
+/// The times of the paper's Figure 4, s.
+const FIGURE_4: [f64; 2] = [1.0, 2.5];
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MaterialsFigureError {
+    /// The drawing.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// A motion that is drawn.
+    #[error(transparent)]
+    Study(#[from] MaterialsError),
+}
+
+/// Points of one curve.
+type Points = Vec<(f64, f64)>;
+
+/// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of its amplitude: as asked for, and
+/// beside it with the contact damping held fixed in the form under which the modulus says the opposite. With the decay stand those
+/// without a barrier and with one that loses nothing.
+///
+/// # Errors
+/// As [`figure`]; a motion that cannot be followed.
+///
+/// ```
+/// use lindstedt::export::materials::figure;
+/// use lindstedt::impact::{MaterialQuestion, study_materials};
+///
+/// let study = study_materials(MaterialQuestion::default())?;
+/// assert!(figure::materials(&study)?.starts_with("<svg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> {
+    let drawn = study.rows.len().min(STYLES.len());
+    let second = study.units.time();
+    let window = FIGURE_4.map(|time| time / second);
+    let window = match window[1] <= study.question.settings.duration {
+        true => window,
+        // A slow pendulum, or a short run: from its start.
+        false => [0.0, study.question.settings.duration],
+    };
+    let end = 1.05 * last_rest(study);
+    let contrast = contrast(study);
+    let sides: Vec<Option<&HeldFixed>> = std::iter::once(None).chain(contrast.map(Some)).collect();
+    let mut motions: Vec<[Vec<Points>; 2]> = Vec::new();
+    for held in &sides {
+        let (mut swings, mut decays) = (Vec::new(), Vec::new());
+        for row in 0..drawn {
+            swings.push(swing(&study.motion(row, *held, window[1])?, window, second));
+            decays.push(decay(&study.motion(row, *held, end)?, second));
+        }
+        motions.push([swings, decays]);
+    }
+    let [softest, _] = study.softest_and_hardest();
+    let beside = [
+        ("no barrier", study.motion_without(None, end)?, CurveStyle::SERIES[4]),
+        (
+            "barrier without loss",
+            study.motion_without(Some(softest), end)?,
+            CurveStyle::SECOND_FORMULA,
+        ),
+    ];
+    let beside = beside.map(|(label, motion, style)| (label, decay(&motion, second), style));
+    let form = |held: &Option<&HeldFixed>| {
+        held.map_or(study.dissipation.contact, |held| held.damping)
+            .form()
+            .name()
+    };
+    let has_own = study.rows.iter().any(|row| row.material.damping.is_some());
+    let title = |what: &str, held: &Option<&HeldFixed>| match has_own && held.is_none() {
+        true => format!("{what}, each as given"),
+        false => format!("{what}, {} held fixed", form(held)),
+    };
+    let titles: Vec<[String; 2]> = sides
+        .iter()
+        .map(|held| ["Swing", "Decay"].map(|what| title(what, held)))
+        .collect();
+    let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
+    let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| Panel {
+        title,
+        x_label: "time t (s)",
+        y_label: "displacement x (rad)",
+        curves: of_materials(study, swings),
+        guides: barriers
+            .iter()
+            .map(|barrier| Guide::Y(*barrier, "barrier x_c"))
+            .collect(),
+        ..Panel::default()
+    });
+    let decays = motions.iter().zip(&titles).map(|([_, decays], [_, title])| {
+        let beside = beside.iter().filter(|(_, points, _)| points.len() > 1);
+        let beside = beside.map(|(label, points, style)| curve(label, points, *style));
+        Panel {
+            title,
+            x_label: "time t (s)",
+            y_label: "amplitude (% of the first swing)",
+            y_scale: Scale::Logarithmic,
+            curves: beside.chain(of_materials(study, decays)).collect(),
+            guides: vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")],
+            ..Panel::default()
+        }
+    });
+    let panels: Vec<Panel> = swings.chain(decays).collect();
+    Ok(figure(&panels, &caption(study, contrast, drawn))?)
+}
+
+/// When the last of them rests; the end of the run where one does not.
+fn last_rest(study: &MaterialStudy) -> f64 {
+    let of_rows = study.rows.iter().map(|row| row.course.rest_time);
+    let of_held = study.held_fixed.iter().flat_map(|held| held.rest_times.iter().copied());
+    let all: Result<Vec<f64>, _> = of_rows.chain(of_held).chain([study.no_barrier]).collect();
+    let longest = all.map(|times| times.into_iter().fold(0.0, f64::max));
+    longest.unwrap_or(study.question.settings.duration)
+}
+
+/// Of the forms that are not as good as the given one the first: mu beside lambda, lambda beside mu.
+fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
+    let by_mu = |damping: ContactDamping| matches!(damping.form(), Parameter::Mu | Parameter::ContactDamping);
+    let given = by_mu(study.dissipation.contact);
+    study.held_fixed.iter().find(|held| by_mu(held.damping) != given)
+}
+
+/// A curve for each material; one point alone is none.
+fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve<'a>> {
+    let rows = study.rows.iter().zip(points).zip(STYLES);
+    rows.filter(|((_, points), _)| points.len() > 1)
+        .map(|((row, points), style)| curve(&row.material.name, points, style))
+        .collect()
+}
+
+fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
+    Curve { label, points, style }
+}
+
+/// The displacement in this window of time, the time in seconds.
+fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
+    let times = (0..=POINTS).map(|index| from + (to - from) * (index as f64 / POINTS as f64));
+    times.filter_map(|t| Some((t * second, motion.path.at(t)?.0))).collect()
+}
+
+/// The amplitude at the turning points of the envelope, in percent of the first, the time in seconds.
+fn decay(motion: &Simulation, second: f64) -> Points {
+    let envelope = motion.envelope();
+    let first = envelope.first().map_or(1.0, |turn| turn.x.abs());
+    let points = envelope
+        .iter()
+        .map(|turn| (turn.t * second, 100.0 * turn.x.abs() / first));
+    points.filter(|(_, amplitude)| *amplitude > 0.0).collect()
+}
+
+fn caption(study: &MaterialStudy, contrast: Option<&HeldFixed>, drawn: usize) -> String {
+    let damping = study.dissipation.contact;
+    let words = |damping: ContactDamping| {
+        format!(
+            "{} = {} {}",
+            damping.form().name(),
+            decimal(damping.value()),
+            damping.form().unit()
+        )
+        .trim_end()
+        .to_owned()
+    };
+    let mut text = format!(
+        "Pendulum of {} m, ζ = {}",
+        decimal(study.units.length),
+        decimal(study.model.zeta)
+    );
+    if study.model.alpha != 0.0 {
+        text += &format!(", α = {}", decimal(study.model.alpha));
+    }
+    text += &format!("; {}", words(damping));
+    if let Some(held) = contrast {
+        text += &format!(", or {}", words(held.damping));
+    }
+    let spread = |held: &HeldFixed| {
+        held.spread()
+            .map(|spread| format!("{} %", significant(100.0 * spread, 3)))
+    };
+    if let (Some(first), Some(second)) = (study.held_fixed.first().and_then(spread), contrast.and_then(spread)) {
+        text += &format!(": rest times {first} apart, or {second}");
+    }
+    text += ".";
+    if drawn < study.rows.len() {
+        text += &format!(" The first {drawn} of {} materials are drawn.", study.rows.len());
+    }
+    text
+}

@@ -1,0 +1,575 @@
+//! Which material a barrier should be made of: the same swing against barriers that differ in their modulus alone.
+//!
+//! In: a design, what damps it, and materials. Out: for each material the contact, the motion until it rests, and how the rest time
+//! depends on what is held fixed while the modulus changes,
+//!
+//! ```text
+//! gamma = (4/3) E sqrt(R) L^(3/2)/(m g)                                      equation (8), grows with E
+//! mu fixed, or c of (k + c d') d^(3/2)           mu/gamma falls as 1/E: a soft barrier loses more
+//! mu/gamma fixed, or lambda, or a restitution at a speed     the restitution e((mu/gamma) v) is that of any E
+//! ```
+//!
+//! The damping that is given is taken at the design's own modulus; the other forms hold fixed what it is there.
+
+use thiserror::Error;
+
+use super::case::{Case, CaseError};
+use super::dissipation::{ContactDamping, Dissipation};
+use super::hertz;
+use super::model::{Model, Start};
+use super::parameter::Parameter;
+use super::si::YieldCheck;
+use super::simulate::{SimulationError, simulate};
+use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
+use super::units::{FIRST_YIELD, Modulus, Units};
+
+/// The elastic moduli of the paper's Table 2, Pa: inputs of its study, as printed.
+pub const TABLE_2: [(&str, f64); 3] = [
+    ("Steel alloy (ASTM-A242)", 200e9),
+    ("Aluminum alloy (6061-T6)", 70e9),
+    ("Polyester elastomer", 0.2e9),
+];
+
+/// The damping ratio zeta of a study that is given none: the paper prints none.
+pub const DEFAULT_ZETA: f64 = 0.02;
+
+/// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the paper's design, sqrt(g L) = 0.817 m/s.
+pub fn default_lambda() -> f64 {
+    let papers = hertz::Design::default();
+    0.1 / (papers.gravity * papers.length).sqrt()
+}
+
+/// How long the motions of a study are followed where no duration is given, in units of 1/omega.
+pub const DEFAULT_DURATION: f64 = 500.0;
+
+/// A barrier without loss, or none, is followed so many times as long: it rests later.
+const LONGER: f64 = 4.0;
+
+/// A material of a barrier.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Its name.
+    pub name: String,
+    /// The modulus of its contact with the sphere.
+    pub modulus: Modulus,
+    /// Its yield limit, Pa, where one is stated.
+    pub yield_limit: Option<f64>,
+    /// The damping of its contact, where it has one of its own.
+    pub damping: Option<ContactDamping>,
+    /// The speed, in units of L omega, at which its restitution is stated.
+    pub at_speed: Option<f64>,
+}
+
+impl Material {
+    /// The materials of the paper's Table 2: each modulus alone, as in its equation (3).
+    ///
+    /// ```
+    /// use lindstedt::impact::Material;
+    ///
+    /// let names: Vec<String> = Material::of_table_2().into_iter().map(|material| material.name).collect();
+    /// assert_eq!(names[2], "Polyester elastomer");
+    /// ```
+    pub fn of_table_2() -> Vec<Self> {
+        let row = |(name, modulus): (&str, f64)| Self {
+            name: name.to_owned(),
+            modulus: Modulus::BarrierAlone(modulus),
+            yield_limit: None,
+            damping: None,
+            at_speed: None,
+        };
+        TABLE_2.into_iter().map(row).collect()
+    }
+}
+
+/// A study of materials: the question.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialQuestion {
+    /// The pendulum and what damps it. Its modulus is the one at which the damping of the contact is what is given.
+    pub case: Case,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The yield limit of the sphere, Pa, where one is stated.
+    pub sphere_yield: Option<f64>,
+    /// How long and how closely the motions are followed.
+    pub settings: Settings,
+    /// The dampings that nobody gave: the paper prints none.
+    pub defaults: Vec<Parameter>,
+}
+
+impl Default for MaterialQuestion {
+    /// The paper's design and Table 2, with the dissipation that the paper does not print.
+    fn default() -> Self {
+        Self {
+            case: Case {
+                contact_damping: ContactDamping::Lambda(default_lambda()),
+                zeta: DEFAULT_ZETA,
+                ..Case::default()
+            },
+            materials: Material::of_table_2(),
+            sphere_yield: None,
+            settings: Settings {
+                duration: DEFAULT_DURATION,
+                ..Settings::default()
+            },
+            defaults: vec![Parameter::Lambda, Parameter::Zeta],
+        }
+    }
+}
+
+/// Why there is no study.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MaterialsError {
+    /// No material.
+    #[error(
+        "there is no material: give one as [[material]] with a name and a modulus, or leave the paper's Table 2 in"
+    )]
+    NoMaterial,
+    /// The design.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A material that makes no motion.
+    #[error("material `{name}`: {error}")]
+    Material {
+        /// Its name.
+        name: String,
+        /// Why.
+        error: CaseError,
+    },
+    /// A motion that cannot begin.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// What becomes of one motion until it rests.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// When it rests, in units of 1/omega.
+    pub rest_time: Result<f64, NoRest>,
+    /// The contacts until then; all of them where it does not rest.
+    pub impacts: Vec<Contact>,
+    /// The energy of the swing after each of them that ended, in units of m g L.
+    pub energies: Vec<f64>,
+    /// Why it was followed no further.
+    pub stop: Stop,
+}
+
+/// Follows one motion until it rests: the one place where a study finds a rest time.
+///
+/// # Errors
+/// As [`simulate`].
+///
+/// ```
+/// use lindstedt::impact::{Model, Settings, Start, course};
+///
+/// let model = Model { zeta: 0.02, mu: 3e6, ..Model::default() };
+/// let found = course(&model, Start::default(), &Settings { duration: 200.0, ..Settings::default() })?;
+/// assert!(found.rest_time? < 100.0 && found.energies[1] < found.energies[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn course(model: &Model, start: Start, settings: &Settings) -> Result<Course, SimulationError> {
+    let settings = Settings {
+        keep_path: false,
+        ..*settings
+    };
+    let motion = simulate(model, start, Integrator::Taylor, &settings)?;
+    let rest_time = motion.rest().time;
+    let before_rest = |impact: &&Contact| rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest);
+    let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
+    let energy = |impact: &Contact| Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?));
+    Ok(Course {
+        rest_time,
+        energies: impacts.iter().filter_map(energy).collect(),
+        impacts,
+        stop: motion.stop,
+    })
+}
+
+/// The first contact with a barrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct FirstContact {
+    /// The speed at the touch, m/s.
+    pub speed: f64,
+    /// How long it lasts, s.
+    pub duration: f64,
+    /// How deep it goes, m.
+    pub penetration: f64,
+    /// The greatest force of the contact, its damping included, N.
+    pub peak_force: f64,
+    /// The pressure of Hertz in the middle of the contact at the greatest depth, Pa.
+    pub peak_pressure: f64,
+    /// The coefficient of restitution.
+    pub restitution: f64,
+}
+
+/// One material.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct MaterialRow {
+    /// The material.
+    pub material: Material,
+    /// The dimensionless stiffness of its contact, equation (8).
+    pub gamma: f64,
+    /// What damps it, in every form.
+    pub dissipation: Dissipation,
+    /// The first contact; nothing where the barrier is not touched, or not left again.
+    pub first: Option<FirstContact>,
+    /// The motion until it rests.
+    pub course: Course,
+    /// The rest time of the same barrier without loss, mu = 0, in units of 1/omega.
+    pub lossless: Result<f64, NoRest>,
+    /// Its stated yield limit, and that of the sphere, beside the pressure of the first contact.
+    pub yield_checks: Vec<YieldCheck>,
+}
+
+/// The materials under one form of the contact damping, held fixed at what it is for the modulus of the design.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct HeldFixed {
+    /// The form and its number.
+    pub damping: ContactDamping,
+    /// The speed at which a restitution is stated, in units of L omega.
+    pub at_speed: Option<f64>,
+    /// mu/gamma of each material.
+    pub ratios: Vec<f64>,
+    /// The restitution of each material at the first touch without damping.
+    pub restitutions: Vec<Option<f64>>,
+    /// The rest time of each material, in units of 1/omega.
+    pub rest_times: Vec<Result<f64, NoRest>>,
+}
+
+impl HeldFixed {
+    /// The materials that rest first and last, by their numbers; nothing where one of them does not rest.
+    pub fn extremes(&self) -> Option<[usize; 2]> {
+        let times: Vec<f64> = self.rest_times.iter().copied().collect::<Result<_, _>>().ok()?;
+        let numbers = 0..times.len();
+        let by_time = |one: &usize, other: &usize| times[*one].total_cmp(&times[*other]);
+        Some([numbers.clone().min_by(by_time)?, numbers.max_by(by_time)?])
+    }
+
+    /// (latest - soonest)/soonest of the rest times; nothing where a material does not rest.
+    pub fn spread(&self) -> Option<f64> {
+        let [first, last] = self.extremes()?.map(|number| self.rest_times[number]);
+        let (first, last) = (first.ok()?, last.ok()?);
+        Some((last - first) / first)
+    }
+}
+
+/// A study of materials: the answer.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct MaterialStudy {
+    /// What was asked.
+    pub question: MaterialQuestion,
+    /// The pendulum in SI units.
+    pub units: Units,
+    /// The equation of the design, at its own modulus.
+    pub model: Model,
+    /// Where the motions begin.
+    pub start: Start,
+    /// What damps the design, in every form.
+    pub dissipation: Dissipation,
+    /// The materials, in the order in which they were given.
+    pub rows: Vec<MaterialRow>,
+    /// The rest time without a barrier, in units of 1/omega.
+    pub no_barrier: Result<f64, NoRest>,
+    /// The same materials under every form of the contact damping, the given one first; empty where the contact loses nothing, or is
+    /// not touched.
+    pub held_fixed: Vec<HeldFixed>,
+}
+
+/// Every material of a question.
+///
+/// # Errors
+/// [`MaterialsError`]: no material, a design or a material that makes no motion.
+///
+/// ```
+/// use lindstedt::impact::{MaterialQuestion, study_materials};
+///
+/// let study = study_materials(MaterialQuestion::default())?;
+/// let spread = |form: &str| study.held_fixed.iter().find(|held| held.damping.form().name() == form)?.spread();
+/// assert!(spread("lambda").is_some_and(|spread| spread < 0.01)); // the modulus says nothing
+/// assert!(spread("mu").is_some_and(|spread| spread > 0.1)); // it decides
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, MaterialsError> {
+    if question.materials.is_empty() {
+        return Err(MaterialsError::NoMaterial);
+    }
+    let case = question.case;
+    let (model, start) = case.motion()?;
+    let units = Units {
+        mass: case.design.mass,
+        length: case.design.length,
+        gravity: case.design.gravity,
+        radius: Some(case.design.radius),
+        modulus: None,
+        sphere_yield: question.sphere_yield,
+        barrier_yield: None,
+    };
+    let dissipation = case.dissipation(Some(&units))?;
+    let rows = question
+        .materials
+        .iter()
+        .map(|material| row(&question, &units, material));
+    let rows: Vec<MaterialRow> = rows.collect::<Result<_, _>>()?;
+    let without = Model {
+        left: None,
+        right: None,
+        ..model
+    };
+    let loses = model.mu > 0.0 && rows.iter().any(|row| row.first.is_some());
+    let held_fixed = match loses {
+        true => held_fixed(&question, &dissipation)?,
+        false => vec![],
+    };
+    Ok(MaterialStudy {
+        units,
+        model,
+        start,
+        rows,
+        no_barrier: course(&without, start, &longer(&question.settings))?.rest_time,
+        dissipation,
+        held_fixed,
+        question,
+    })
+}
+
+/// The settings of a motion that rests later.
+fn longer(settings: &Settings) -> Settings {
+    Settings {
+        duration: LONGER * settings.duration,
+        ..*settings
+    }
+}
+
+impl MaterialQuestion {
+    /// The case of a material, with this damping of its contact.
+    fn case_of(&self, material: &Material, damping: ContactDamping, at_speed: Option<f64>) -> Case {
+        let mut case = self.case;
+        case.gamma = None;
+        case.contact_damping = damping;
+        case.at_speed = at_speed;
+        case.design.modulus = material.modulus.value();
+        case
+    }
+
+    /// The case of a material as it is asked for: with its own damping, or with that of the design.
+    fn own_case(&self, material: &Material) -> Case {
+        match material.damping {
+            Some(damping) => self.case_of(material, damping, material.at_speed),
+            None => self.case_of(material, self.case.contact_damping, self.case.at_speed),
+        }
+    }
+
+    /// The equation of a material, and its start.
+    fn motion_of(material: &Material, case: &Case) -> Result<(Model, Start), MaterialsError> {
+        case.motion().map_err(|error| MaterialsError::Material {
+            name: material.name.clone(),
+            error,
+        })
+    }
+}
+
+fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Result<MaterialRow, MaterialsError> {
+    let case = question.own_case(material);
+    let (model, start) = MaterialQuestion::motion_of(material, &case)?;
+    let course = course(&model, start, &question.settings)?;
+    let first = match course.impacts.first() {
+        Some(impact) => first_contact(impact, &model, start, &question.settings, units)?,
+        None => None,
+    };
+    let lossless = Model { mu: 0.0, ..model };
+    let limits = [("sphere", question.sphere_yield), ("barrier", material.yield_limit)];
+    let checks = limits.into_iter().filter_map(|(body, limit)| {
+        let limit = limit?;
+        Some(YieldCheck {
+            body,
+            limit,
+            onset: FIRST_YIELD * limit,
+            pressure: first?.peak_pressure,
+        })
+    });
+    Ok(MaterialRow {
+        gamma: model.gamma,
+        dissipation: case.dissipation(Some(units))?,
+        yield_checks: checks.collect(),
+        first,
+        lossless: self::course(&lossless, start, &longer(&question.settings))?.rest_time,
+        course,
+        material: material.clone(),
+    })
+}
+
+/// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself.
+fn first_contact(
+    impact: &Contact,
+    model: &Model,
+    start: Start,
+    settings: &Settings,
+    units: &Units,
+) -> Result<Option<FirstContact>, SimulationError> {
+    let (Some(exit), Some(restitution), Some(barrier)) =
+        (impact.exit_time, impact.restitution, model.barrier(impact.side))
+    else {
+        return Ok(None);
+    };
+    let until = Settings {
+        duration: exit,
+        keep_path: true,
+        ..*settings
+    };
+    let motion = simulate(model, start, Integrator::Taylor, &until)?;
+    let sign = impact.side.sign();
+    let force = |t: f64| match motion.path.at(t) {
+        Some((x, velocity)) => model.contact(sign * (x - barrier), sign * velocity),
+        None => 0.0,
+    };
+    let metres = units.length * impact.penetration;
+    let elastic = units.force() * hertz::force(model.gamma, impact.penetration);
+    Ok(Some(FirstContact {
+        speed: units.speed() * impact.speed_in,
+        duration: units.time() * (exit - impact.entry_time),
+        penetration: metres,
+        peak_force: units.force() * greatest(force, impact.entry_time, exit),
+        peak_pressure: units.pressure(elastic, metres).unwrap_or(f64::NAN),
+        restitution,
+    }))
+}
+
+/// The greatest value of a function that rises and then falls, by golden sections.
+fn greatest(function: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
+    let part = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let mut best = 0.0_f64;
+    // 0.618^60 = 3e-13 of the contact.
+    for _ in 0..60 {
+        let (left, right) = (to - part * (to - from), from + part * (to - from));
+        let (at_left, at_right) = (function(left), function(right));
+        best = best.max(at_left).max(at_right);
+        match at_left > at_right {
+            true => to = right,
+            false => from = left,
+        }
+    }
+    best
+}
+
+/// The materials under every form of the damping of the design, the given one first.
+fn held_fixed(question: &MaterialQuestion, dissipation: &Dissipation) -> Result<Vec<HeldFixed>, MaterialsError> {
+    let given = dissipation.contact;
+    let touch_speed = dissipation.touch_speed;
+    let form = |form: Parameter| match form {
+        Parameter::Mu => Some(ContactDamping::Mu(dissipation.mu)),
+        Parameter::MuOverGamma => Some(ContactDamping::MuOverGamma(dissipation.mu_over_gamma)),
+        Parameter::Lambda => dissipation.lambda.map(ContactDamping::Lambda),
+        Parameter::Restitution => dissipation.restitution.map(ContactDamping::Restitution),
+        Parameter::ContactDamping => dissipation.coefficient.map(ContactDamping::Coefficient),
+        _ => None,
+    };
+    let others = ContactDamping::FORMS.into_iter().filter(|form| *form != given.form());
+    let forms = std::iter::once(given).chain(others.filter_map(form));
+    let mut found = Vec::new();
+    for damping in forms {
+        let at_speed = match damping {
+            ContactDamping::Restitution(_) => dissipation.at_speed.or(touch_speed),
+            _ => None,
+        };
+        let mut held = HeldFixed {
+            damping,
+            at_speed,
+            ratios: vec![],
+            restitutions: vec![],
+            rest_times: vec![],
+        };
+        for material in &question.materials {
+            let case = question.case_of(material, damping, at_speed);
+            let (model, start) = MaterialQuestion::motion_of(material, &case)?;
+            held.ratios.push(model.mu / model.gamma);
+            held.restitutions.push(case.dissipation(None)?.restitution);
+            held.rest_times
+                .push(course(&model, start, &question.settings)?.rest_time);
+        }
+        found.push(held);
+    }
+    Ok(found)
+}
+
+impl MaterialStudy {
+    /// The softest and the hardest material, by their numbers; the first of equals.
+    pub fn softest_and_hardest(&self) -> [usize; 2] {
+        let (mut softest, mut hardest) = (0, 0);
+        for (number, row) in self.rows.iter().enumerate() {
+            if row.gamma < self.rows[softest].gamma {
+                softest = number;
+            }
+            if row.gamma > self.rows[hardest].gamma {
+                hardest = number;
+            }
+        }
+        [softest, hardest]
+    }
+
+    /// Whether a softer material always rests sooner (true) or always later (false); nothing where neither is so, or one does not rest.
+    pub fn order(&self, held: &HeldFixed) -> Option<bool> {
+        let mut rests: Vec<(f64, f64)> = Vec::new();
+        for (row, time) in self.rows.iter().zip(&held.rest_times) {
+            rests.push((row.gamma, time.ok()?));
+        }
+        rests.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let always = |sooner: fn(f64, f64) -> bool| rests.windows(2).all(|pair| sooner(pair[0].1, pair[1].1));
+        match (always(|soft, hard| soft < hard), always(|soft, hard| soft > hard)) {
+            (true, false) => Some(true),
+            (false, true) => Some(false),
+            _ => None,
+        }
+    }
+
+    /// The rest time in seconds.
+    pub fn seconds(&self, rest_time: f64) -> f64 {
+        self.units.time() * rest_time
+    }
+
+    /// The motion of a material as a function of time, for so long: as asked for, or under this form of the damping.
+    ///
+    /// # Errors
+    /// As [`study_materials`]; a row that is not there has no motion.
+    pub fn motion(&self, row: usize, held: Option<&HeldFixed>, duration: f64) -> Result<Simulation, MaterialsError> {
+        let material = self.question.materials.get(row).ok_or(MaterialsError::NoMaterial)?;
+        let case = match held {
+            None => self.question.own_case(material),
+            Some(held) => self.question.case_of(material, held.damping, held.at_speed),
+        };
+        let (model, start) = MaterialQuestion::motion_of(material, &case)?;
+        self.follow(&model, start, duration)
+    }
+
+    /// The motion of the same swing without a barrier, or with that of a material without loss.
+    ///
+    /// # Errors
+    /// As [`MaterialStudy::motion`].
+    pub fn motion_without(&self, barrier_of: Option<usize>, duration: f64) -> Result<Simulation, MaterialsError> {
+        let model = match barrier_of.and_then(|row| self.rows.get(row)) {
+            None => Model {
+                left: None,
+                right: None,
+                ..self.model
+            },
+            Some(row) => Model {
+                gamma: row.gamma,
+                mu: 0.0,
+                ..self.model
+            },
+        };
+        self.follow(&model, self.start, duration)
+    }
+
+    fn follow(&self, model: &Model, start: Start, duration: f64) -> Result<Simulation, MaterialsError> {
+        let settings = Settings {
+            duration,
+            keep_path: true,
+            ..self.question.settings
+        };
+        Ok(simulate(model, start, Integrator::Taylor, &settings)?)
+    }
+}

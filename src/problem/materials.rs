@@ -1,0 +1,238 @@
+//! What `materials` reads of a problem file: a design, what damps it, and `[[material]]`, the barriers that are tried.
+//!
+//! In: a [`Problem`]. Out: a [`MaterialQuestion`]. A material has the modulus of its contact by the rule of the other files: alone as
+//! in the paper, or with its Poisson's ratio under a rigid sphere or, where `[sphere]` has a modulus, that of both bodies.
+
+use thiserror::Error;
+
+use super::document::MaterialSection;
+use super::simulate::refuse_two_forms;
+use super::{DesignError, Problem, ProblemError, Reader, SimulateError, SphereSection, UnreadKey};
+use crate::impact::{
+    ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Material, MaterialQuestion, Modulus, Parameter, default_lambda,
+};
+
+/// Why a problem file is no study of materials.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MaterialsFileError {
+    /// A key that belongs to another command.
+    #[error(transparent)]
+    Unread(#[from] UnreadKey),
+    /// The pendulum, what damps it, or the run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The bodies.
+    #[error(transparent)]
+    Bodies(#[from] DesignError),
+    /// A swing without a barrier.
+    #[error("a study of materials needs a barrier: leave out `barrier = false`")]
+    NoBarrier,
+    /// An empty list.
+    #[error("`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out")]
+    NoMaterial,
+    /// A material that is none.
+    #[error("material `{name}`: {error}")]
+    Material {
+        /// Its name.
+        name: String,
+        /// Why.
+        error: DesignError,
+    },
+    /// A material without a name.
+    #[error("a [[material]] has an empty name: give it one, for the tables go by it")]
+    NoName,
+    /// Two of one name.
+    #[error("two materials are called `{0}`: give one of them another name")]
+    SameName(String),
+    /// Two dampings of one material.
+    #[error("material `{name}`: `{key}` and `{other}` say the same: give one of them")]
+    TwoDampings {
+        /// Its name.
+        name: String,
+        /// The key.
+        key: &'static str,
+        /// The other one.
+        other: &'static str,
+    },
+    /// A speed at which nothing is stated.
+    #[error("material `{0}`: `at_speed` changes nothing without `restitution`: give that too, or leave it out")]
+    SpeedAlone(String),
+}
+
+impl MaterialsFileError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Simulate(error) => error.help(),
+            _ => None,
+        }
+    }
+}
+
+impl Problem {
+    /// The study that this file asks for: of the paper's Table 2 and its own materials, or `only_own` of these alone.
+    ///
+    /// # Errors
+    /// [`MaterialsFileError`] names the key, or the material.
+    ///
+    /// ```
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let file: Problem = "[[material]]\nname = \"Rubber\"\nmodulus = 1e7\nrestitution = 0.6".parse()?;
+    /// assert_eq!(file.materials(false)?.materials.len(), 4);
+    /// assert_eq!(file.materials(true)?.materials[0].name, "Rubber");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn materials(&self, only_own: bool) -> Result<MaterialQuestion, MaterialsFileError> {
+        self.check_keys(Reader::Materials)?;
+        let gives = |parameter| self.gives_parameter(parameter);
+        refuse_two_forms(gives)?;
+        self.check_pairs(gives)?;
+        let mut case = self.for_design().case()?;
+        if case.left.is_none() && case.right.is_none() {
+            return Err(MaterialsFileError::NoBarrier);
+        }
+        if self.material.is_empty() && self.gives("[[material]]") {
+            return Err(MaterialsFileError::NoMaterial);
+        }
+        let mut settings = self.settings()?;
+        let mut defaults = Vec::new();
+        if !ContactDamping::FORMS.into_iter().any(gives) {
+            case.contact_damping = ContactDamping::Lambda(default_lambda());
+            defaults.push(Parameter::Lambda);
+        }
+        if !gives(Parameter::Zeta) && !gives(Parameter::Viscous) {
+            case.zeta = DEFAULT_ZETA;
+            defaults.push(Parameter::Zeta);
+        }
+        if !self.gives("[run] duration") {
+            settings.duration = DEFAULT_DURATION;
+        }
+        let mut materials = match only_own {
+            true => vec![],
+            false => Material::of_table_2(),
+        };
+        for section in &self.material {
+            let material = self.a_material(section)?;
+            if materials.iter().any(|known| known.name == material.name) {
+                return Err(MaterialsFileError::SameName(material.name));
+            }
+            materials.push(material);
+        }
+        let two_bodies = self.sphere.modulus.is_some() || self.sphere.poisson.is_some();
+        if two_bodies && self.material.iter().all(|material| material.poisson.is_none()) {
+            let key = if self.sphere.modulus.is_some() {
+                "[sphere] modulus"
+            } else {
+                "[sphere] poisson"
+            };
+            let missing = "[[material]] poisson";
+            return Err(DesignError::Needs { key, missing }.into());
+        }
+        Ok(MaterialQuestion {
+            case,
+            materials,
+            sphere_yield: self.yield_limit("[sphere] yield", self.sphere.yield_limit)?,
+            settings,
+            defaults,
+        })
+    }
+
+    /// The same file as it describes the design alone, whose barrier is the modulus at which a damping is what is given.
+    fn for_design(&self) -> Self {
+        Self {
+            sphere: SphereSection {
+                modulus: None,
+                poisson: None,
+                ..self.sphere
+            },
+            ..self.clone()
+        }
+    }
+
+    fn a_material(&self, section: &MaterialSection) -> Result<Material, MaterialsFileError> {
+        let name = section.name.trim().to_owned();
+        if name.is_empty() {
+            return Err(MaterialsFileError::NoName);
+        }
+        let keys = ["[[material]] modulus", "[[material]] poisson"];
+        let of_material = |error| MaterialsFileError::Material {
+            name: name.clone(),
+            error,
+        };
+        let modulus = match section.poisson {
+            None => super::design::positive(keys[0], section.modulus).map(Modulus::BarrierAlone),
+            Some(_) => self.modulus_of(keys, section.modulus, section.poisson),
+        };
+        let dampings = section.given_dampings();
+        if let [one, other, ..] = dampings[..] {
+            return Err(MaterialsFileError::TwoDampings {
+                name,
+                key: one.form().name(),
+                other: other.form().name(),
+            });
+        }
+        if section.at_speed.is_some() && section.restitution.is_none() {
+            return Err(MaterialsFileError::SpeedAlone(name));
+        }
+        Ok(Material {
+            modulus: modulus.map_err(of_material)?,
+            yield_limit: self
+                .yield_limit("[[material]] yield", section.yield_limit)
+                .map_err(of_material)?,
+            damping: dampings.first().copied(),
+            at_speed: section.at_speed,
+            name,
+        })
+    }
+
+    fn yield_limit(&self, key: &'static str, limit: Option<f64>) -> Result<Option<f64>, DesignError> {
+        limit.map(|limit| super::design::positive(key, limit)).transpose()
+    }
+}
+
+impl From<ProblemError> for MaterialsFileError {
+    fn from(error: ProblemError) -> Self {
+        Self::Simulate(error.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::hertz::Design;
+
+    fn asked(text: &str) -> Result<MaterialQuestion, MaterialsFileError> {
+        text.parse::<Problem>().unwrap().materials(false)
+    }
+
+    #[test]
+    fn an_empty_file_is_the_default_study() {
+        let (of_file, of_library) = (asked("").unwrap(), MaterialQuestion::default());
+        assert_eq!(
+            (&of_file.case, &of_file.materials),
+            (&of_library.case, &of_library.materials)
+        );
+        assert_eq!(of_file.defaults, of_library.defaults);
+        assert_eq!(of_file.settings.duration, of_library.settings.duration);
+        assert_eq!(asked("[damping]\nviscous = 0.1").unwrap().case.zeta, 0.0);
+    }
+
+    #[test]
+    fn a_material_has_the_modulus_of_its_bodies() {
+        let moduli = |text: &str| {
+            let asked = asked(text).unwrap();
+            assert_eq!(asked.case.design, Design::default());
+            asked.materials[3..]
+                .iter()
+                .map(|material| material.modulus.value())
+                .collect::<Vec<_>>()
+        };
+        let cork = "[[material]]\nname = \"cork\"\nmodulus = 2e7\n";
+        assert_eq!(moduli(cork), [2e7]);
+        assert_eq!(moduli(&format!("{cork}poisson = 0.5")), [2e7 / 0.75]);
+        let both = moduli(&format!("{cork}poisson = 0.5\n[sphere]\nmodulus = 1e8\npoisson = 0"));
+        assert!((both[0] * (0.75 / 2e7 + 1.0 / 1e8) - 1.0).abs() < 1e-15);
+    }
+}

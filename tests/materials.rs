@@ -1,0 +1,296 @@
+//! Barriers of several materials: the contact against formulas written out here in SI units, the rest time against Runge-Kutta, what
+//! is held fixed against what must follow from it, and the page that tells it.
+
+use std::f64::consts::PI;
+use std::process::{Command, Output};
+
+use lindstedt::export::decimal;
+use lindstedt::export::json;
+use lindstedt::impact::{
+    ContactDamping, Integrator, MaterialQuestion, MaterialRow, MaterialStudy, Model, Settings, Start, course, simulate,
+    study_materials,
+};
+use lindstedt::problem::Problem;
+
+fn study(text: &str) -> MaterialStudy {
+    let file: Problem = text.parse().expect("a file");
+    study_materials(file.materials(false).expect("a study")).expect("motions")
+}
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+/// Depth and duration of a Hertz contact without loss, by its energy: dd/dt = sqrt(v^2 - (4 k/(5 m)) d^(5/2)), with d = D (1 - w^2).
+fn hertz(mass: f64, stiffness: f64, speed: f64) -> [f64; 2] {
+    let depth = (1.25 * mass * speed * speed / stiffness).powf(0.4);
+    const POINTS: i32 = 20_000;
+    let sum: f64 = (0..POINTS)
+        .map(|point| {
+            let w = (f64::from(point) + 0.5) / f64::from(POINTS);
+            2.0 * w / (1.0 - (1.0 - w * w).powf(2.5)).sqrt()
+        })
+        .sum();
+    [depth, 2.0 * depth / speed * sum / f64::from(POINTS)]
+}
+
+#[test]
+fn the_first_contact_is_that_of_hertz_where_nothing_is_lost() {
+    let of = |text: &str| study(&format!("[contact]\nmu = 0\n{text}"));
+    for text in [
+        "",
+        "[design]\nmass = 0.5\nlength = 2\nradius = 0.03\ngravity = 1.62\nmodulus = 1e9\n[damping]\nzeta = 0.001",
+    ] {
+        let study = of(text);
+        assert!(study.held_fixed.is_empty());
+        for row in &study.rows {
+            let first = row.first.expect("a contact");
+            let design = &study.question.case.design;
+            let stiffness = 4.0 / 3.0 * row.material.modulus.value() * design.radius.sqrt();
+            let [depth, duration] = hertz(design.mass, stiffness, first.speed);
+            // Gravity acts in the contact as well.
+            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-3;
+            assert!(near(first.penetration, depth), "{}: {depth}", row.material.name);
+            assert!(near(first.duration, duration), "{}: {duration}", row.material.name);
+            let force = stiffness * depth.powf(1.5);
+            assert!(near(first.peak_force, force), "{}: {force}", row.material.name);
+            let modulus = row.material.modulus.value();
+            let pressure = (6.0 * force * modulus.powi(2) / (PI.powi(3) * design.radius.powi(2))).cbrt();
+            assert!(near(first.peak_pressure, pressure), "{}: {pressure}", row.material.name);
+        }
+    }
+}
+
+#[test]
+fn the_restitution_is_that_of_hunt_and_crossley() {
+    let study = study("[contact]\nlambda = 0.4\n[[material]]\nname = \"Own\"\nmodulus = 1e9\nlambda = 1.5");
+    for row in &study.rows {
+        let first = row.first.expect("a contact");
+        let lambda = row.dissipation.lambda.expect("units");
+        assert_eq!(lambda, if row.material.name == "Own" { 1.5 } else { 0.4 });
+        // lambda v (1 + e) = ln((1 + lambda v)/(1 - lambda e v)), e from above and below by its sign: gravity and zeta act in the
+        // contact as well.
+        let (x, e) = (lambda * first.speed, first.restitution);
+        let missing = |e: f64| x * (1.0 + e) - (x.ln_1p() - (-x * e).ln_1p());
+        assert!(
+            missing(e - 1e-3) * missing(e + 1e-3) < 0.0,
+            "{}: {e}",
+            row.material.name
+        );
+        let swing = row.course.energies[0];
+        let barrier = 1.0 - 0.323_f64.cos();
+        let speed = first.speed / study.units.speed();
+        assert!((swing - barrier - 0.5 * (e * speed).powi(2)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_rest_time_is_that_of_runge_kutta() {
+    let study = study("[damping]\nzeta = 0.03\nalpha = 0.002\n[contact]\nrestitution = 0.7");
+    for row in &study.rows {
+        let model = Model {
+            gamma: row.gamma,
+            mu: row.dissipation.mu,
+            ..study.model
+        };
+        let settings = Settings {
+            duration: 150.0,
+            ..Settings::default()
+        };
+        let judge = simulate(&model, study.start, Integrator::RungeKutta, &settings).expect("a motion");
+        let (rest, judged) = (row.course.rest_time.expect("rest"), judge.rest().time.expect("rest"));
+        assert!((rest / judged - 1.0).abs() < 1e-7, "{rest} and {judged}");
+        let before = judge.impacts.iter().filter(|impact| impact.entry_time < judged);
+        assert_eq!(before.count(), row.course.impacts.len());
+    }
+}
+
+#[test]
+fn known_rest_times_are_found_again() {
+    let rest = |gamma: f64, mu: f64| {
+        let model = Model {
+            zeta: 0.01,
+            gamma,
+            mu,
+            ..Model::default()
+        };
+        let settings = Settings {
+            duration: 400.0,
+            ..Settings::default()
+        };
+        let found = course(&model, Start::default(), &settings).expect("a motion");
+        found.rest_time.expect("rest")
+    };
+    for (gamma, mu, expected) in [
+        (3e4, 1e4, 128.0),
+        (3e7, 1e4, 199.0),
+        (3e4, 3e3, 156.1),
+        (1e6, 1e5, 155.3),
+        (3e7, 3e6, 155.1),
+    ] {
+        let found = rest(gamma, mu);
+        // Half a swing is what two ways to measure a rest may differ by.
+        assert!((found - expected).abs() < PI, "{gamma} {mu}: {found}");
+    }
+}
+
+#[test]
+fn two_families_of_what_is_held_fixed() {
+    let study =
+        study("[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\n[[material]]\nname = \"Cork\"\nmodulus = 2e7");
+    let held = |form: &str| {
+        let found = study.held_fixed.iter().find(|held| held.damping.form().name() == form);
+        found.expect("a form")
+    };
+    assert_eq!(study.held_fixed[0].damping, ContactDamping::Coefficient(5e5));
+    assert_eq!(study.held_fixed.len(), 5);
+    for (one, other) in [
+        ("mu", "damping"),
+        ("lambda", "mu_over_gamma"),
+        ("lambda", "restitution"),
+    ] {
+        for (one, other) in held(one).ratios.iter().zip(&held(other).ratios) {
+            assert!((one / other - 1.0).abs() < 1e-10, "{one} and {other}");
+        }
+    }
+    // mu/gamma is as 1/E where mu is fixed.
+    let moduli = study.rows.iter().map(|row| row.material.modulus.value());
+    let products: Vec<f64> = held("mu")
+        .ratios
+        .iter()
+        .zip(moduli)
+        .map(|(ratio, modulus)| ratio * modulus)
+        .collect();
+    assert!(
+        products
+            .iter()
+            .all(|product| (product / products[0] - 1.0).abs() < 1e-12)
+    );
+    assert_eq!(study.order(held("mu")), Some(true));
+    assert!(held("mu").spread() > held("lambda").spread());
+}
+
+#[test]
+fn numbers_in_si_units_come_out_again() {
+    let text =
+        "[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\ntorque = 1e-5\n[pendulum]\nmass = 0.03\nlength = 0.2";
+    let document = json::materials(&study(text));
+    let near = |found: Option<f64>, expected: f64| found.is_some_and(|found| (found / expected - 1.0).abs() < 1e-12);
+    for damping in std::iter::once(&document.dissipation).chain(document.materials.iter().map(|row| &row.dissipation)) {
+        assert!(near(damping.contact.damping, 5e5), "{damping:?}");
+        assert!(near(damping.viscous.viscous, 0.002) && near(damping.friction.torque, 1e-5));
+        let lambda = damping.contact.lambda.expect("units");
+        assert!(near(
+            Some(lambda * (9.81_f64 * 0.2).sqrt()),
+            damping.contact.mu_over_gamma
+        ));
+    }
+    // The coefficient over the stiffness is lambda: F = k (1 + lambda d') d^(3/2).
+    for row in &document.materials {
+        let stiffness = 4.0 / 3.0 * row.modulus * 0.0096_f64.sqrt();
+        assert!(near(row.dissipation.contact.lambda, 5e5 / stiffness), "{}", row.name);
+    }
+}
+
+/// The tables of the page are computed here.
+#[test]
+fn the_page_prints_what_is_found() {
+    let page = include_str!("../docs/materials.md");
+    let study = study_materials(MaterialQuestion::default()).expect("a study");
+    let contact = |row: &MaterialRow| {
+        let first = row.first.expect("a contact");
+        let numbers = [
+            row.material.modulus.value(),
+            row.gamma,
+            first.duration,
+            first.penetration,
+            first.peak_force,
+            first.peak_pressure,
+            first.restitution,
+        ];
+        format!("| {} | {} |", row.material.name, numbers.map(decimal).join(" | "))
+    };
+    let held = study.held_fixed.iter().map(|held| {
+        let [first, last] = held
+            .extremes()
+            .expect("rest")
+            .map(|row| held.rest_times[row].expect("rest"));
+        let form = held.damping.form();
+        let words = format!("{} = {} {}", form.name(), decimal(held.damping.value()), form.unit());
+        let apart = lindstedt::export::significant(100.0 * (last / first - 1.0), 3);
+        format!(
+            "| {} | {} | {} | {apart} % |",
+            words.trim_end(),
+            decimal(first),
+            decimal(last)
+        )
+    });
+    for row in study.rows.iter().map(contact).chain(held) {
+        assert!(page.contains(&row), "{row}");
+    }
+    let none = decimal(study.no_barrier.expect("rest"));
+    let lossless = decimal(study.rows[0].lossless.expect("rest"));
+    assert!(
+        page.contains(&format!(
+            "rests at {none}; at a barrier without loss at {lossless} (steel)"
+        )),
+        "{none} {lossless}"
+    );
+}
+
+#[test]
+fn a_study_of_nothing_is_refused() {
+    let output = run(&["materials", "--only-own"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        output.stdout.is_empty() && message.contains("there is no material"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_table_has_a_row_for_each_material() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("own.toml");
+    let text = "[[material]]\nname = \"Cork, \\\"fine\\\"\"\nmodulus = 2e7\n[run]\nduration = 3";
+    std::fs::write(&file, text).expect("a file");
+    let output = run(&[
+        "materials",
+        file.to_str().expect("text"),
+        "--only-own",
+        "--format",
+        "csv",
+    ]);
+    let table = String::from_utf8(output.stdout).expect("text");
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 3, "{table}");
+    let columns = |line: &str| line.split(',').count();
+    assert_eq!(columns(lines[0]), columns(lines[1]));
+    // Its name has a comma; it does not rest in so short a run.
+    assert!(lines[2].starts_with("\"Cork, \"\"fine\"\"\",20000000,"), "{table}");
+    assert_eq!(columns(lines[2]), columns(lines[1]) + 1);
+    assert!(lines[2].contains(",,,"), "{table}");
+}
+
+#[cfg(feature = "plot")]
+#[test]
+fn a_picture_shows_what_is_held_fixed() {
+    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials");
+    for (name, words) in [
+        ("table-2", ["Swing, lambda held fixed", "Decay, mu held fixed"]),
+        ("own-mu", ["Swing, mu held fixed", "Decay, mu_over_gamma held fixed"]),
+        ("never-rests", ["Decay, mu_over_gamma held fixed", "no barrier"]),
+    ] {
+        let file = format!("{examples}/{name}.toml");
+        let folder = tempfile::tempdir().expect("a folder");
+        let result = folder.path().join("result.txt");
+        let place = ["--output", result.to_str().expect("text")];
+        let output = run(&[&["materials", &file, "--plot", "-"], &place[..]].concat());
+        let picture = String::from_utf8_lossy(&output.stdout);
+        assert!(words.iter().all(|words| picture.contains(words)), "{name}");
+    }
+}

@@ -121,9 +121,7 @@ impl Default for MaterialQuestion {
 #[non_exhaustive]
 pub enum MaterialsError {
     /// No material.
-    #[error(
-        "there is no material: give one as [[material]] with a name and a modulus, or leave the paper's Table 2 in"
-    )]
+    #[error("there is no material: give one as [[material]] with a name and a modulus")]
     NoMaterial,
     /// The design.
     #[error(transparent)]

@@ -337,7 +337,8 @@ fn fail(code: u8, message: &str) -> ExitCode {
 /// Refuses `--format csv` where there is no trajectory.
 fn no_table<T>() -> Result<T, Failure> {
     Err(Failure::Usage(
-        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`".to_owned(),
+        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `friction` or `materials`"
+            .to_owned(),
     ))
 }
 

@@ -67,7 +67,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
     };
     let mut blocks = vec![
         Block::Heading(format!("{count} barrier{plural} for one pendulum, equation (7):")),
-        Block::Detail(format!(
+        Block::Note(format!(
             "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
             decimal(study.start.x),
             decimal(study.start.velocity)
@@ -90,7 +90,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         Some(speed) => format!(" at the speed {}", decimal(speed)),
         None => String::new(),
     };
-    blocks.push(Block::Detail(format!(
+    blocks.push(Block::Note(format!(
         "held fixed: {}{at}{}",
         in_words(damping),
         said(damping.form())
@@ -100,7 +100,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
             (Parameter::Viscous, study.dissipation.viscous, "N s/m"),
             (Parameter::Zeta, Some(zeta), ""),
         ];
-        blocks.push(Block::Detail(
+        blocks.push(Block::Note(
             chosen(study.dissipation.viscous_form, forms) + said(Parameter::Zeta),
         ));
     }
@@ -109,10 +109,10 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
             (Parameter::Torque, study.dissipation.torque, "N m"),
             (Parameter::Alpha, Some(alpha), ""),
         ];
-        blocks.push(Block::Detail(chosen(study.dissipation.friction_form, forms)));
+        blocks.push(Block::Note(chosen(study.dissipation.friction_form, forms)));
     }
     let settings = &study.question.settings;
-    blocks.push(Block::Detail(format!(
+    blocks.push(Block::Note(format!(
         "followed until t = {}; rest: {} % of the amplitude of the first swing",
         decimal(settings.duration),
         decimal(100.0 * REST_FRACTION)
@@ -182,7 +182,7 @@ fn first_contacts(study: &MaterialStudy) -> Vec<Block<'_>> {
             ]),
             rows: study.rows.iter().map(row).collect(),
         },
-        Block::Detail(
+        Block::Note(
             "gamma by equation (8); greatest force with the damping in it; pressure of Hertz at the greatest depth"
                 .to_owned(),
         ),
@@ -254,6 +254,11 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
             rows: study.rows.iter().map(row).collect(),
         },
     ];
+    let touched = study.rows.iter().any(|row| !row.course.impacts.is_empty());
+    if !touched {
+        let words = "no barrier is touched within the run: the material has no say, every row is the plain pendulum";
+        blocks.push(Block::Note(words.to_owned()));
+    }
     let own = study.rows.iter().filter_map(|row| {
         let damping = row.material.damping?;
         let at = match row.dissipation.at_speed {
@@ -274,7 +279,7 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
             row.material.name
         )))
     }));
-    blocks.push(Block::Detail(match study.no_barrier {
+    blocks.push(Block::Note(match study.no_barrier {
         Ok(rest) => format!(
             "without a barrier: {}, {} s; at mu = 0 the same barrier loses nothing",
             decimal(rest),
@@ -304,7 +309,7 @@ fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
         ]
     };
     let has_own = study.rows.iter().any(|row| row.material.damping.is_some());
-    let aside = has_own.then(|| Block::Detail("dampings of their own are left aside in this table".to_owned()));
+    let aside = has_own.then(|| Block::Note("dampings of their own are left aside in this table".to_owned()));
     let blocks = vec![
         Block::Heading(format!(
             "What is held fixed decides: the same damping at E = {} Pa, held fixed in each of its forms",
@@ -323,7 +328,7 @@ fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
             ]),
             rows: study.held_fixed.iter().map(row).collect(),
         },
-        Block::Detail(
+        Block::Note(
             "mu/gamma and restitution (at the first touch without damping) from the softest to the hardest; rest from the first to the last"
                 .to_owned(),
         ),
@@ -436,6 +441,9 @@ fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
 
 /// What a barrier is good for at all.
 fn baseline(study: &MaterialStudy) -> Option<String> {
+    if study.rows.iter().all(|row| row.course.impacts.is_empty()) {
+        return None;
+    }
     let none = study.no_barrier.ok()?;
     let range = |times: Vec<f64>| {
         let least = times.iter().copied().fold(f64::INFINITY, f64::min);

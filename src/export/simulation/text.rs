@@ -6,7 +6,7 @@ use std::io;
 use super::{COMPARED, Report, SweepReport, friction, notes};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::Axis;
-use crate::impact::{Baseline, ContactDamping, Dissipation, Integrator, Model, NoRest, Simulation};
+use crate::impact::{Baseline, ContactDamping, Dissipation, Integrator, Model, NoRest, Simulation, Units};
 
 /// Impacts that are listed; a long run has thousands.
 const LISTED: usize = 24;
@@ -30,6 +30,7 @@ pub fn simulation(report: &Report) -> String {
         text.push_str(&damping(
             dissipation,
             motion.model.left.or(motion.model.right).is_some(),
+            report.units,
         ));
     }
     impacts(&mut text, motion);
@@ -173,7 +174,7 @@ fn header(report: &Report) -> String {
 }
 
 /// What damps, in every form, and which form is held fixed.
-fn damping(dissipation: &Dissipation, has_barrier: bool) -> String {
+fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) -> String {
     let &Dissipation {
         mu,
         mu_over_gamma,
@@ -227,6 +228,13 @@ fn damping(dissipation: &Dissipation, has_barrier: bool) -> String {
     if alpha != 0.0 {
         let alpha = vec![format!("alpha = {}", decimal(alpha))];
         entry("friction", [alpha, in_si("torque", torque, "N m")].concat());
+    }
+    if let Some(units) = units {
+        let mut sizes = vec![format!("m = {} kg", decimal(units.mass))];
+        sizes.push(format!("L = {} m", decimal(units.length)));
+        sizes.push(format!("g = {} m/s^2", decimal(units.gravity)));
+        sizes.push(format!("1/omega = {} s", decimal(units.time())));
+        entry("with", sizes);
     }
     text
 }

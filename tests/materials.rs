@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::export::decimal;
-use lindstedt::export::json;
+use lindstedt::export::{json, text};
+use lindstedt::impact::contact::HuntCrossley;
 use lindstedt::impact::{
     ContactDamping, Integrator, MaterialQuestion, MaterialRow, MaterialStudy, Model, Settings, Start, course, simulate,
     study_materials,
@@ -80,9 +81,15 @@ fn the_restitution_is_that_of_hunt_and_crossley() {
             "{}: {e}",
             row.material.name
         );
+        // The greatest force comes on the way in, before the greatest depth.
+        let (speed, ratio) = (first.speed / study.units.speed(), row.dissipation.mu_over_gamma);
+        let contact = HuntCrossley::new(1.5, row.gamma, ratio, speed).expect("a contact");
+        let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 2e-3;
+        assert!(near(first.peak_force, study.units.force() * contact.peak_force));
+        assert!(near(first.duration, study.units.time() * contact.duration));
+        assert!(near(first.penetration, study.units.length * contact.depth));
         let swing = row.course.energies[0];
         let barrier = 1.0 - 0.323_f64.cos();
-        let speed = first.speed / study.units.speed();
         assert!((swing - barrier - 0.5 * (e * speed).powi(2)).abs() < 1e-12);
     }
 }
@@ -193,6 +200,23 @@ fn numbers_in_si_units_come_out_again() {
         let stiffness = 4.0 / 3.0 * row.modulus * 0.0096_f64.sqrt();
         assert!(near(row.dissipation.contact.lambda, 5e5 / stiffness), "{}", row.name);
     }
+}
+
+#[test]
+fn a_barrier_out_of_reach_has_no_say() {
+    let study = study("[pendulum]\nbarrier = 1.6");
+    assert!(study.held_fixed.is_empty() && study.rows.iter().all(|row| row.first.is_none()));
+    let none = study.no_barrier.expect("rest");
+    for row in &study.rows {
+        // Measured on one side of the swing instead of both.
+        let rest = row.course.rest_time.expect("rest");
+        assert!((rest / none - 1.0).abs() < 1e-4, "{rest} and {none}");
+    }
+    let said = text::materials(&study, 120);
+    assert!(
+        said.contains("no barrier is touched") && !said.contains("with these barriers"),
+        "{said}"
+    );
 }
 
 /// The tables of the page are computed here.

@@ -541,7 +541,7 @@ fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Ex
             };
             let sum = Expr::sum(taylor(&oscillator.force, point, degree)?);
             let polynomial = sum.to_polynomial(&mut name)?;
-            polynomial.ok_or_else(|| OscillatorError::NotPolynomial(sum.to_string()))?
+            polynomial.ok_or_else(|| OscillatorError::NotPolynomial(sum.clone().into()))?
         }
     };
     // Number and size of what was added up, by the powers of coordinate and velocity and what else stands in the term.
@@ -556,7 +556,7 @@ fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Ex
             };
             match (number, constants.get(&symbol)) {
                 (Some(number), _) => value *= number.powi(exponent),
-                (None, Some(constant)) => return Err(OscillatorError::NotPolynomial(constant.to_string())),
+                (None, Some(constant)) => return Err(OscillatorError::NotPolynomial(constant.clone().into())),
                 (None, None) if symbol == position || symbol == velocity => {}
                 (None, None) => rest = rest.product(&Monomial::power_of(symbol, exponent)),
             }

@@ -18,7 +18,7 @@ use num_traits::Zero;
 
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
-use crate::expr::{Equation, Expr, ExprError, ParseError, Typed, parse_equation};
+use crate::expr::{Equation, Expr, ExprError, ParseError, Quotation, Typed, parse_equation};
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::note::Position;
 use crate::solution::{Advice, AmplitudeConvention, Definition, Method, Setting};
@@ -152,13 +152,13 @@ pub enum OscillatorError {
     #[error("the term `{term}` does not vanish with the small parameter `{small}`")]
     NotSmall {
         /// The term.
-        term: String,
+        term: Quotation,
         /// The small parameter.
         small: String,
     },
     /// A term that is no polynomial in coordinate and velocity.
     #[error("the term `{0}` is no polynomial in the coordinate and its velocity")]
-    NotPolynomial(String),
+    NotPolynomial(Quotation),
     /// No Taylor series.
     #[error(transparent)]
     Taylor(#[from] TaylorError),
@@ -229,7 +229,9 @@ impl OscillatorError {
             Self::NotSmall { .. } => Advice::words("expand in the amplitude instead: `")
                 .choose(Setting::Small(AmplitudeConvention::Initial.symbol()))
                 .then("`"),
-            Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. }) if !term.contains('\'') => {
+            Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
+                if term.expression().symbols().iter().all(|symbol| symbol.primes() == 0) =>
+            {
                 either(
                     "take the force as it is: `",
                     [Method::Hamiltonian, Method::HarmonicBalance],
@@ -554,7 +556,7 @@ impl Oscillator {
         {
             let moves = at_rest.contains(position) || at_rest.contains(velocity);
             return Err(match moves {
-                true => OscillatorError::NotPolynomial(at_rest.to_string()),
+                true => OscillatorError::NotPolynomial(at_rest.clone().into()),
                 false => OscillatorError::NoEquilibrium(at_rest.to_string()),
             });
         }
@@ -564,13 +566,13 @@ impl Oscillator {
         for (power, part) in parts.iter().enumerate().skip(first) {
             let mut name = |constant: &Expr| names.of(constant, &[position, velocity]);
             let Some(polynomial) = part.to_polynomial(&mut name)? else {
-                return Err(OscillatorError::NotPolynomial(part.to_string()));
+                return Err(OscillatorError::NotPolynomial(part.clone().into()));
             };
             for (monomial, coefficient) in polynomial.terms() {
-                let text = || Expr::from(&Polynomial::term(monomial.clone(), coefficient.clone())).to_string();
+                let named = || Expr::from(&Polynomial::term(monomial.clone(), coefficient.clone())).into();
                 let exponent = |symbol| u32::try_from(monomial.exponent(symbol));
                 let (Ok(p), Ok(q)) = (exponent(position), exponent(velocity)) else {
-                    return Err(OscillatorError::NotPolynomial(text()));
+                    return Err(OscillatorError::NotPolynomial(named()));
                 };
                 let mut rest = monomial.without(position).without(velocity);
                 if let SmallParameter::Parameter(name) = small {
@@ -584,7 +586,7 @@ impl Oscillator {
                             SmallParameter::Parameter(name) => name.to_string(),
                             SmallParameter::Amplitude => "A".to_owned(),
                         };
-                        return Err(OscillatorError::NotSmall { term: text(), small });
+                        return Err(OscillatorError::NotSmall { term: named(), small });
                     }
                     (order, position, velocity) => terms.push(Term {
                         order,

@@ -59,7 +59,7 @@ pub(crate) use parse::excerpt;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;
 pub use rounding::Rounded;
-pub use typed::Typed;
+pub use typed::{Quotation, Typed};
 
 pub use crate::symbol::{fresh, fresh_stem};
 

@@ -1,6 +1,7 @@
 //! The terms of an equation as they were typed: for messages, which speak of what the reader wrote and not of a normal form.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -40,6 +41,54 @@ pub(super) struct Around {
     pub negative: bool,
     /// The factor of the terms inside, signs included.
     pub scale: Expr,
+}
+
+/// A part of an equation that a refusal names: what it is, and the words for it, which are those of the reader once it is known
+/// which typed term it comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quotation {
+    expression: Expr,
+    words: String,
+}
+
+impl Quotation {
+    /// An expression in words of its own.
+    ///
+    /// ```
+    /// use lindstedt::expr::{Quotation, parse_expression};
+    ///
+    /// let damping = parse_expression("0.5*x'")?;
+    /// assert_eq!(Quotation::from(damping.clone()).to_string(), "x'/2");
+    /// assert_eq!(Quotation::new(damping, "0.5*x'".to_owned()).to_string(), "0.5*x'");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(expression: Expr, words: String) -> Self {
+        Self { expression, words }
+    }
+
+    /// What is named.
+    pub fn expression(&self) -> &Expr {
+        &self.expression
+    }
+
+    /// The words for it.
+    pub fn words(&self) -> &str {
+        &self.words
+    }
+}
+
+/// In the words of the normal form.
+impl From<Expr> for Quotation {
+    fn from(expression: Expr) -> Self {
+        let words = expression.to_string();
+        Self { expression, words }
+    }
+}
+
+impl fmt::Display for Quotation {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.words)
+    }
 }
 
 impl Typed {

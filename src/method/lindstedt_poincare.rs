@@ -380,9 +380,7 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
         Err(OscillatorError::NotSmall { .. }) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
             return Err(damping_or_excitation(parts));
         }
-        Err(OscillatorError::NotSmall { term, .. })
-            if parts.damping.terms().iter().any(|part| part.to_string() == term) =>
-        {
+        Err(OscillatorError::NotSmall { term, .. }) if parts.damping.terms().contains(term.expression()) => {
             return Err(Unsuited::Damping { term }.by(Refuser::Expansion));
         }
         // |x'| x', a dry friction and their like damp whether or not they have a series.
@@ -498,7 +496,7 @@ mod tests {
             ("x'' + x + c*x'^(1/3) = 0", "c*x'^(1/3)"),
         ] {
             let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
-            let term = term.to_owned();
+            let term = crate::expr::parse_expression(term).unwrap().into();
             let expected = Unsuited::Damping { term }.by(Refuser::Expansion);
             assert_eq!(refusal, expected, "{equation}");
         }

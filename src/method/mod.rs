@@ -48,7 +48,7 @@ use table::{Choice, Entry, that_take};
 
 use crate::equilibrium::{Centred, centred};
 use crate::exact::{POLYNOMIALS, Polynomial};
-use crate::expr::{Expr, ExprError};
+use crate::expr::{Expr, ExprError, Quotation};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
@@ -98,7 +98,7 @@ pub enum Refusal {
     #[error("the term `{term}` feeds or drains energy, so the amplitude is not free and nothing can be expanded in it")]
     AmplitudeNotFree {
         /// The term.
-        term: String,
+        term: Quotation,
     },
     /// A limit cycle exists or may exist, but not in closed form.
     #[error("the amplitude of the limit cycle follows from `{equation} = 0`, {reason}")]
@@ -172,19 +172,19 @@ pub enum Unsuited {
     #[error("needs a periodic motion, but the term `{term}` damps it")]
     Damping {
         /// The damping term.
-        term: String,
+        term: Quotation,
     },
     /// Terms that drive the motion in time.
     #[error("is for free vibrations, but the term `{term}` drives the motion")]
     Forcing {
         /// The forcing term.
-        term: String,
+        term: Quotation,
     },
     /// Terms with velocities, in a method for forces of position alone.
     #[error("is for forces of the position alone, but `{term}` depends on the velocity")]
     Velocity {
         /// The term.
-        term: String,
+        term: Quotation,
     },
     /// A method that measures the amplitude in one way only.
     #[error("measures the amplitude as A = x(0)")]
@@ -193,7 +193,7 @@ pub enum Unsuited {
     #[error("is for forces with f(-x) = -f(x), but `{term}` is not odd")]
     NotOdd {
         /// The even term.
-        term: String,
+        term: Quotation,
     },
     /// As [`Unsuited::NotOdd`], about an equilibrium that is not zero.
     #[error(
@@ -201,7 +201,7 @@ pub enum Unsuited {
     )]
     NotOddAbout {
         /// The term.
-        term: String,
+        term: Quotation,
         /// The coordinate.
         coordinate: Symbol,
         /// The equilibrium.
@@ -223,7 +223,7 @@ pub enum Unsuited {
     #[error("needs a polynomial force at this order, not `{term}`")]
     PolynomialOnly {
         /// The terms of the force that are none.
-        term: String,
+        term: Quotation,
     },
 }
 
@@ -299,7 +299,7 @@ impl Refusal {
 
     /// The term that it names, where it names one of the equation.
     pub fn term(&self) -> Option<&str> {
-        match self {
+        Some(match self {
             Self::Unsuited {
                 reason:
                     Unsuited::Damping { term }
@@ -314,11 +314,11 @@ impl Refusal {
             | Self::Oscillator(
                 OscillatorError::NotSmall { term, .. }
                 | OscillatorError::NotPolynomial(term)
-                | OscillatorError::NonlinearAcceleration(term)
                 | OscillatorError::Taylor(TaylorError::NotAnalytic { term, .. }),
-            ) => Some(term),
-            _ => None,
-        }
+            ) => term.words(),
+            Self::Oscillator(OscillatorError::NonlinearAcceleration(words)) => words,
+            _ => return None,
+        })
     }
 
     /// A way forward, where one is known.
@@ -490,11 +490,13 @@ fn not_polynomial(force: &Expr, coordinate: Symbol) -> Unsuited {
         let terms = expanded.terms().iter().filter(|term| is_none(term, constants));
         Expr::sum(terms.cloned())
     });
-    let term = found.iter().find(|terms| !terms.is_zero()).unwrap_or(force).to_string();
-    Unsuited::PolynomialOnly { term }
+    let term = found.iter().find(|terms| !terms.is_zero()).unwrap_or(force);
+    Unsuited::PolynomialOnly {
+        term: term.clone().into(),
+    }
 }
 
 /// The term of a sum that a refusal names.
-fn first_term(sum: &Expr) -> String {
-    sum.terms().first().unwrap_or(sum).to_string()
+fn first_term(sum: &Expr) -> Quotation {
+    sum.terms().first().unwrap_or(sum).clone().into()
 }

@@ -41,7 +41,7 @@ pub(super) fn conservative_force(oscillator: &Oscillator, options: &Options, met
     match parts.damping.terms() {
         [zero] if zero.is_zero() => {}
         [only] => {
-            let term = only.to_string();
+            let term = only.clone().into();
             return Err(Unsuited::Damping { term }.to(method));
         }
         // Terms that feed energy for some motions and drain it for others.

@@ -8,7 +8,7 @@ use std::convert::Infallible;
 
 use super::{Refusal, Unsuited};
 use crate::equilibrium::Centred;
-use crate::expr::{Expr, ExprError, parse_expression};
+use crate::expr::{Expr, ExprError, Quotation};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::TaylorError;
 
@@ -21,21 +21,23 @@ pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &
     match &mut refusal {
         Refusal::Oscillator(OscillatorError::Taylor(TaylorError::NotAnalytic { term, point })) => {
             // A part of a term is quoted as it is where it stands so in the text.
-            if !moved && oscillator.typed.contains(term) {
+            if !moved && oscillator.typed.contains(term.words()) {
                 return refusal;
             }
-            if let Some(found) = typed_around(term, oscillator, centred) {
+            if let Some(found) = typed_around(term.expression(), oscillator, centred) {
                 *term = found;
-                if moved {
-                    let position = format!("{} = {}", oscillator.coordinate, centred.position);
-                    *point = point.replacen(&format!("{} = 0", oscillator.coordinate), &position, 1);
+                // The force was expanded as it is seen from the equilibrium.
+                let place = point
+                    .iter_mut()
+                    .find(|(variable, _)| *variable == oscillator.coordinate);
+                if let Some((_, centre)) = place.filter(|(_, centre)| centre.is_zero()) {
+                    centre.clone_from(&centred.position);
                 }
             }
         }
         Refusal::AmplitudeNotFree { term }
         | Refusal::Oscillator(OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term)) => {
-            let found = typed(term, oscillator, centred);
-            replace(term, found);
+            replace(term, typed(term, oscillator, centred));
         }
         _ => {}
     }
@@ -58,22 +60,22 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         | Unsuited::Forcing { term }
         | Unsuited::Velocity { term }
         | Unsuited::PolynomialOnly { term } => {
-            let found = typed(term, oscillator, centred);
-            replace(term, found);
+            replace(term, typed(term, oscillator, centred));
         }
         _ => {}
     }
 }
 
-fn replace(term: &mut String, found: Option<String>) {
+fn replace(term: &mut Quotation, found: Option<Quotation>) {
     if let Some(found) = found {
         *term = found;
     }
 }
 
 /// The typed terms from which the terms of a sum come.
-fn typed(sum: &str, oscillator: &Oscillator, centred: &Centred) -> Option<String> {
-    let sum = parse_expression(sum).ok()?.expand().ok()?;
+fn typed(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
+    let expression = sum.expression();
+    let sum = expression.expand().ok()?;
     let of = |term: &Expr| term.factors().1.to_vec();
     let wanted: Vec<Vec<Expr>> = sum.terms().iter().map(of).collect();
     let parts = parts(oscillator, centred);
@@ -94,20 +96,20 @@ fn typed(sum: &str, oscillator: &Oscillator, centred: &Centred) -> Option<String
         numbers = numbers_where(&parts, |part| symbols.is_subset(&part.symbols()));
         numbers = if numbers.len() == 1 { numbers } else { vec![] };
     }
-    (!numbers.is_empty()).then(|| oscillator.typed.quote(&numbers))
+    (!numbers.is_empty()).then(|| Quotation::new(expression.clone(), oscillator.typed.quote(&numbers)))
 }
 
 /// The first typed term in which an expression occurs.
-fn typed_around(inner: &str, oscillator: &Oscillator, centred: &Centred) -> Option<String> {
-    let inner = parse_expression(inner).ok()?;
+fn typed_around(inner: &Expr, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
     let parts = parts(oscillator, centred);
     let occurs = |part: &Expr| {
-        let found = part
-            .fold(|expr, below: &[bool]| Ok::<bool, Infallible>(*expr == inner || below.iter().any(|&found| found)));
+        let found =
+            part.fold(|expr, below: &[bool]| Ok::<bool, Infallible>(expr == inner || below.iter().any(|&found| found)));
         found.unwrap_or(false)
     };
     let number = numbers_where(&parts, occurs).into_iter().next()?;
-    Some(oscillator.typed.quote(&[number]))
+    let part = parts.get(number)?.clone()?;
+    Some(Quotation::new(part, oscillator.typed.quote(&[number])))
 }
 
 fn numbers_where(parts: &[Option<Expr>], holds: impl Fn(&Expr) -> bool) -> Vec<usize> {

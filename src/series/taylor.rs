@@ -23,7 +23,7 @@ use std::cell::Cell;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use crate::exact::Rational;
-use crate::expr::{Expr, ExprError, Function, Node};
+use crate::expr::{Expr, ExprError, Function, Node, Quotation};
 use crate::symbol::Symbol;
 
 /// The highest degree that is expanded.
@@ -34,12 +34,12 @@ pub const HIGHEST_DEGREE: u32 = 4000;
 #[non_exhaustive]
 pub enum TaylorError {
     /// The function is not analytic at the point, or its analyticity there cannot be decided.
-    #[error("`{term}` has no Taylor series about {point}")]
+    #[error("`{term}` has no Taylor series about {}", in_words(.point))]
     NotAnalytic {
         /// The term that is to blame.
-        term: String,
-        /// `x = 0`, say.
-        point: String,
+        term: Quotation,
+        /// The variables and where they stand.
+        point: Vec<(Symbol, Expr)>,
     },
     /// The degree is above [`HIGHEST_DEGREE`].
     #[error("a Taylor expansion of degree {0} is above the limit of {HIGHEST_DEGREE}")]
@@ -47,6 +47,15 @@ pub enum TaylorError {
     /// A coefficient could not be formed.
     #[error(transparent)]
     Expression(#[from] ExprError),
+}
+
+/// `x = 0, x' = 0`
+fn in_words(point: &[(Symbol, Expr)]) -> String {
+    let places: Vec<String> = point
+        .iter()
+        .map(|(variable, centre)| format!("{variable} = {centre}"))
+        .collect();
+    places.join(", ")
 }
 
 /// The Taylor expansion of `expression` about `point` up to total degree `degree`.
@@ -494,14 +503,12 @@ impl Expansion<'_> {
     }
 
     fn not_analytic(&self, term: &Expr) -> TaylorError {
-        let point: Vec<String> = self
-            .point
-            .iter()
-            .map(|(variable, centre)| format!("{variable} = {centre}"))
-            .collect();
+        let centres = self.point.iter();
         TaylorError::NotAnalytic {
-            term: term.to_string(),
-            point: point.join(", "),
+            term: term.clone().into(),
+            point: centres
+                .map(|(variable, centre)| (*variable, Expr::number(centre.clone())))
+                .collect(),
         }
     }
 }
@@ -603,8 +610,8 @@ mod tests {
             ("x^(-1/3)", "1/x^(1/3)"),
         ] {
             let expected = TaylorError::NotAnalytic {
-                term: term.into(),
-                point: "x = 0".into(),
+                term: parse_expression(term).unwrap().into(),
+                point: vec![("x".into(), Expr::zero())],
             };
             for degree in [0, 1, 4] {
                 assert_eq!(coefficients(text, degree), Err(expected.clone()), "{text}");

@@ -169,6 +169,57 @@ struct Outcome {
     partial: bool,
 }
 
+impl Command {
+    /// What every command takes.
+    fn common(&self) -> Common {
+        match self {
+            Self::Derive(arguments) => arguments.common.clone(),
+            Self::Compare(arguments) => arguments.common.clone(),
+            Self::Impact(arguments) => arguments.common.clone(),
+            Self::Simulate(arguments) => arguments.common.clone(),
+            Self::Friction(arguments) => arguments.common.clone(),
+            Self::Materials(arguments) => arguments.common.clone(),
+            Self::Catalog(arguments) => arguments.common.clone(),
+            Self::Schema(arguments) => arguments.common(),
+        }
+    }
+
+    /// The file it reads, where it reads one.
+    fn input(&self) -> Option<&Path> {
+        match self {
+            Self::Derive(arguments) => problem::path(&arguments.problem),
+            Self::Compare(arguments) => problem::path(&arguments.problem),
+            Self::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
+            Self::Simulate(arguments) => arguments.file.as_deref(),
+            Self::Materials(arguments) => arguments.file.as_deref(),
+            Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
+        }
+    }
+
+    /// How long to wait for what there is, once the time is up. Only a simulation has parts worth waiting for; to add up what a
+    /// long one did takes a while.
+    fn patience(&self) -> Duration {
+        match self {
+            Self::Simulate(_) | Self::Materials(_) => Duration::from_secs(60),
+            _ => Duration::ZERO,
+        }
+    }
+
+    /// Does the work.
+    fn run(&self) -> Result<Outcome, Failure> {
+        match self {
+            Self::Derive(arguments) => derive::run(arguments),
+            Self::Compare(arguments) => compare::run(arguments),
+            Self::Impact(arguments) => impact::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Friction(arguments) => friction::run(arguments),
+            Self::Materials(arguments) => materials::run(arguments),
+            Self::Catalog(arguments) => catalog::run(arguments),
+            Self::Schema(arguments) => schema::run(arguments),
+        }
+    }
+}
+
 /// The program.
 pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -183,36 +234,32 @@ pub fn run() -> ExitCode {
     let command = cli
         .command
         .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
-    let common = match &command {
-        Command::Derive(arguments) => arguments.common.clone(),
-        Command::Compare(arguments) => arguments.common.clone(),
-        Command::Impact(arguments) => arguments.common.clone(),
-        Command::Simulate(arguments) => arguments.common.clone(),
-        Command::Friction(arguments) => arguments.common.clone(),
-        Command::Materials(arguments) => arguments.common.clone(),
-        Command::Catalog(arguments) => arguments.common.clone(),
-        Command::Schema(arguments) => arguments.common(),
-    };
-    let input = match &command {
-        Command::Derive(arguments) => problem::path(&arguments.problem),
-        Command::Compare(arguments) => problem::path(&arguments.problem),
-        Command::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
-        Command::Simulate(arguments) => arguments.file.as_deref(),
-        Command::Materials(arguments) => arguments.file.as_deref(),
-        Command::Friction(_) | Command::Catalog(_) | Command::Schema(_) => None,
-    };
-    let checked = files::check(&common, input);
-    if let Err(Failure::Refused(message)) = &checked {
-        return fail(1, message);
+    let common = command.common();
+    match files::check(&common, command.input()) {
+        Err(Failure::Refused(message)) => return fail(1, &message),
+        Err(Failure::Usage(message)) => return fail(2, &message),
+        Ok(()) => {}
     }
-    if let Err(Failure::Usage(message)) = &checked {
-        return fail(2, message);
+    let (outcome, in_vain) = within_limits(command, common.timeout);
+    match (outcome, in_vain) {
+        (Some(Some(Ok(outcome))), _) => finish(outcome, &common),
+        (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
+        (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
+        (None, Some((code, message))) => fail(code, &message),
+        (Some(None), _) | (None, None) => fail(70, "internal error: please report the command and its input"),
     }
-    // Only a simulation has parts worth waiting for; to add up what a long one did takes a while.
-    let patience = match &command {
-        Command::Simulate(_) | Command::Materials(_) => Duration::from_secs(60),
-        _ => Duration::ZERO,
-    };
+}
+
+/// What came of the work; nothing where it broke.
+type Worked = Option<Result<Outcome, Failure>>;
+
+/// Exit code and message of work that ends without a result.
+type InVain = (u8, String);
+
+/// Does the work of a command until its end, an interrupt or the time limit: what came of it, where anything did, and what to say
+/// where nothing did because it was ended.
+fn within_limits(command: Command, timeout: Option<f64>) -> (Option<Worked>, Option<InVain>) {
+    let patience = command.patience();
     let (sender, receiver) = channel();
     let interrupted = sender.clone();
     // The first interrupt asks for what there is, the second ends the program.
@@ -227,50 +274,34 @@ pub fn run() -> ExitCode {
     // The work has a thread of its own so that a time limit can end it, wherever it is.
     let started = Instant::now();
     let worker = std::thread::spawn(move || {
-        let outcome = std::panic::catch_unwind(|| match command {
-            Command::Derive(arguments) => derive::run(&arguments),
-            Command::Compare(arguments) => compare::run(&arguments),
-            Command::Impact(arguments) => impact::run(&arguments),
-            Command::Simulate(arguments) => simulate::run(&arguments),
-            Command::Friction(arguments) => friction::run(&arguments),
-            Command::Materials(arguments) => materials::run(&arguments),
-            Command::Catalog(arguments) => catalog::run(&arguments),
-            Command::Schema(arguments) => schema::run(&arguments),
-        });
+        let outcome = std::panic::catch_unwind(|| command.run());
         let _ = sender.send(Message::Done(outcome.ok()));
     });
-    let limit = common
-        .timeout
-        .map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    let limit = timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
     let first = match limit {
         None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
         Some(limit) => receiver.recv_timeout(limit),
     };
     // A whole result that comes too late is too late, however soon it was taken from the channel.
     let late = patience.is_zero() && limit.is_some_and(|limit| started.elapsed() > limit);
-    let (message, in_vain) = match first {
+    let found = match first {
         Ok(Message::Done(outcome)) if !late => (Some(outcome), None),
         Ok(Message::Interrupt) => (
             wait_for_part(&receiver, patience),
             Some((INTERRUPTED, "interrupted without a result".to_owned())),
         ),
         Ok(Message::Done(_)) | Err(_) => {
-            let seconds = common.timeout.unwrap_or_default();
+            let seconds = timeout.unwrap_or_default();
             let message =
                 format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout");
             (wait_for_part(&receiver, patience), Some((1, message)))
         }
     };
-    match (message, in_vain) {
-        (Some(Some(Ok(outcome))), _) => finish(outcome, &common),
-        (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
-        (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
-        (None, Some((code, message))) => fail(code, &message),
-        (Some(None), _) | (None, None) => {
-            let _ = worker.join();
-            fail(70, "internal error: please report the command and its input")
-        }
+    if let (Some(None), _) | (None, None) = found {
+        // It broke: its own words on standard error come first.
+        let _ = worker.join();
     }
+    found
 }
 
 /// Set by an interrupt or at the time limit; work that can hand back a part looks at it.
@@ -282,13 +313,13 @@ const INTERRUPTED: u8 = 130;
 /// What reaches the main thread.
 enum Message {
     /// The work is done; nothing where it broke.
-    Done(Option<Result<Outcome, Failure>>),
+    Done(Worked),
     /// The user wants it to end.
     Interrupt,
 }
 
 /// Asks the work to hand back what it has, and waits a little for it; not at all for work that has no parts.
-fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Option<Result<Outcome, Failure>>> {
+fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Worked> {
     STOP.store(true, Ordering::Relaxed);
     if patience.is_zero() {
         return None;

@@ -87,8 +87,9 @@ enum Place {
     Exponent,
 }
 
-fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mut Vec<Piece>) -> fmt::Result {
-    let parentheses = match expr.node() {
+/// Whether an expression stands in parentheses there.
+fn in_parentheses(expr: &Expr, place: Place) -> bool {
+    match expr.node() {
         Node::Symbol(_) | Node::Pi | Node::Function(..) => false,
         Node::Number(value) => match place {
             Place::Free | Place::Unsigned => false,
@@ -101,8 +102,11 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
             Place::Free | Place::Unsigned | Place::Factor => false,
             Place::Base | Place::Exponent => !is_half(exponent),
         },
-    };
-    if parentheses {
+    }
+}
+
+fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mut Vec<Piece>) -> fmt::Result {
+    if in_parentheses(expr, place) {
         open.extend([Piece::Text(")"), Piece::Expr(expr.clone(), Place::Free)]);
         return out.write_char('(');
     }
@@ -146,30 +150,30 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
             Ok(())
         }
         Node::Product(..) | Node::Power(..) => {
-            let Fraction {
-                negative,
-                numerator,
-                denominator,
-            } = expr.fraction();
-            match denominator.as_slice() {
-                [] => {}
-                [only] => open.extend([Piece::Expr(only.clone(), Place::Factor), Piece::Text("/")]),
-                several => {
-                    open.push(Piece::Text(")"));
-                    push_factors(several, open);
-                    open.push(Piece::Text("/("));
-                }
+            let fraction = expr.fraction();
+            if fraction.negative && place != Place::Unsigned {
+                out.write_char('-')?;
             }
-            match numerator.as_slice() {
-                [] => open.push(Piece::Text("1")),
-                factors => push_factors(factors, open),
-            }
-            if negative && place != Place::Unsigned {
-                out.write_char('-')
-            } else {
-                Ok(())
-            }
+            push_fraction(&fraction, open);
+            Ok(())
         }
+    }
+}
+
+/// Numerator over denominator, without the sign.
+fn push_fraction(fraction: &Fraction, open: &mut Vec<Piece>) {
+    match fraction.denominator.as_slice() {
+        [] => {}
+        [only] => open.extend([Piece::Expr(only.clone(), Place::Factor), Piece::Text("/")]),
+        several => {
+            open.push(Piece::Text(")"));
+            push_factors(several, open);
+            open.push(Piece::Text("/("));
+        }
+    }
+    match fraction.numerator.as_slice() {
+        [] => open.push(Piece::Text("1")),
+        factors => push_factors(factors, open),
     }
 }
 

@@ -52,79 +52,28 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
 /// ```
 pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let motion = report.motion;
-    let points = points(motion);
-    let time: Vec<(f64, f64)> = points.iter().map(|&(t, x, _)| (t, x)).collect();
-    let phase: Vec<(f64, f64)> = points.iter().map(|&(_, x, v)| (x, v)).collect();
-    let (mut energy, mut viscous, mut friction, mut contact, mut excitation) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    motion.energy_points(motion.end_time / POINTS as f64, |point| {
-        energy.push((point.t, point.energy));
-        viscous.push((point.t, point.book.viscous));
-        friction.push((point.t, point.book.friction));
-        contact.push((point.t, point.book.contact));
-        excitation.push((point.t, point.book.excitation));
-    });
-    let judge = report.judge.map(|judge| {
-        let points = self::points(judge);
-        let time: Vec<(f64, f64)> = points.iter().map(|&(t, x, _)| (t, x)).collect();
-        let phase: Vec<(f64, f64)> = points.iter().map(|&(_, x, v)| (x, v)).collect();
-        (time, phase)
-    });
-    let mut motions = Vec::new();
-    let mut orbits = Vec::new();
-    if let Some((time, phase)) = &judge {
-        motions.push(curve("Runge-Kutta", time, CurveStyle::RUNGE_KUTTA));
-        orbits.push(curve("Runge-Kutta", phase, CurveStyle::RUNGE_KUTTA));
-    }
-    let style = if judge.is_some() {
-        CurveStyle::FORMULA
-    } else {
-        CurveStyle::DIFFERENCE
-    };
-    motions.push(curve("motion", &time, style));
-    orbits.push(curve("motion", &phase, style));
     let model = &motion.model;
+    let (own, judge) = (Drawn::of(motion), report.judge.map(Drawn::of));
+    let style = match judge {
+        Some(_) => CurveStyle::FORMULA,
+        None => CurveStyle::DIFFERENCE,
+    };
+    let curves = |of: fn(&Drawn) -> &Points| {
+        let judge = judge.as_ref();
+        let judge = judge.map(|judge| curve("Runge-Kutta", of(judge), CurveStyle::RUNGE_KUTTA));
+        judge.into_iter().chain([curve("motion", of(&own), style)]).collect()
+    };
     let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
         let right = model.right.map(|at| guide(at, "barrier x_c"));
         // A barrier out of reach would leave no room for the motion.
-        if motion.touches() {
-            left.into_iter().chain(right).collect()
-        } else {
-            Vec::new()
+        match motion.touches() {
+            true => left.into_iter().chain(right).collect(),
+            false => Vec::new(),
         }
     };
-    let mut energies = vec![curve("energy", &energy, CurveStyle::FORMULA)];
-    for (label, points, style, shown) in [
-        (
-            "work of viscous damping",
-            &viscous,
-            CurveStyle::SECOND_DIFFERENCE,
-            model.zeta != 0.0,
-        ),
-        (
-            "work of dry friction",
-            &friction,
-            CurveStyle::SERIES[5],
-            model.alpha != 0.0,
-        ),
-        (
-            "work of contact damping",
-            &contact,
-            CurveStyle::THIRD_DIFFERENCE,
-            model.mu != 0.0,
-        ),
-        (
-            "work of the excitation",
-            &excitation,
-            CurveStyle::SECOND_FORMULA,
-            model.beta != 0.0,
-        ),
-    ] {
-        if shown {
-            energies.push(curve(label, points, style));
-        }
-    }
+    let works = works(motion);
+    let energies = works.iter().map(|(label, points, style)| curve(label, points, *style));
     let panel = |title, x_label, y_label, curves, guides| Panel {
         title,
         x_label,
@@ -138,17 +87,23 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
             "Motion in time",
             TIME,
             "displacement x (rad)",
-            motions,
+            curves(|drawn| &drawn.time),
             guides(Guide::Y),
         ),
         panel(
             "Phase plane",
             "displacement x (rad)",
             "velocity x′",
-            orbits,
+            curves(|drawn| &drawn.phase),
             guides(Guide::X),
         ),
-        panel("Energy", TIME, "energy (units of m g L)", energies, Vec::new()),
+        panel(
+            "Energy",
+            TIME,
+            "energy (units of m g L)",
+            energies.collect(),
+            Vec::new(),
+        ),
     ];
     let caption = format!(
         "Equation (7): γ = {}, μ = {}, ζ = {}, α = {}, β = {}; {} impacts until t = {}.",
@@ -161,6 +116,67 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         decimal(motion.end_time)
     );
     figure(&panels, &caption)
+}
+
+/// A motion as it is drawn.
+struct Drawn {
+    /// x against t.
+    time: Points,
+    /// x' against x.
+    phase: Points,
+}
+
+impl Drawn {
+    fn of(motion: &Simulation) -> Self {
+        let points = points(motion);
+        Self {
+            time: points.iter().map(|&(t, x, _)| (t, x)).collect(),
+            phase: points.iter().map(|&(_, x, velocity)| (x, velocity)).collect(),
+        }
+    }
+}
+
+/// The energy in time, and the work of every force that acts.
+fn works(motion: &Simulation) -> Vec<(&'static str, Points, CurveStyle)> {
+    let model = &motion.model;
+    let (mut energy, mut viscous, mut friction, mut contact, mut excitation) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    motion.energy_points(motion.end_time / POINTS as f64, |point| {
+        energy.push((point.t, point.energy));
+        viscous.push((point.t, point.book.viscous));
+        friction.push((point.t, point.book.friction));
+        contact.push((point.t, point.book.contact));
+        excitation.push((point.t, point.book.excitation));
+    });
+    let all = [
+        (true, "energy", energy, CurveStyle::FORMULA),
+        (
+            model.zeta != 0.0,
+            "work of viscous damping",
+            viscous,
+            CurveStyle::SECOND_DIFFERENCE,
+        ),
+        (
+            model.alpha != 0.0,
+            "work of dry friction",
+            friction,
+            CurveStyle::SERIES[5],
+        ),
+        (
+            model.mu != 0.0,
+            "work of contact damping",
+            contact,
+            CurveStyle::THIRD_DIFFERENCE,
+        ),
+        (
+            model.beta != 0.0,
+            "work of the excitation",
+            excitation,
+            CurveStyle::SECOND_FORMULA,
+        ),
+    ];
+    let acting = all.into_iter().filter(|(acts, ..)| *acts);
+    acting.map(|(_, label, points, style)| (label, points, style)).collect()
 }
 
 const TIME: &str = "time t (units of 1/ω)";

@@ -202,6 +202,20 @@ fn numbers_in_si_units_come_out_again() {
     }
 }
 
+/// Where the clock has no digits left for a contact, it is that of the closed form, and nothing is infinite.
+#[test]
+fn a_barrier_beyond_all_hardness_is_a_barrier_still() {
+    for modulus in ["1e20", "1e60", "1e300", "1e-3"] {
+        let study = study(&format!("[[material]]\nname = \"Strange\"\nmodulus = {modulus}"));
+        let row = study.rows.last().expect("a row");
+        let Some(first) = row.first else { continue };
+        let numbers = [first.duration, first.penetration, first.peak_force, first.peak_pressure];
+        assert!(numbers.iter().all(|number| *number > 0.0), "{modulus}: {first:?}");
+        let said = text::materials(&study, 120);
+        assert!(!said.contains(" inf") && !said.contains("NaN"), "{said}");
+    }
+}
+
 #[test]
 fn a_barrier_out_of_reach_has_no_say() {
     let study = study("[pendulum]\nbarrier = 1.6");

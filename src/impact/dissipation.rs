@@ -68,8 +68,8 @@ pub enum DampingError {
     Restitution(f64),
     /// A restitution at no speed.
     #[error(
-        "[contact] restitution is that at a speed, and without damping this motion touches no barrier: give `at_speed`, in rad \
-         times omega"
+        "[contact] restitution is that at a speed, and without damping this motion touches no barrier, or starts inside one: give \
+         `at_speed`, in rad times omega"
     )]
     NoSpeed,
     /// A speed that is none.
@@ -79,7 +79,7 @@ pub enum DampingError {
     #[error("[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material")]
     Lambda(f64),
     /// A damping beyond doubles.
-    #[error("{key} = {value} makes no finite number of equation (7)")]
+    #[error("{key} = {value:e} makes no finite number of equation (7)")]
     NotFinite {
         /// Which.
         key: Parameter,

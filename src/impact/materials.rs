@@ -14,6 +14,7 @@
 use thiserror::Error;
 
 use super::case::{Case, CaseError};
+use super::contact::HuntCrossley;
 use super::dissipation::{ContactDamping, Dissipation};
 use super::hertz;
 use super::model::{Model, Start};
@@ -400,7 +401,11 @@ fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Resul
     })
 }
 
-/// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself.
+/// A contact shorter than this part of the time at which it begins has lost digits of its duration to the clock.
+const CLOCK: f64 = 1e-6;
+
+/// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself. Of one that is too short for the
+/// clock duration and force are those of the closed form, in which the swing's own force is left out: it has no time to act.
 fn first_contact(
     impact: &Contact,
     model: &Model,
@@ -413,6 +418,10 @@ fn first_contact(
     else {
         return Ok(None);
     };
+    let closed_form = match exit - impact.entry_time < CLOCK * exit {
+        true => HuntCrossley::new(1.5, model.gamma, model.mu / model.gamma, impact.speed_in).ok(),
+        false => None,
+    };
     let until = Settings {
         duration: exit,
         keep_path: true,
@@ -424,13 +433,17 @@ fn first_contact(
         Some((x, velocity)) => model.contact(sign * (x - barrier), sign * velocity),
         None => 0.0,
     };
+    let (duration, peak_force) = match closed_form {
+        Some(contact) => (contact.duration, contact.peak_force),
+        None => (exit - impact.entry_time, greatest(force, impact.entry_time, exit)),
+    };
     let metres = units.length * impact.penetration;
     let elastic = units.force() * hertz::force(model.gamma, impact.penetration);
     Ok(Some(FirstContact {
         speed: units.speed() * impact.speed_in,
-        duration: units.time() * (exit - impact.entry_time),
+        duration: units.time() * duration,
         penetration: metres,
-        peak_force: units.force() * greatest(force, impact.entry_time, exit),
+        peak_force: units.force() * peak_force,
         peak_pressure: units.pressure(elastic, metres).unwrap_or(f64::NAN),
         restitution,
     }))

@@ -83,7 +83,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         si("g", None, design.gravity, "m/s^2", "gravity"),
         si("T", Some("sqrt(L/g)"), study.units.time(), "s", "the unit of time"),
     ]);
-    let default = ", which nobody gave: the paper prints none";
+    let default = ", by default: the paper prints none";
     let said = |parameter| if is_default(parameter) { default } else { "" };
     let damping = study.question.case.contact_damping;
     let at = match study.dissipation.at_speed {
@@ -425,15 +425,20 @@ fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
     if softest == hardest {
         return None;
     }
-    let factor = |value: f64| significant(value, 3);
+    let ratios = [
+        soft.duration / hard.duration,
+        soft.penetration / hard.penetration,
+        hard.peak_force / soft.peak_force,
+    ];
+    if !ratios.iter().all(|ratio| ratio.is_normal()) {
+        return None;
+    }
+    let [shorter, less_deep, larger] = ratios.map(|ratio| significant(ratio, 3));
     Some(format!(
-        "From {} to {} the first contact lasts {} times shorter, goes {} times less deep, and its force is {} times larger; its \
-         restitution is {} and {}.",
+        "From {} to {} the first contact lasts {shorter} times shorter, goes {less_deep} times less deep, and its force is {larger} times \
+         larger; its restitution is {} and {}.",
         study.rows[softest].material.name,
         study.rows[hardest].material.name,
-        factor(soft.duration / hard.duration),
-        factor(soft.penetration / hard.penetration),
-        factor(hard.peak_force / soft.peak_force),
         significant(soft.restitution, 4),
         significant(hard.restitution, 4)
     ))

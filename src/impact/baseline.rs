@@ -1,14 +1,24 @@
 //! What a barrier is good for: the rest time beside that without a barrier and with one that loses nothing.
 //!
 //! A barrier that loses nothing already shortens the rest, because the swing becomes shorter and faster: under light viscous
-//! damping the action J = (1/2 pi) times the area of the orbit in the phase plane falls as exp(-2 zeta t) whatever the orbit, and a
-//! swing cut at the barrier starts with less of it. What is left of a gain is the loss in contact.
+//! damping the action, the area S of the orbit in the phase plane, falls as exp(-2 zeta t) whatever the orbit, and a swing cut at the
+//! barrier starts with less of it. What is left of a gain is the loss in contact. With A the first amplitude and a = A/10,
 //!
-//! In: a motion that was followed. Out: a [`Baseline`], two more motions from the same start.
+//! ```text
+//! S(A) = 2 int_-A^A x' dx        = 16 (E(m) - (1 - m) K(m)),  m = sin^2(A/2)      without a barrier
+//! S_c(A) = 2 int_-A^x_c x' dx                                                     cut at the barrier
+//! t = ln(S(A)/S(a))/(2 zeta),    t_c = ln(S_c(A)/S_c(a))/(2 zeta)
+//! t - t_c = ln(S(A) S_c(a)/(S_c(A) S(a)))/(2 zeta)                                the gain by geometry alone
+//! ```
+//!
+//! In: a motion that was followed. Out: a [`Baseline`], two more motions from the same start, and the ratio of the actions.
 
+use std::f64::consts::PI;
+
+use super::chain::actions;
 use super::model::Model;
 use super::simulate::{SimulationError, simulate};
-use super::simulation::{NoRest, Settings, Simulation};
+use super::simulation::{NoRest, REST_FRACTION, Settings, Simulation};
 
 /// Rest times of the same swing, in units of 1/omega.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +27,40 @@ pub struct Baseline {
     pub no_barrier: Result<f64, NoRest>,
     /// With the same barrier, elastic: mu = 0.
     pub lossless_barrier: Result<f64, NoRest>,
+    /// What the actions say of the difference; nothing with dry friction, or where the first swing turns over.
+    pub geometry: Option<Geometry>,
+}
+
+/// The part of the gain that is geometry, by the actions of the swings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Geometry {
+    /// S(A)/S_c(A): the area of the first swing without a barrier over that of the swing cut at it.
+    pub first_swing: f64,
+    /// S(a)/S_c(a), the same at rest, a = A/10: 1 where the barrier is out of its reach.
+    pub at_rest: f64,
+    /// ln(first_swing/at_rest)/(2 zeta), in units of 1/omega: by how much sooner the cut swing rests.
+    pub gain: f64,
+}
+
+impl Geometry {
+    /// By the actions of a swing of this amplitude, rad, between the barriers of the model; nothing where the formula says nothing.
+    fn of(model: &Model, amplitude: f64) -> Option<Self> {
+        if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI {
+            return None;
+        }
+        let ratio = |amplitude: f64| {
+            let (whole, cut) = actions(model, amplitude);
+            whole / cut
+        };
+        let (first_swing, at_rest) = (ratio(amplitude), ratio(REST_FRACTION * amplitude));
+        let gain = (first_swing / at_rest).ln() / (2.0 * model.zeta);
+        Some(Self {
+            first_swing,
+            at_rest,
+            gain,
+        })
+        .filter(|geometry| geometry.gain.is_finite())
+    }
 }
 
 /// So many times the duration of the run are the others followed for: they rest later.
@@ -55,6 +99,7 @@ pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError
         Ok::<_, SimulationError>(followed.rest().time)
     };
     Ok(Some(Baseline {
+        geometry: Geometry::of(&model, motion.rest().amplitude),
         no_barrier: rest(Model {
             left: None,
             right: None,

@@ -35,7 +35,7 @@ pub struct Case {
     pub left: Option<f64>,
     /// Position of the right barrier x_c, rad.
     pub right: Option<f64>,
-    /// Dimensionless stiffness gamma of the contact, positive, where it is not that of the design.
+    /// Dimensionless stiffness gamma of the contact, positive, where it is not that of the design; 0 for no barrier.
     pub gamma: Option<f64>,
     /// Damping of the contact.
     pub contact_damping: ContactDamping,
@@ -108,6 +108,9 @@ pub enum CaseError {
     /// A damping that makes no number.
     #[error(transparent)]
     Damping(#[from] DampingError),
+    /// A damping of a barrier that is none.
+    #[error("[contact] mu = {0} damps a barrier, and gamma = 0 is none: leave out one of them")]
+    NothingToDamp(f64),
     /// An excitation without a frequency.
     #[error("[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing")]
     NoFrequency(f64),
@@ -211,6 +214,10 @@ impl Case {
         };
         let gamma = self.stiffness()?;
         let mu = self.contact_damping.mu(&self.scales(gamma, start))?;
+        if gamma == 0.0 && mu > 0.0 {
+            return Err(CaseError::NothingToDamp(mu));
+        }
+        let barrier = |place: Option<f64>| place.filter(|_| gamma != 0.0);
         let units = self.si();
         let in_si = |key, value: Option<f64>, number: f64, convert: fn(f64, &Units) -> f64| match value {
             None => Ok(number),
@@ -233,8 +240,8 @@ impl Case {
             frequency_ratio: self.frequency_ratio,
             gamma,
             mu,
-            left: self.left,
-            right: self.right,
+            left: barrier(self.left),
+            right: barrier(self.right),
         };
         model.check(start)?;
         if self.start.is_none()
@@ -332,7 +339,7 @@ impl Case {
         Ok(Dissipation {
             contact: damping,
             mu: model.mu,
-            mu_over_gamma: model.mu / model.gamma,
+            mu_over_gamma: if model.mu == 0.0 { 0.0 } else { model.mu / model.gamma },
             lambda: match damping {
                 ContactDamping::Lambda(lambda) => Some(lambda),
                 _ => units.and_then(|_| form(ContactDamping::Lambda(0.0), &scales)),

@@ -71,7 +71,7 @@ pub struct Model {
     pub beta: f64,
     /// Omega/omega, not negative.
     pub frequency_ratio: f64,
-    /// Stiffness gamma of the contact, positive.
+    /// Stiffness gamma of the contact, positive; without a barrier it may be 0.
     pub gamma: f64,
     /// Damping mu of the contact, not negative.
     pub mu: f64,
@@ -144,8 +144,8 @@ pub enum ModelError {
         /// What was given.
         value: f64,
     },
-    /// A stiffness that is not positive.
-    #[error("[contact] gamma must be a positive number, not {0}: for a pendulum without a barrier put it out of reach")]
+    /// A stiffness that is negative, or zero beside a barrier.
+    #[error("[contact] gamma must be a positive number, or 0 for no barrier at all, not {0}")]
     Stiffness(f64),
     /// Barriers in the wrong order.
     #[error("the left barrier at {left} must lie below the right one at {right}: give [left, right]")]
@@ -180,7 +180,8 @@ impl Model {
         if let Some(&(parameter, value)) = numbers[..4].iter().find(|(_, value)| *value < 0.0) {
             return Err(ModelError::Negative { parameter, value });
         }
-        if !(self.gamma.is_finite() && self.gamma > 0.0) {
+        let free = self.left.is_none() && self.right.is_none();
+        if !(self.gamma.is_finite() && (self.gamma > 0.0 || free && self.gamma == 0.0)) {
             return Err(ModelError::Stiffness(self.gamma));
         }
         if let (Some(left), Some(right)) = (self.left, self.right)

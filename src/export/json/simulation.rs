@@ -66,6 +66,20 @@ pub struct Baseline {
     pub lossless_barrier: Option<f64>,
     /// With the barrier of the run: `rest_time`.
     pub this_barrier: Option<f64>,
+    /// The gain of the lossless barrier by the actions of the swings; null with dry friction.
+    pub geometry: Option<Geometry>,
+}
+
+/// By how much sooner a swing cut at the barrier rests under viscous damping: ln(first_swing/at_rest)/(2 zeta).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Geometry {
+    /// The action of the first swing without a barrier over that of the swing cut at it.
+    pub first_swing: f64,
+    /// The same at a tenth of the amplitude; 1 where the barrier is out of reach.
+    pub at_rest: f64,
+    /// The gain, in units of time.
+    pub gain: f64,
 }
 
 /// The numbers of a run: dimensionless unless another unit is given.
@@ -366,6 +380,11 @@ pub fn simulation(report: &Report) -> SimulationDocument {
             no_barrier: baseline.no_barrier.ok(),
             lossless_barrier: baseline.lossless_barrier.ok(),
             this_barrier: rest.time.ok(),
+            geometry: baseline.geometry.map(|geometry| Geometry {
+                first_swing: geometry.first_swing,
+                at_rest: geometry.at_rest,
+                gain: geometry.gain,
+            }),
         }),
         energy: Energy {
             start: book.start,

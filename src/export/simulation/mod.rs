@@ -69,6 +69,9 @@ pub(super) fn friction(friction: Friction) -> &'static str {
 pub(super) fn notes(report: &Report) -> Vec<String> {
     let motion = report.motion;
     let mut notes = Vec::new();
+    if motion.model.gamma == 0.0 {
+        notes.push("gamma = 0 is no barrier: the motion is that of the plain pendulum".to_owned());
+    }
     if !motion.touches() && motion.model.left.or(motion.model.right).is_some() {
         let barriers: Vec<String> = [motion.model.left, motion.model.right]
             .into_iter()

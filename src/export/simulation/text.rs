@@ -6,7 +6,7 @@ use std::io;
 use super::{COMPARED, Report, SweepReport, friction, notes};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::Axis;
-use crate::impact::{Baseline, ContactDamping, Dissipation, Integrator, Model, NoRest, Simulation, Units};
+use crate::impact::{Baseline, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest, Simulation, Units};
 
 /// Impacts that are listed; a long run has thousands.
 const LISTED: usize = 24;
@@ -306,6 +306,7 @@ fn rest(text: &mut String, report: &Report) {
     let Some(Baseline {
         no_barrier,
         lossless_barrier,
+        geometry,
     }) = report.baseline
     else {
         return;
@@ -323,6 +324,23 @@ fn rest(text: &mut String, report: &Report) {
             decimal(none - this),
             decimal(none - lossless),
             decimal(lossless - this)
+        );
+    }
+    if let Some(Geometry {
+        first_swing,
+        at_rest,
+        gain,
+    }) = geometry
+    {
+        let rested = match *at_rest == 1.0 {
+            true => String::new(),
+            false => format!("/{}", decimal(*at_rest)),
+        };
+        let _ = writeln!(
+            text,
+            "  by the actions of the whole and the cut swing, ln({}{rested})/(2*zeta) = {} of that is the shorter swing",
+            decimal(*first_swing),
+            decimal(*gain)
         );
     }
 }

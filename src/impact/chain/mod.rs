@@ -197,8 +197,8 @@ impl<'a> Chain<'a> {
                 self.stop = Some(Stop::Duration);
             } else {
                 let next = match place {
-                    Place::Turn(side, turn, known) => self.from_turn(side, turn, known),
-                    Place::Leaving(to, spot, energy) => self.leave(to, spot, energy),
+                    Place::Turn(side, turn, known) => self.after_turn(side, turn, known),
+                    Place::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
                 };
                 place = next.unwrap_or(place);
             }
@@ -247,14 +247,14 @@ impl<'a> Chain<'a> {
         for _ in 0..MOST_NEWTON {
             let mut swing = Swing::new(reference);
             let mut leg = leg(&swing);
-            if !(leg.time > 0.0) {
+            if !is_positive(leg.time) {
                 return None;
             }
             let (loss, growth) = self.above(&leg, &swing);
             let error = reference + loss - energy;
             let step = error / (1.0 + growth);
             reference -= step;
-            if !(reference > 0.0) {
+            if !is_positive(reference) {
                 return None;
             }
             if error.abs() <= NEAR * energy {
@@ -283,7 +283,7 @@ impl<'a> Chain<'a> {
     }
 
     /// From a turning point to the barrier ahead, or to the next turning point.
-    fn from_turn(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
+    fn after_turn(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
         let (to, energy) = (opposite(side), turn.energy);
         if let Some(ahead) = self.barrier(to)
             && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
@@ -293,7 +293,7 @@ impl<'a> Chain<'a> {
                 (swing, swing.reach(&ahead.spot))
             });
             let leg = leg(self.model, &swing, &ahead.spot, reach);
-            if !(leg.time > 0.0) {
+            if !is_positive(leg.time) {
                 // It rests on the barrier and is pressed into it.
                 return self.integrate();
             }
@@ -330,7 +330,7 @@ impl<'a> Chain<'a> {
         };
         let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
         let energy = swing.energy - self.below(&leg);
-        if !(energy > 0.0) {
+        if !is_positive(energy) {
             return None;
         }
         let [first, second] = [swing.energy, energy].map(Spot::turn);
@@ -375,7 +375,7 @@ impl<'a> Chain<'a> {
             // It was found not to get there.
             turn = ahead.spot;
         }
-        if !(turn.energy > 0.0) {
+        if !is_positive(turn.energy) {
             return None;
         }
         let time = before.quarter.time + after.quarter.time;
@@ -384,7 +384,7 @@ impl<'a> Chain<'a> {
     }
 
     /// From a spot on the way to a side: to the barrier there, or to the turning point.
-    fn leave(&mut self, to: Side, spot: Spot, energy: f64) -> Option<Place> {
+    fn after_leaving(&mut self, to: Side, spot: Spot, energy: f64) -> Option<Place> {
         let ahead = self.barrier(to);
         if let Some(ahead) = ahead
             && energy > ahead.spot.energy
@@ -563,6 +563,11 @@ impl<'a> Chain<'a> {
     }
 }
 
+/// Not zero, not negative, and a number.
+fn is_positive(value: f64) -> bool {
+    value > 0.0
+}
+
 fn opposite(side: Side) -> Side {
     match side {
         Side::Left => Side::Right,
@@ -611,6 +616,16 @@ fn rubbed(turn: f64, alpha: f64) -> f64 {
         }
     }
     next
+}
+
+/// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same between the barriers, units of m g L/omega.
+pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
+    let swing = Swing::new(Spot::at(amplitude).energy);
+    let reach = |side: Side| match model.barrier(side) {
+        Some(x) => swing.reach(&Spot::at(side.sign() * x)).area,
+        None => swing.quarter.area,
+    };
+    (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
 }
 
 /// The closed form of a stretch between two energies and two places, towards a side.

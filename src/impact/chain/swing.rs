@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn the_stretches_are_elliptic_integrals() {
-        for amplitude in [1e-6, 0.01, 0.3, 1.0, 1.5, 2.5, 3.1, 3.141] {
+        for amplitude in [1e-6, 0.01, 0.3, 1.0, 1.5, 2.5, 3.1, 3.13] {
             let swing = Swing::new(Spot::at(amplitude).energy);
             let m = 0.5 * swing.energy;
             let (first, second) = (ellipk(m).unwrap(), ellipe(m).unwrap());

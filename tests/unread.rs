@@ -355,7 +355,8 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
         for swept in singles.chain(pairs) {
             match grid(file, &swept) {
                 Ok(motions) => {
-                    let rows = sweep(&motions, &settings, |_| ()).expect("motions");
+                    let rows =
+                        sweep(&motions, lindstedt::impact::Integrator::Taylor, &settings, |_| ()).expect("motions");
                     for (index, row) in rows.iter().enumerate() {
                         assert!(
                             !rows[..index].contains(row),

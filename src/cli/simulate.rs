@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Interrupt;
 use lindstedt::export::json;
-use lindstedt::export::simulation::{Report, SweepReport, csv, sweep_csv, sweep_text, text};
+use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, baseline, simulate};
 use lindstedt::problem::{Problem, Simulate, SimulateError};
@@ -26,6 +26,10 @@ pub struct Arguments {
     /// a time; or both, and how far they differ
     #[arg(long, value_enum, default_value_t = Method::Taylor)]
     integrator: Method,
+    /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with its formula, and its error against
+    /// the integration; a sweep is not judged
+    #[arg(long, conflicts_with = "integrator")]
+    chain: bool,
     /// Follow many motions: a parameter over a range by equal steps, by equal ratios (from:to:count:log), or at the values of a
     /// list (NAME=a,b,c); repeated, over every combination
     #[arg(long, value_name = "NAME=from:to:count", value_parser = axis, allow_hyphen_values = true)]
@@ -66,9 +70,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => Problem::default(),
         Some(path) => from_file(path)?,
     };
-    if arguments.common.format == Format::Latex {
+    if arguments.common.format == Format::Latex && !(arguments.chain && arguments.sweep.is_empty()) {
         return Err(Failure::Usage(
-            "a simulation has no LaTeX form: choose --format text, json or csv".to_owned(),
+            "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv, or --chain"
+                .to_owned(),
         ));
     }
     if arguments.sweep.is_empty() && arguments.jobs.is_some() {
@@ -92,10 +97,7 @@ fn refused(error: SimulateError) -> Failure {
 fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let asked = Simulate::try_from(problem).map_err(refused)?;
     let (model, start) = asked.case.motion().map_err(|error| refused(error.into()))?;
-    let settings = Settings {
-        interrupt: Interrupt::by(&STOP),
-        ..asked.settings
-    };
+    let settings = settings(arguments, &asked);
     let duration = settings.duration;
     if let Some(late) = arguments.sample.iter().find(|sample| **sample > duration) {
         return Err(Failure::Refused(format!(
@@ -105,10 +107,12 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let follow =
         |integrator| simulate(&model, start, integrator, &settings).map_err(|error| Failure::refused(&error, None));
     let motion = match arguments.integrator {
+        _ if arguments.chain => follow(Integrator::Chain)?,
         Method::RungeKutta => follow(Integrator::RungeKutta)?,
         Method::Taylor | Method::Both => follow(Integrator::Taylor)?,
     };
     let judge = match arguments.integrator {
+        _ if arguments.chain => Some(follow(Integrator::Taylor)?),
         Method::Both => Some(follow(Integrator::RungeKutta)?),
         Method::Taylor | Method::RungeKutta => None,
     };
@@ -128,7 +132,8 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let text = match arguments.common.format {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
-        Format::Text | Format::Latex => text(&report),
+        Format::Text => text(&report),
+        Format::Latex => latex(&report),
     };
     let picture = arguments
         .common
@@ -144,9 +149,52 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         result: whole(text),
         picture,
         note,
-        verdict: Some(verdict(&motion, judge.as_ref(), arguments.common.tolerance)),
+        verdict: Some(match &judge {
+            Some(judge) if arguments.chain => chain_verdict(&motion, judge, arguments.common.tolerance),
+            judge => verdict(&motion, judge.as_ref(), arguments.common.tolerance),
+        }),
         partial: broken.is_some(),
     })
+}
+
+/// The settings of the file. A chain goes on to rest, unless the file says how long or nothing damps the swing.
+fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
+    let settings = Settings {
+        interrupt: Interrupt::by(&STOP),
+        ..asked.settings
+    };
+    let damped = asked
+        .case
+        .motion()
+        .is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
+    match arguments.chain && !asked.duration_given && (damped || !arguments.sweep.is_empty()) {
+        true => Settings {
+            duration: LONGEST_CHAIN,
+            stop_at_rest: true,
+            ..settings
+        },
+        false => settings,
+    }
+}
+
+/// How long a chain is followed to rest, in units of 1/omega.
+const LONGEST_CHAIN: f64 = 1e4;
+
+/// Without `--tolerance`: how far the rest time of a chain may be from that by integration, in parts of it.
+const CHAIN_TOLERANCE: f64 = 0.01;
+
+/// The rest time by the chain and by integration agree, or neither comes to rest and the motions are near.
+fn chain_verdict(motion: &Simulation, judge: &Simulation, tolerance: Option<f64>) -> Verdict {
+    let allowed = tolerance.unwrap_or(CHAIN_TOLERANCE);
+    let rest = motion.rest();
+    let agreed = match (rest.time, judge.rest().time) {
+        (Ok(found), Ok(truth)) => (found / truth - 1.0).abs() <= allowed,
+        (Err(_), Err(_)) => {
+            motion.difference(judge, 2001).displacement <= allowed * rest.amplitude.max(f64::MIN_POSITIVE)
+        }
+        _ => false,
+    };
+    Verdict::of(agreed && motion.stop.is_complete() && judge.stop.is_complete())
 }
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
@@ -162,7 +210,8 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
 }
 
 /// The motions of a sweep, the last parameter varying fastest, and how to follow them.
-fn motions(axes: &[Axis], problem: &Problem) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
+fn motions(arguments: &Arguments, problem: &Problem) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
+    let axes = arguments.sweep.as_slice();
     let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
     for axis in axes {
         if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name()) {
@@ -191,11 +240,7 @@ fn motions(axes: &[Axis], problem: &Problem) -> Result<(Vec<(Model, Start)>, Set
         }
         motions.push(case.motion().map_err(|error| refused(error.into()))?);
     }
-    let settings = Settings {
-        interrupt: Interrupt::by(&STOP),
-        ..asked.settings
-    };
-    Ok((motions, settings))
+    Ok((motions, settings(arguments, &asked)))
 }
 
 fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
@@ -208,11 +253,12 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     }
     if arguments.integrator != Method::Taylor || !arguments.sample.is_empty() {
         return Err(Failure::Usage(
-            "a sweep is done by Taylor series and reports one line a motion: leave out --integrator and --sample"
+            "a sweep is done by Taylor series, or with --chain by closed forms, and reports one line a motion: leave out \
+             --integrator and --sample"
                 .to_owned(),
         ));
     }
-    let (motions, settings) = motions(&arguments.sweep, problem)?;
+    let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();
     // Draws on standard error, and only where that is a terminal.
     let bar = if arguments.quiet {
@@ -223,10 +269,14 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
         bar.set_style(style);
     }
+    let route = match arguments.chain {
+        true => Integrator::Chain,
+        false => Integrator::Taylor,
+    };
     let progress = |done: usize| bar.inc(done as u64);
     let rows: Vec<Summary> = match arguments.jobs {
-        Some(threads) => sweep_on(usize::from(threads), &motions, &settings, progress),
-        None => sweep(&motions, &settings, progress),
+        Some(threads) => sweep_on(usize::from(threads), &motions, route, &settings, progress),
+        None => sweep(&motions, route, &settings, progress),
     }
     .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();

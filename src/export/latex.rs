@@ -46,7 +46,7 @@ fn constant(value: &Expr) -> String {
     }
 }
 
-fn scientific(value: f64) -> String {
+pub(super) fn scientific(value: f64) -> String {
     scientific_text(&decimal(value))
 }
 

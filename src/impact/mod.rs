@@ -109,8 +109,8 @@ pub use setup::{ContactLoss, Letters, Setup, SetupError};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, simulate, simulate_many};
 pub use simulation::{
-    ClosedForm, Contact, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece, REST_FRACTION, Regime,
-    Rest, Settings, Simulation, Stop, Turn,
+    ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece,
+    REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
 };
 pub use trial::{Attempt, ImpactError};
 pub use units::{Elastic, FIRST_YIELD, Modulus, PRINTED_CONTACT_TIME, Units};

@@ -5,13 +5,13 @@
 //! threads.
 //!
 //! ```
-//! use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+//! use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 //!
 //! let axis: Axis = "gamma=1e4:1e6:3:log".parse()?;
 //! assert_eq!(axis.values(), [1e4, 1e5, 1e6]);
 //! let start = Start { x: -1.5, velocity: 0.0 };
 //! let motions: Vec<_> = axis.values().iter().map(|&gamma| (Model { gamma, ..Model::default() }, start)).collect();
-//! let found = sweep(&motions, &Settings::default(), |_| ()).map_err(|(_, error)| error)?;
+//! let found = sweep(&motions, Integrator::Taylor, &Settings::default(), |_| ()).map_err(|(_, error)| error)?;
 //! assert!(found[0].deepest > found[2].deepest);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -25,8 +25,8 @@ use thiserror::Error;
 pub use axis::{Axis, AxisError, Spacing};
 
 use super::model::{Model, Start};
-use super::simulate::{SimulationError, simulate_many};
-use super::simulation::{Contact, NoRest, Settings, Simulation, Stop};
+use super::simulate::{SimulationError, simulate, simulate_many};
+use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
 
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
@@ -143,23 +143,25 @@ impl Summary {
     }
 }
 
-/// Follows every motion by Taylor series, on all threads of the current pool (on one without the feature `parallel`); `progress` hears how many more are done.
+/// Follows every motion, on all threads of the current pool (on one without the feature `parallel`); `progress` hears how many
+/// more are done.
 ///
 /// # Errors
 /// [`SimulationError`] and the number of the first motion that cannot begin.
 ///
 /// ```
-/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 ///
 /// let axis: Axis = "zeta=0.01:0.1:4".parse()?;
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions: Vec<_> = axis.values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
-/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let rows = sweep(&motions, Integrator::Taylor, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// assert!(rows[3].impacts < rows[0].impacts);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(
     motions: &[(Model, Start)],
+    integrator: Integrator,
     settings: &Settings,
     progress: impl Fn(usize) + Sync,
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
@@ -168,7 +170,8 @@ pub fn sweep(
         ..*settings
     };
     let run = |(chunk, motions): (usize, &[(Model, Start)])| {
-        let found = summaries(motions, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
+        let found =
+            summaries(motions, integrator, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
         progress(motions.len());
         Ok(found)
     };
@@ -184,10 +187,21 @@ pub fn sweep(
     Ok(summaries)
 }
 
-/// From motions to what came of each, several in one instruction stream.
-fn summaries(motions: &[(Model, Start)], settings: &Settings) -> Result<Vec<Summary>, (usize, SimulationError)> {
-    let runs = simulate_many(motions, settings)?;
-    Ok(runs.iter().map(Summary::of).collect())
+/// From motions to what came of each: by Taylor series several in one instruction stream.
+fn summaries(
+    motions: &[(Model, Start)],
+    integrator: Integrator,
+    settings: &Settings,
+) -> Result<Vec<Summary>, (usize, SimulationError)> {
+    if integrator == Integrator::Taylor {
+        let runs = simulate_many(motions, settings)?;
+        return Ok(runs.iter().map(Summary::of).collect());
+    }
+    let one = |(number, (model, start)): (usize, &(Model, Start))| {
+        let run = simulate(model, *start, integrator, settings).map_err(|error| (number, error))?;
+        Ok(Summary::of(&run))
+    };
+    motions.iter().enumerate().map(one).collect()
 }
 
 /// The same on so many threads.
@@ -196,7 +210,7 @@ fn summaries(motions: &[(Model, Start)], settings: &Settings) -> Result<Vec<Summ
 /// As [`sweep`].
 ///
 /// ```
-/// use lindstedt::impact::{Case, Parameter, Settings, sweep::{sweep, sweep_on}};
+/// use lindstedt::impact::{Case, Integrator, Parameter, Settings, sweep::{sweep, sweep_on}};
 ///
 /// let mut case = Case { zeta: 0.05, ..Case::default() };
 /// let mut motions = Vec::new();
@@ -205,20 +219,21 @@ fn summaries(motions: &[(Model, Start)], settings: &Settings) -> Result<Vec<Summ
 ///     motions.push(case.motion()?);
 /// }
 /// let settings = Settings::default();
-/// let alone = sweep_on(1, &motions, &settings, |_done| {}).map_err(|(_, error)| error)?;
-/// assert_eq!(alone, sweep(&motions, &settings, |_done| {}).map_err(|(_, error)| error)?);
+/// let alone = sweep_on(1, &motions, Integrator::Taylor, &settings, |_done| {}).map_err(|(_, error)| error)?;
+/// assert_eq!(alone, sweep(&motions, Integrator::Taylor, &settings, |_done| {}).map_err(|(_, error)| error)?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[cfg(feature = "parallel")]
 pub fn sweep_on(
     threads: usize,
     motions: &[(Model, Start)],
+    integrator: Integrator,
     settings: &Settings,
     progress: impl Fn(usize) + Sync + Send,
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| sweep(motions, settings, progress)),
+        Ok(pool) => pool.install(|| sweep(motions, integrator, settings, progress)),
         // Without threads of its own it runs on those there are.
-        Err(_) => sweep(motions, settings, progress),
+        Err(_) => sweep(motions, integrator, settings, progress),
     }
 }

@@ -12,6 +12,8 @@ pub struct Simulate {
     pub case: Case,
     /// Duration and accuracy.
     pub settings: Settings,
+    /// Whether the file says for how long.
+    pub duration_given: bool,
     /// Where gamma comes from.
     pub gamma_source: &'static str,
     /// Where mu comes from.
@@ -147,6 +149,7 @@ impl Problem {
         self.check_pairs(gives)?;
         Ok(Simulate {
             settings,
+            duration_given: self.gives("[run] duration"),
             gamma_source: self.stiffness_source(&case.design),
             mu_source: match case.contact_damping {
                 _ if !ContactDamping::FORMS.into_iter().any(gives) => "default",

@@ -2,6 +2,7 @@
 //! a tighter tolerance.
 
 mod books;
+mod chain;
 mod contact;
 mod equations;
 mod exact;

@@ -52,12 +52,12 @@ fn several_at_a_time_are_bit_for_bit_what_each_is_alone() {
 fn a_sweep_is_the_same_on_any_number_of_threads() {
     let motions = crowd(400);
     let options = Settings::default();
-    let one = sweep_on(1, &motions, &options, |_| ()).expect("they begin");
+    let one = sweep_on(1, &motions, Integrator::Taylor, &options, |_| ()).expect("they begin");
     let counted = std::sync::atomic::AtomicUsize::new(0);
     let count = |done: usize| {
         counted.fetch_add(done, std::sync::atomic::Ordering::Relaxed);
     };
-    let many = sweep_on(5, &motions, &options, count).expect("they begin");
+    let many = sweep_on(5, &motions, Integrator::Taylor, &options, count).expect("they begin");
     assert_eq!(one, many);
     assert_eq!(counted.into_inner(), motions.len());
 }

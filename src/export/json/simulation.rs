@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Kind;
 use crate::export::simulation::{COMPARED, Report, friction, notes};
-use crate::impact::{self, Friction, Integrator, Side};
+use crate::impact::{self, ClosedForm, Friction, Integrator, Piece, Regime, Side};
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of 1/omega of small swings,
 /// sqrt(L/g), energies in units of m g L.
@@ -24,6 +24,11 @@ pub struct SimulationDocument {
     /// The integrator of the run: `taylor` with the contact in a variable in which it is analytic, or `runge-kutta` phase by phase.
     #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
     pub integrator: String,
+    /// How the motion was found: by `integration`, or as a `chain` of closed forms.
+    #[schemars(extend("enum" = ["integration", "chain"]))]
+    pub route: String,
+    /// The phases of a chain, in time; null where the motion was integrated.
+    pub phases: Option<Vec<ChainPhase>>,
     /// The state at the end of the run.
     pub final_state: State,
     /// The states at the times that were asked for, in that order.
@@ -50,7 +55,7 @@ pub struct SimulationDocument {
     pub complete: bool,
     /// The number of steps of the integrator.
     pub steps: usize,
-    /// The same run by the other integrator; null where it was not asked for.
+    /// The same run by the other integrator, or of a chain by Taylor series; null where it was not asked for.
     pub judge: Option<Judge>,
     /// What should be known beside the numbers, in words.
     pub notes: Vec<String>,
@@ -268,6 +273,105 @@ pub struct Impact {
     /// Which barrier it is.
     #[schemars(extend("enum" = [Side::Left.name(), Side::Right.name()]))]
     pub side: String,
+    /// How far it is from the same contact by integration; null unless it is of a chain that was judged, and the integration has it.
+    pub error: Option<ImpactError>,
+}
+
+/// How far a contact of a chain is from the same one by integration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ImpactError {
+    /// The difference of the times of touch, in units of time.
+    pub entry_time: f64,
+    /// The error of the speed of touch, as a fraction of it.
+    pub speed_in: f64,
+    /// The error of the greatest depth, as a fraction of it.
+    pub penetration: f64,
+    /// The error of the duration, as a fraction of it; null where a run ends before.
+    pub duration: Option<f64>,
+    /// The error of the speed of release, as a fraction of it; null where a run ends before.
+    pub speed_out: Option<f64>,
+}
+
+/// A phase of a chain: a stretch of time with one formula.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ChainPhase {
+    /// What happens: `swing`, `contact`, `rest` where dry friction holds the pendulum, or `integrated` where there is no formula.
+    #[schemars(extend("enum" = ["swing", "contact", "rest", "integrated"]))]
+    pub name: String,
+    /// When it begins, in units of time.
+    pub start: f64,
+    /// When it ends, in units of time.
+    pub end: f64,
+    /// x in radians as a function of t, the time since the beginning of the phase; null where there is no formula.
+    pub closed_form: Option<String>,
+    /// The numbers of the formula; null where there is none.
+    pub coefficients: Option<ChainCoefficients>,
+}
+
+/// The numbers of the formula of a phase.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(tag = "form", rename_all = "lowercase")]
+#[serde(tag = "form", rename_all = "lowercase")]
+pub enum ChainCoefficients {
+    /// x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the parameter k^2.
+    Swing {
+        /// 1 or -1.
+        sign: f64,
+        /// The sine of half the amplitude at the beginning.
+        modulus: f64,
+        /// The rate of decay, per unit of time.
+        rate: f64,
+        /// The rate of the argument of sn, per unit of time.
+        speed: f64,
+        /// The argument of sn at the beginning.
+        phase: f64,
+        /// The parameter of sn, the square of its modulus.
+        parameter: f64,
+    },
+    /// x(t) = barrier + sum over j from 1 of sines_j sin(j pi t/duration).
+    Contact {
+        /// Where the barrier stands, in radians.
+        barrier: f64,
+        /// The duration of the contact, in units of time.
+        duration: f64,
+        /// The amplitudes of the sines, in radians.
+        sines: [f64; 3],
+    },
+}
+
+impl From<ClosedForm> for ChainCoefficients {
+    fn from(form: ClosedForm) -> Self {
+        match form {
+            ClosedForm::Swing {
+                sign,
+                modulus,
+                rate,
+                speed,
+                phase,
+                parameter,
+            } => Self::Swing {
+                sign,
+                modulus,
+                rate,
+                speed,
+                phase,
+                parameter,
+            },
+            ClosedForm::Contact {
+                side,
+                barrier,
+                depth,
+                duration,
+                sines,
+            } => Self::Contact {
+                barrier,
+                duration,
+                sines: sines.map(|sine| side.sign() * depth * sine),
+            },
+        }
+    }
 }
 
 /// Energies and works over the run, in units of m g L.
@@ -369,9 +473,15 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         dissipation: report.dissipation.map(Dissipation::from),
         time_unit: report.units.map(impact::Units::time),
         integrator: integrator(motion.integrator).to_owned(),
+        route: match motion.integrator {
+            Integrator::Chain => "chain",
+            Integrator::Taylor | Integrator::RungeKutta => "integration",
+        }
+        .to_owned(),
+        phases: (motion.integrator == Integrator::Chain).then(|| motion.path.pieces().iter().map(phase).collect()),
         final_state: final_state(motion),
         samples: report.samples.iter().map(sample).collect(),
-        impacts: motion.impacts.iter().map(impact).collect(),
+        impacts: impacts(report),
         rest_time: rest.time.ok(),
         rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
         rest_reason: rest.time.err().map(|reason| reason.to_string()),
@@ -403,6 +513,45 @@ pub fn simulation(report: &Report) -> SimulationDocument {
     }
 }
 
+/// Every contact; of a chain that is judged, with its errors.
+fn impacts(report: &Report) -> Vec<Impact> {
+    let motion = report.motion;
+    let judge = report.judge.filter(|_| motion.integrator == Integrator::Chain);
+    let errors = judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
+    let errors = errors.into_iter().chain(std::iter::repeat(None));
+    let error = |error: impact::ContactDeviation| ImpactError {
+        entry_time: error.entry_time,
+        speed_in: error.speed_in,
+        penetration: error.penetration,
+        duration: error.duration,
+        speed_out: error.speed_out,
+    };
+    let impacts = motion.impacts.iter().zip(errors);
+    impacts
+        .map(|(contact, found)| Impact {
+            error: found.map(error),
+            ..impact(contact)
+        })
+        .collect()
+}
+
+fn phase(piece: &Piece) -> ChainPhase {
+    let form = piece.closed_form();
+    ChainPhase {
+        name: match (form, piece.regime) {
+            (Some(ClosedForm::Swing { .. }), _) => "swing",
+            (Some(_), _) => "contact",
+            (None, Regime::Stuck) => "rest",
+            (None, _) => "integrated",
+        }
+        .to_owned(),
+        start: piece.start,
+        end: piece.end,
+        closed_form: form.map(|form| form.to_string()),
+        coefficients: form.map(ChainCoefficients::from),
+    }
+}
+
 fn impact(impact: &impact::Contact) -> Impact {
     Impact {
         entry_time: impact.entry_time,
@@ -413,6 +562,7 @@ fn impact(impact: &impact::Contact) -> Impact {
         restitution: impact.restitution,
         energy_lost: impact.energy_lost,
         side: impact.side.name().to_owned(),
+        error: None,
     }
 }
 

@@ -99,12 +99,12 @@ impl Serialize for Streamed<'_> {
 ///
 /// ```
 /// use lindstedt::export::{json, simulation::SweepReport};
-/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
-/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let rows = sweep(&motions, Integrator::Taylor, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// let mut text = Vec::new();
 /// json::sweep(&report, &mut text)?;

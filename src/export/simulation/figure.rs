@@ -8,8 +8,8 @@ use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure, power_of_ten, written};
 use super::{Report, SweepReport};
 use crate::decimal::{decimal, significant};
-use crate::impact::Simulation;
 use crate::impact::sweep::{Axis, Spacing, Summary};
+use crate::impact::{Integrator, Simulation};
 
 /// Points of a curve, equally spaced in time; the turning points come on top.
 const POINTS: usize = 1600;
@@ -53,15 +53,24 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
 pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let motion = report.motion;
     let model = &motion.model;
-    let (own, judge) = (Drawn::of(motion), report.judge.map(Drawn::of));
+    let own_name = match motion.integrator {
+        Integrator::Chain => "closed forms",
+        Integrator::Taylor | Integrator::RungeKutta => "motion",
+    };
+    let judge_name = match motion.integrator {
+        Integrator::Chain => "integration",
+        Integrator::Taylor | Integrator::RungeKutta => "Runge-Kutta",
+    };
+    let own = Drawn::of(own_name, motion);
+    let judge = report.judge.map(|judge| Drawn::of(judge_name, judge));
     let style = match judge {
         Some(_) => CurveStyle::FORMULA,
         None => CurveStyle::DIFFERENCE,
     };
     let curves = |of: fn(&Drawn) -> &Points| {
         let judge = judge.as_ref();
-        let judge = judge.map(|judge| curve("Runge-Kutta", of(judge), CurveStyle::RUNGE_KUTTA));
-        judge.into_iter().chain([curve("motion", of(&own), style)]).collect()
+        let judge = judge.map(|judge| curve(judge.name, of(judge), CurveStyle::RUNGE_KUTTA));
+        judge.into_iter().chain([curve(own.name, of(&own), style)]).collect()
     };
     let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
@@ -120,6 +129,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
 
 /// A motion as it is drawn.
 struct Drawn {
+    name: &'static str,
     /// x against t.
     time: Points,
     /// x' against x.
@@ -127,9 +137,10 @@ struct Drawn {
 }
 
 impl Drawn {
-    fn of(motion: &Simulation) -> Self {
+    fn of(name: &'static str, motion: &Simulation) -> Self {
         let points = points(motion);
         Self {
+            name,
             time: points.iter().map(|&(t, x, _)| (t, x)).collect(),
             phase: points.iter().map(|&(_, x, velocity)| (x, velocity)).collect(),
         }
@@ -284,12 +295,12 @@ fn axis_label(axis: &Axis) -> String {
 ///
 /// ```
 /// use lindstedt::export::simulation::{SweepReport, figure};
-/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
-/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let rows = sweep(&motions, Integrator::Taylor, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// assert!(figure::sweep(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -4,14 +4,17 @@
 //! In: a [`Report`] of one motion or a [`SweepReport`] of many. Out: text in one format; that of a sweep goes to a writer a line
 //! at a time. Angles are in rad, times in units of 1/omega, energies in units of m g L, as in the motion itself.
 
+mod chain;
 mod columns;
 mod csv;
 #[cfg(feature = "plot")]
 pub mod figure;
+mod latex;
 mod text;
 
 pub use columns::{Column, columns};
 pub use csv::{simulation as csv, sweep as sweep_csv};
+pub use latex::simulation as latex;
 pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::decimal::decimal;

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::io;
 
-use super::{COMPARED, Report, SweepReport, friction, notes};
+use super::{COMPARED, Report, SweepReport, chain, friction, notes};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::Axis;
 use crate::impact::{Baseline, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest, Simulation, Units};
 
 /// Impacts that are listed; a long run has thousands.
-const LISTED: usize = 24;
+pub(super) const LISTED: usize = 24;
 
 /// One run.
 ///
@@ -33,9 +33,18 @@ pub fn simulation(report: &Report) -> String {
             report.units,
         ));
     }
-    impacts(&mut text, motion);
+    match (motion.integrator, report.judge) {
+        (Integrator::Chain, Some(judge)) => chain::impacts(&mut text, motion, judge),
+        _ => impacts(&mut text, motion),
+    }
+    if motion.integrator == Integrator::Chain {
+        chain::phases(&mut text, motion);
+    }
     rest(&mut text, report);
-    energy(&mut text, motion);
+    // The formulas of a chain know the energy at the ends of each phase; their own velocities do not close its books.
+    if motion.integrator != Integrator::Chain {
+        energy(&mut text, motion);
+    }
     if !report.samples.is_empty() {
         let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
         for &t in report.samples {
@@ -58,11 +67,15 @@ pub fn simulation(report: &Report) -> String {
         let difference = motion.difference(judge, COMPARED);
         let _ = writeln!(
             text,
-            "\nBeside {}, {} steps\n  largest difference in x {}, in x' {}, until t = {}",
+            "\nBeside {}, {} steps\n  largest difference in x {}{}, until t = {}",
             method(judge),
             judge.steps,
             size(difference.displacement),
-            size(difference.velocity),
+            // Of a chain it would be that of two touches a moment apart.
+            match motion.integrator {
+                Integrator::Chain => String::new(),
+                _ => format!(", in x' {}", size(difference.velocity)),
+            },
             decimal(difference.until)
         );
         let _ = writeln!(
@@ -300,6 +313,9 @@ fn rest(text: &mut String, report: &Report) {
         ),
         Err(reason) => writeln!(text, "  rest time      none: {reason}"),
     };
+    if let (Integrator::Chain, Some(judge)) = (report.motion.integrator, report.judge) {
+        let _ = writeln!(text, "  integrated     {}", chain::beside(rest.time, judge.rest().time));
+    }
     if let Some(last) = rest.last_crossing {
         let _ = writeln!(text, "  last crossing  {}", decimal(last));
     }
@@ -375,12 +391,12 @@ fn energy(text: &mut String, motion: &Simulation) {
 ///
 /// ```
 /// use lindstedt::export::simulation::{SweepReport, sweep_text};
-/// use lindstedt::impact::{Model, Settings, Start, sweep::{Axis, sweep}};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 ///
 /// let axes: [Axis; 1] = ["zeta=0.02:0.1:3".parse()?];
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions: Vec<_> = axes[0].values().iter().map(|&zeta| (Model { zeta, ..Model::default() }, start)).collect();
-/// let rows = sweep(&motions, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
+/// let rows = sweep(&motions, Integrator::Taylor, &Settings::default(), |_done| {}).map_err(|(_, error)| error)?;
 /// let report = SweepReport { axes: &axes, rows: &rows };
 /// let mut text = Vec::new();
 /// sweep_text(&report, &mut text)?;

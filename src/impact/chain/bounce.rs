@@ -61,6 +61,9 @@ static NUMBERS: LazyLock<Numbers> = LazyLock::new(|| {
 /// The share of the force of the swing in holding the pendulum against the barrier beyond which a contact is no bounce: there it leans.
 const LEANS: f64 = -0.3;
 
+/// The greatest depth, rad, at which the force of the swing may count as constant.
+const DEEPEST: f64 = 0.3;
+
 /// A barrier and what counts while it is touched.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Barrier {
@@ -107,14 +110,15 @@ impl Barrier {
         })
     }
 
-    /// The contact that begins with this speed, positive; nothing where the pendulum leans on the barrier rather than leaves it.
+    /// The contact that begins with this speed, positive; nothing where the pendulum leans on the barrier rather
+    /// than leaves it, or goes deep.
     pub fn bounce(&self, speed: f64) -> Option<Bounce> {
         let product = self.damping * speed;
         let excess = hunt_crossley::excess(product);
         let work = 0.5 * speed * speed * (1.0 + excess);
         let depth = self.depth(work);
         let share = self.push * depth / work;
-        if share < LEANS {
+        if share.is_nan() || share < LEANS || depth > DEEPEST {
             return None;
         }
         let Numbers {

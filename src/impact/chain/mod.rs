@@ -15,7 +15,7 @@
 //! of even order cancel: one swing errs by the third power of zeta T.
 //!
 //! In: a model, a start, settings. Out: a [`Simulation`] like any other, whose pieces are [`ClosedForm`]s. What has none is integrated,
-//! and said: from there on, where the pendulum comes to lean on a barrier or sticks on its way.
+//! and said: from there on, where the pendulum comes to lean on a barrier, goes deep into a soft one, or sticks on its way.
 
 mod bounce;
 mod swing;

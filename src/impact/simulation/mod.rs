@@ -331,6 +331,21 @@ pub struct Simulation {
     pub steps: usize,
 }
 
+/// How far a contact is from the same one of the true motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactDeviation {
+    /// Time of the touch, in units of 1/omega: its difference.
+    pub entry_time: f64,
+    /// Speed of the touch, in parts of the true one.
+    pub speed_in: f64,
+    /// Greatest depth, in parts of the true one.
+    pub penetration: f64,
+    /// Duration, in parts of the true one; nothing where one of the runs ends before.
+    pub duration: Option<f64>,
+    /// Speed of the release, in parts of the true one; nothing likewise.
+    pub speed_out: Option<f64>,
+}
+
 /// How two motions differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
@@ -359,6 +374,25 @@ impl Simulation {
             }
         }
         difference
+    }
+
+    /// The contacts beside those of the true motion, in order; nothing for one that the true motion does not have.
+    pub fn contact_deviations(&self, truth: &Self) -> Vec<Option<ContactDeviation>> {
+        let relative = |found: f64, truth: f64| found / truth - 1.0;
+        let error = |(index, found): (usize, &Contact)| {
+            let truth = truth.impacts.get(index).filter(|truth| truth.side == found.side)?;
+            let duration = |contact: &Contact| Some(contact.exit_time? - contact.entry_time);
+            let both =
+                |found: Option<f64>, truth: Option<f64>| Some(relative(found?, truth?)).filter(|e| e.is_finite());
+            Some(ContactDeviation {
+                entry_time: found.entry_time - truth.entry_time,
+                speed_in: relative(found.speed_in, truth.speed_in),
+                penetration: relative(found.penetration, truth.penetration),
+                duration: both(duration(found), duration(truth)),
+                speed_out: both(found.speed_out, truth.speed_out),
+            })
+        };
+        self.impacts.iter().enumerate().map(error).collect()
     }
 
     /// Whether a barrier was touched at all.

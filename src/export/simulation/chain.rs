@@ -1,0 +1,115 @@
+//! What a chain of closed forms says beyond a simulation: its formulas, and how far each contact is from the integrated one.
+
+use std::fmt::Write as _;
+
+use super::text::LISTED;
+use crate::decimal::{decimal, significant};
+use crate::export::text::percent;
+use crate::impact::{ContactDeviation, NoRest, Piece, Regime, Simulation};
+
+/// The contacts, each with its errors.
+pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation) {
+    let count = motion.impacts.len();
+    let _ = writeln!(
+        text,
+        "\nImpacts: {count}, {} by integration; below each number its error",
+        judge.impacts.len()
+    );
+    if count == 0 {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}  {:>11}",
+        "", "side", "entry", "duration", "speed in", "speed out", "penetration", "restitution"
+    );
+    let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
+    for (index, (impact, error)) in motion.impacts.iter().zip(motion.contact_deviations(judge)).enumerate() {
+        if index == LISTED && index + 1 < count {
+            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - index);
+            break;
+        }
+        let _ = writeln!(
+            text,
+            "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}  {:>11}",
+            index + 1,
+            impact.side.name(),
+            significant(impact.entry_time, 8),
+            optional(impact.exit_time.map(|exit| exit - impact.entry_time)),
+            decimal(impact.speed_in),
+            optional(impact.speed_out),
+            decimal(impact.penetration),
+            optional(impact.restitution)
+        );
+        let _ = match error {
+            Some(ContactDeviation {
+                entry_time,
+                speed_in,
+                penetration,
+                duration,
+                speed_out,
+            }) => writeln!(
+                text,
+                "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}",
+                "",
+                "",
+                format!("{entry_time:+.1e}"),
+                duration.map_or("-".to_owned(), percent),
+                percent(speed_in),
+                speed_out.map_or("-".to_owned(), percent),
+                percent(penetration)
+            ),
+            None => writeln!(text, "  {:>4}  {:5}  not there by integration", "", ""),
+        };
+    }
+}
+
+/// The formula of every phase.
+pub(super) fn phases(text: &mut String, motion: &Simulation) {
+    let pieces = motion.path.pieces();
+    let _ = writeln!(
+        text,
+        "\nPhases: {}; x(t) with t from the beginning of each, sn(u, m) Jacobi's with the parameter m = k^2",
+        pieces.len()
+    );
+    let _ = writeln!(text, "  {:>12}  {:>12}", "from", "to");
+    for (index, piece) in pieces.iter().enumerate() {
+        if index == 2 * LISTED && index + 1 < pieces.len() {
+            let _ = writeln!(
+                text,
+                "   ... {} more, all of them in --format json",
+                pieces.len() - index
+            );
+            break;
+        }
+        let _ = writeln!(
+            text,
+            "  {:>12}  {:>12}  {}",
+            significant(piece.start, 8),
+            significant(piece.end, 8),
+            formula(piece)
+        );
+    }
+}
+
+/// The formula of one phase, or what takes its place.
+pub(super) fn formula(piece: &Piece) -> String {
+    match (piece.closed_form(), piece.regime) {
+        (Some(form), _) => format!("x(t) = {form}"),
+        (None, Regime::Stuck) => "at rest".to_owned(),
+        (None, _) => "by Taylor series: this part has no closed form".to_owned(),
+    }
+}
+
+/// A rest time beside that of the chain.
+pub(super) fn beside(chain: Result<f64, NoRest>, integrated: Result<f64, NoRest>) -> String {
+    match (chain, integrated) {
+        (Ok(chain), Ok(truth)) => format!(
+            "{}, by which the chain errs {}",
+            decimal(truth),
+            percent(chain / truth - 1.0)
+        ),
+        (_, Ok(truth)) => decimal(truth),
+        (_, Err(reason)) => format!("none: {reason}"),
+    }
+}

@@ -1,0 +1,135 @@
+//! A chain of closed forms as LaTeX: its contacts with their errors, and the formula of every phase.
+
+use std::fmt::Write as _;
+
+use super::Report;
+use crate::decimal::significant;
+use crate::export::latex::scientific;
+use crate::impact::{ClosedForm, Piece};
+
+/// Lines of a block of formulas: a page takes no more, and a block does not break.
+const LINES: usize = 30;
+
+/// The contacts and the phases of a chain.
+///
+/// ```
+/// use lindstedt::export::simulation::{Report, latex};
+/// use lindstedt::impact::{Case, Integrator, Settings, simulate};
+///
+/// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
+/// let motion = simulate(&model, start, Integrator::Chain, &Settings::default())?;
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[], baseline: None, dissipation: None, units: None };
+/// assert!(latex(&report).contains("\\operatorname{sn}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn simulation(report: &Report) -> String {
+    let motion = report.motion;
+    let mut text = String::new();
+    if !motion.impacts.is_empty() {
+        text.push_str(&impacts(report));
+        text.push('\n');
+    }
+    text.push_str("% In each line t counts from the beginning of the phase; the second argument of sn is m = k^2.\n");
+    for pieces in motion.path.pieces().chunks(LINES) {
+        let lines: Vec<String> = pieces.iter().map(phase).collect();
+        let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
+    }
+    let _ = match motion.rest().time {
+        Ok(time) => writeln!(text, "\\[ t_{{\\text{{rest}}}} = {} \\]", scientific(time)),
+        Err(reason) => writeln!(
+            text,
+            "\\[ \\text{{no rest time: {reason}}} \\]",
+            reason = reason.to_string().replace('%', "\\%")
+        ),
+    };
+    text
+}
+
+fn impacts(report: &Report) -> String {
+    let motion = report.motion;
+    let errors = report
+        .judge
+        .map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
+    let judged = !errors.is_empty();
+    let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
+    let mut text = match judged {
+        true => {
+            "\\begin{tabular}{rrrrrrr}\nimpact & $t$ & error & speed in & error & penetration & error \\\\\n\\hline\n"
+        }
+        false => "\\begin{tabular}{rrrr}\nimpact & $t$ & speed in & penetration \\\\\n\\hline\n",
+    }
+    .to_owned();
+    let mut errors = errors.into_iter();
+    for (number, impact) in (1..).zip(&motion.impacts) {
+        let cell = |value: f64, error: Option<String>| match judged {
+            true => format!(" & ${}$ & {}", scientific(value), error.unwrap_or_default()),
+            false => format!(" & ${}$", scientific(value)),
+        };
+        let error = errors.next().flatten();
+        let _ = writeln!(
+            text,
+            "{number}{}{}{} \\\\",
+            cell(
+                impact.entry_time,
+                error.map(|e| format!("${}$", scientific((1e6 * e.entry_time).round() / 1e6)))
+            ),
+            cell(impact.speed_in, error.map(|e| percent(e.speed_in))),
+            cell(impact.penetration, error.map(|e| percent(e.penetration)))
+        );
+    }
+    text.push_str("\\end{tabular}\n");
+    text
+}
+
+fn phase(piece: &Piece) -> String {
+    let span = format!(
+        "&{} \\le t_0 + t \\le {}: & ",
+        significant(piece.start, 6),
+        significant(piece.end, 6)
+    );
+    let signed = |value: f64| match value < 0.0 {
+        true => format!(" - {}", scientific(-value)),
+        false => format!(" + {}", scientific(value)),
+    };
+    let Some(form) = piece.closed_form() else {
+        return format!("{span}&\\text{{no closed form}}");
+    };
+    let formula = match form {
+        ClosedForm::Swing {
+            sign,
+            modulus,
+            rate,
+            speed,
+            phase,
+            parameter,
+        } => {
+            let minus = if sign < 0.0 { "-" } else { "" };
+            let decay = match rate == 0.0 {
+                true => String::new(),
+                false => format!("\\,e^{{{} t}}", scientific(-rate)),
+            };
+            format!(
+                "{minus}2 \\arcsin\\left({}{decay} \\operatorname{{sn}}\\left({} t{},\\, {}\\right)\\right)",
+                scientific(modulus),
+                scientific(speed),
+                signed(phase),
+                scientific(parameter)
+            )
+        }
+        ClosedForm::Contact {
+            side,
+            barrier,
+            depth,
+            duration,
+            sines,
+        } => {
+            let wave = std::f64::consts::PI / duration;
+            let terms = (1..).zip(sines).map(|(j, sine)| {
+                let amplitude = signed(side.sign() * depth * sine);
+                format!("{amplitude} \\sin({} t)", scientific(f64::from(j) * wave))
+            });
+            format!("{}{}", scientific(barrier), terms.collect::<String>())
+        }
+    };
+    format!("{span}x &= {formula}")
+}

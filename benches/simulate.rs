@@ -53,12 +53,41 @@ fn damped() -> (Vec<(Model, Start)>, Settings) {
     (motions, options)
 }
 
+/// The paper's design with zeta = 0.02 and mu/gamma = 0.1, to rest: what a study asks of each of its designs.
+fn to_rest() -> (Vec<(Model, Start)>, Settings) {
+    let (_, options) = damped();
+    let model = Model {
+        zeta: 0.02,
+        ..Model::default()
+    };
+    let model = Model {
+        mu: 0.1 * model.gamma,
+        ..model
+    };
+    let options = Settings {
+        relative_tolerance: 1e-12,
+        absolute_tolerance: 1e-14,
+        rest_energy: None,
+        stop_at_rest: true,
+        ..options
+    };
+    (vec![(model, REST)], options)
+}
+
 fn workloads(criterion: &mut Criterion) {
-    for (name, (motions, options)) in [("conservative", conservative()), ("damped", damped())] {
+    for (name, (motions, options)) in [
+        ("conservative", conservative()),
+        ("damped", damped()),
+        ("to rest", to_rest()),
+    ] {
         criterion.bench_function(&format!("{name}, several at a time"), |bencher| {
             bencher.iter(|| simulate_many(&motions, &options));
         });
-        for (method, integrator) in [("Taylor", Integrator::Taylor), ("Runge-Kutta", Integrator::RungeKutta)] {
+        for (method, integrator) in [
+            ("Taylor", Integrator::Taylor),
+            ("Runge-Kutta", Integrator::RungeKutta),
+            ("chain", Integrator::Chain),
+        ] {
             criterion.bench_function(&format!("{name}, one by one, {method}"), |bencher| {
                 bencher.iter(|| {
                     for (model, start) in &motions {

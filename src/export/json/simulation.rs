@@ -306,72 +306,40 @@ pub struct ChainPhase {
     pub end: f64,
     /// x in radians as a function of t, the time since the beginning of the phase; null where there is no formula.
     pub closed_form: Option<String>,
-    /// The numbers of the formula; null where there is none.
-    pub coefficients: Option<ChainCoefficients>,
+    /// The numbers of the formula of a swing; null for another phase.
+    pub swing: Option<SwingForm>,
+    /// The numbers of the formula of a contact; null for another phase.
+    pub contact: Option<ContactForm>,
 }
 
-/// The numbers of the formula of a phase.
+/// x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the parameter k^2.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(tag = "form", rename_all = "lowercase")]
-#[serde(tag = "form", rename_all = "lowercase")]
-pub enum ChainCoefficients {
-    /// x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the parameter k^2.
-    Swing {
-        /// 1 or -1.
-        sign: f64,
-        /// The sine of half the amplitude at the beginning.
-        modulus: f64,
-        /// The rate of decay, per unit of time.
-        rate: f64,
-        /// The rate of the argument of sn, per unit of time.
-        speed: f64,
-        /// The argument of sn at the beginning.
-        phase: f64,
-        /// The parameter of sn, the square of its modulus.
-        parameter: f64,
-    },
-    /// x(t) = barrier + sum over j from 1 of sines_j sin(j pi t/duration).
-    Contact {
-        /// Where the barrier stands, in radians.
-        barrier: f64,
-        /// The duration of the contact, in units of time.
-        duration: f64,
-        /// The amplitudes of the sines, in radians.
-        sines: [f64; 3],
-    },
+#[schemars(deny_unknown_fields)]
+pub struct SwingForm {
+    /// 1 or -1.
+    pub sign: f64,
+    /// The sine of half the amplitude at the beginning, dimensionless.
+    pub modulus: f64,
+    /// The rate of decay, per unit of time.
+    pub rate: f64,
+    /// The rate of the argument of sn, per unit of time.
+    pub speed: f64,
+    /// The argument of sn at the beginning, dimensionless.
+    pub phase: f64,
+    /// The parameter of sn, the square of its modulus, dimensionless.
+    pub parameter: f64,
 }
 
-impl From<ClosedForm> for ChainCoefficients {
-    fn from(form: ClosedForm) -> Self {
-        match form {
-            ClosedForm::Swing {
-                sign,
-                modulus,
-                rate,
-                speed,
-                phase,
-                parameter,
-            } => Self::Swing {
-                sign,
-                modulus,
-                rate,
-                speed,
-                phase,
-                parameter,
-            },
-            ClosedForm::Contact {
-                side,
-                barrier,
-                depth,
-                duration,
-                sines,
-            } => Self::Contact {
-                barrier,
-                duration,
-                sines: sines.map(|sine| side.sign() * depth * sine),
-            },
-        }
-    }
+/// x(t) = barrier + the sum over j from 1 of sines_j sin(j pi t/duration).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ContactForm {
+    /// Where the barrier stands, in radians.
+    pub barrier: f64,
+    /// The duration of the contact, in units of time.
+    pub duration: f64,
+    /// The amplitudes of the sines, in radians.
+    pub sines: Vec<f64>,
 }
 
 /// Energies and works over the run, in units of m g L.
@@ -537,18 +505,54 @@ fn impacts(report: &Report) -> Vec<Impact> {
 
 fn phase(piece: &Piece) -> ChainPhase {
     let form = piece.closed_form();
-    ChainPhase {
-        name: match (form, piece.regime) {
-            (Some(ClosedForm::Swing { .. }), _) => "swing",
-            (Some(_), _) => "contact",
-            (None, Regime::Stuck) => "rest",
-            (None, _) => "integrated",
+    let empty = ChainPhase {
+        name: match piece.regime {
+            Regime::Stuck => "rest",
+            _ => "integrated",
         }
         .to_owned(),
         start: piece.start,
         end: piece.end,
         closed_form: form.map(|form| form.to_string()),
-        coefficients: form.map(ChainCoefficients::from),
+        swing: None,
+        contact: None,
+    };
+    match form {
+        None => empty,
+        Some(ClosedForm::Swing {
+            sign,
+            modulus,
+            rate,
+            speed,
+            phase,
+            parameter,
+        }) => ChainPhase {
+            name: "swing".to_owned(),
+            swing: Some(SwingForm {
+                sign,
+                modulus,
+                rate,
+                speed,
+                phase,
+                parameter,
+            }),
+            ..empty
+        },
+        Some(ClosedForm::Contact {
+            side,
+            barrier,
+            depth,
+            duration,
+            sines,
+        }) => ChainPhase {
+            name: "contact".to_owned(),
+            contact: Some(ContactForm {
+                barrier,
+                duration,
+                sines: sines.map(|sine| side.sign() * depth * sine).to_vec(),
+            }),
+            ..empty
+        },
     }
 }
 

@@ -348,15 +348,26 @@ fn rest(text: &mut String, report: &Report) {
         gain,
     }) = geometry
     {
-        let rested = match *at_rest == 1.0 {
-            true => String::new(),
-            false => format!("/{}", decimal(*at_rest)),
+        let (letters, numbers) = match *at_rest == 1.0 {
+            true => ("S/Sc".to_owned(), decimal(*first_swing)),
+            false => (
+                "(S/Sc)/(s/sc)".to_owned(),
+                format!("{}/{}", decimal(*first_swing), decimal(*at_rest)),
+            ),
         };
         let _ = writeln!(
             text,
-            "  by the actions of the whole and the cut swing, ln({}{rested})/(2*zeta) = {} of that is the shorter swing",
-            decimal(*first_swing),
+            "  the shorter swing by formula: ln({letters})/(2*zeta) = ln({numbers})/(2*zeta) = {}",
             decimal(*gain)
+        );
+        let rested = if *at_rest == 1.0 {
+            ""
+        } else {
+            ", s and sc those at rest"
+        };
+        let _ = writeln!(
+            text,
+            "  S and Sc are the actions of the first swing, whole and cut at the barrier{rested}"
         );
     }
 }

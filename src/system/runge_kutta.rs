@@ -94,85 +94,21 @@ pub(super) fn follow(
     events: &[Event],
     options: &Options,
 ) -> Result<Path, SystemError> {
-    let states = values.len();
     // What cannot be expanded is refused by either integrator.
     taylor::expansion(system, events, 1)?;
     let smooth = Smooth::new(system, events)?;
     let units = Units::new(system, [start, end], values, events);
-    let sizes = &units.sizes;
-    let scratch = RefCell::new(smooth.arguments(system));
-    let corners = smooth.corners.len();
-    // The arguments of every function: states, sides, time, numbers.
-    let with = |t: f64, scaled: &[f64], functions: &[CompiledFunction], out: &mut dyn FnMut(usize, f64)| {
-        let mut arguments = scratch.borrow_mut();
-        for (index, argument) in arguments.iter_mut().take(states + corners).enumerate() {
-            *argument = scaled[index] * sizes.get(index).copied().unwrap_or(1.0);
-        }
-        arguments[states + corners] = units.time(t);
-        for (index, function) in functions.iter().enumerate() {
-            out(index, function.call(&arguments));
-        }
+    let scaled = Scaled {
+        states: values.len(),
+        scratch: RefCell::new(smooth.arguments(system)),
+        smooth: &smooth,
+        units: &units,
     };
-    let value_of = |t: f64, scaled: &[f64], function: &CompiledFunction| {
-        let mut value = f64::NAN;
-        with(t, scaled, std::slice::from_ref(function), &mut |_, found| value = found);
-        value
+    let begin = Point {
+        t: 0.0,
+        y: scaled.start(system, values)?,
     };
-    let rates = |t: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
-        rates.fill(0.0);
-        with(t, scaled, &smooth.rates, &mut |state, rate| {
-            rates[state] = units.time * (rate / sizes[state])
-        });
-    };
-    let mut first: Vec<f64> = values.iter().zip(sizes).map(|(value, size)| value / size).collect();
-    first.resize(states + corners, 1.0);
-    first.resize(states + 2 * corners, 0.0);
-    // The argument of a corner contains the sides of earlier ones alone. One that begins at zero is left on its own side, or at once.
-    for (corner, argument) in smooth.corners.iter().enumerate() {
-        if value_of(0.0, &first, argument) < 0.0 {
-            first[states + corner] = -1.0;
-        }
-    }
-    // As typed, a sign without a value is none, whatever side it might have.
-    for (state, rate) in smooth.typed.iter().enumerate() {
-        if !value_of(0.0, &first, rate).is_finite() {
-            return Err(SystemError::Start(system.state[state]));
-        }
-    }
-    for (event, function) in smooth.events.iter().enumerate() {
-        if !value_of(0.0, &first, function).is_finite() {
-            return Err(SystemError::Event(event));
-        }
-    }
-    let event = |event: usize, function| {
-        let action = match events[event].stops {
-            true => Action::Stop,
-            false => Action::Record,
-        };
-        ode::Event::new(
-            move |point: &Point<Vec<f64>>| value_of(point.t, &point.y, function),
-            action,
-        )
-    };
-    let corner = |corner: usize, argument| {
-        let (side, left_over) = (states + corner, states + corners + corner);
-        let cross = move |mut point: Point<Vec<f64>>| {
-            point.y[left_over] = value_of(point.t, &point.y, argument);
-            point.y[side] = -point.y[side];
-            (0, point)
-        };
-        let height =
-            move |point: &Point<Vec<f64>>| point.y[side] * (value_of(point.t, &point.y, argument) - point.y[left_over]);
-        ode::Event::new(height, Action::Switch(Box::new(cross))).falling()
-    };
-    let mut watched: Vec<ode::Event<Point<Vec<f64>>>> = Vec::new();
-    for (index, function) in smooth.events.iter().enumerate() {
-        watched.push(event(index, function));
-    }
-    for (index, argument) in smooth.corners.iter().enumerate() {
-        watched.push(corner(index, argument));
-    }
-    let begin = Point { t: 0.0, y: first };
+    let watched = scaled.watched(events);
     let settings = ode::Options {
         maximum_steps: options.step_limit,
         // What is looked for may vary faster than the motion: no more than a series of it could tell.
@@ -180,6 +116,7 @@ pub(super) fn follow(
         interrupt: options.interrupt,
         ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
     };
+    let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
     let run = integrate_first_order(rates, begin, units.count(end), &watched, &settings);
     let trajectory = run.map_err(|error| match error {
         ode::IntegrationError::RateNotFinite { index, .. } => SystemError::Start(system.state[index]),
@@ -187,12 +124,21 @@ pub(super) fn follow(
     })?;
     drop(watched);
     let reason = reason(trajectory.stop_reason());
+    Ok(Path {
+        end: match reason {
+            End::Reached => end,
+            _ => units.time(trajectory.end().t),
+        },
+        reason,
+        occurrences: occurrences(trajectory.occurrences(), &units, events.len()),
+        motion: super::Motion::RungeKutta(Motion { trajectory, units }),
+    })
+}
+
+/// Where the events of the user happened, each place once.
+fn occurrences(all: &[ode::Occurrence<Point<Vec<f64>>>], units: &Units, events: usize) -> Vec<Occurrence> {
     let mut occurrences: Vec<Occurrence> = Vec::new();
-    for found in trajectory
-        .occurrences()
-        .iter()
-        .filter(|found| found.event < events.len())
-    {
+    for found in all.iter().filter(|found| found.event < events) {
         let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
         // Where a corner lies at the same place, rounding may show the crossing before and behind it.
         let same = |met: &&Occurrence| met.event == event && met.rising == rising;
@@ -201,15 +147,109 @@ pub(super) fn follow(
             occurrences.push(Occurrence { event, time, rising });
         }
     }
-    Ok(Path {
-        end: match reason {
-            End::Reached => end,
-            _ => units.time(trajectory.end().t),
-        },
-        reason,
-        occurrences,
-        motion: super::Motion::RungeKutta(Motion { trajectory, units }),
-    })
+    occurrences
+}
+
+/// The functions of a system in the units of a run: of the states over their sizes, then the sides of the corners, then what is
+/// left over of each corner where it was crossed last.
+struct Scaled<'a> {
+    states: usize,
+    smooth: &'a Smooth,
+    units: &'a Units,
+    /// The arguments of every function: states, sides, time, numbers.
+    scratch: RefCell<Vec<f64>>,
+}
+
+impl Scaled<'_> {
+    fn corners(&self) -> usize {
+        self.smooth.corners.len()
+    }
+
+    fn with(&self, t: f64, y: &[f64], functions: &[CompiledFunction], mut out: impl FnMut(usize, f64)) {
+        let mut arguments = self.scratch.borrow_mut();
+        let time = self.states + self.corners();
+        for (index, argument) in arguments.iter_mut().take(time).enumerate() {
+            *argument = y[index] * self.units.sizes.get(index).copied().unwrap_or(1.0);
+        }
+        arguments[time] = self.units.time(t);
+        for (index, function) in functions.iter().enumerate() {
+            out(index, function.call(&arguments));
+        }
+    }
+
+    fn value_of(&self, t: f64, y: &[f64], function: &CompiledFunction) -> f64 {
+        let mut value = f64::NAN;
+        self.with(t, y, std::slice::from_ref(function), |_, found| value = found);
+        value
+    }
+
+    fn rates(&self, t: f64, y: &[f64], rates: &mut [f64]) {
+        rates.fill(0.0);
+        self.with(t, y, &self.smooth.rates, |state, rate| {
+            rates[state] = self.units.time * (rate / self.units.sizes[state]);
+        });
+    }
+
+    /// Where the run begins.
+    ///
+    /// # Errors
+    /// A right side or an event without a value there.
+    fn start(&self, system: &System, values: &[f64]) -> Result<Vec<f64>, SystemError> {
+        let (states, corners) = (self.states, self.corners());
+        let mut first: Vec<f64> = values
+            .iter()
+            .zip(&self.units.sizes)
+            .map(|(value, size)| value / size)
+            .collect();
+        first.resize(states + corners, 1.0);
+        first.resize(states + 2 * corners, 0.0);
+        // The argument of a corner contains the sides of earlier ones alone. One that begins at zero is left on its own side, or
+        // at once.
+        for (corner, argument) in self.smooth.corners.iter().enumerate() {
+            if self.value_of(0.0, &first, argument) < 0.0 {
+                first[states + corner] = -1.0;
+            }
+        }
+        // As typed, a sign without a value is none, whatever side it might have.
+        for (state, rate) in self.smooth.typed.iter().enumerate() {
+            if !self.value_of(0.0, &first, rate).is_finite() {
+                return Err(SystemError::Start(system.state[state]));
+            }
+        }
+        for (event, function) in self.smooth.events.iter().enumerate() {
+            if !self.value_of(0.0, &first, function).is_finite() {
+                return Err(SystemError::Event(event));
+            }
+        }
+        Ok(first)
+    }
+
+    /// The events of the user, and behind them the corners, where the motion changes sides.
+    fn watched(&self, events: &[Event]) -> Vec<ode::Event<'_, Point<Vec<f64>>>> {
+        let mut watched = Vec::with_capacity(self.smooth.events.len() + self.corners());
+        for (event, function) in events.iter().zip(&self.smooth.events) {
+            let action = match event.stops {
+                true => Action::Stop,
+                false => Action::Record,
+            };
+            let height = move |point: &Point<Vec<f64>>| self.value_of(point.t, &point.y, function);
+            watched.push(ode::Event::new(height, action));
+        }
+        for (corner, argument) in self.smooth.corners.iter().enumerate() {
+            let side = self.states + corner;
+            let left_over = side + self.corners();
+            let cross = move |mut point: Point<Vec<f64>>| {
+                point.y[left_over] = self.value_of(point.t, &point.y, argument);
+                point.y[side] = -point.y[side];
+                (0, point)
+            };
+            let height = move |point: &Point<Vec<f64>>| {
+                point.y[side] * (self.value_of(point.t, &point.y, argument) - point.y[left_over])
+            };
+            watched.push(ode::Event::new(height, Action::Switch(Box::new(cross))).falling());
+        }
+        watched
+    }
 }
 
 fn reason(stopped: StopReason) -> End {

@@ -106,16 +106,9 @@ pub(super) fn follow(
         if options.interrupt.is_requested() {
             break End::Interrupted;
         }
-        if let Err(state) = expansion.expand(start + time, &values) {
+        if let Err(error) = defined(&mut expansion, system, start + time, &values, events.len()) {
             if steps.is_empty() {
-                return Err(SystemError::Start(system.state[state]));
-            }
-            break End::Singular;
-        }
-        let undefined = |event: &usize| !expansion.event(*event).iter().all(|value| value.is_finite());
-        if let Some(event) = (0..events.len()).find(undefined) {
-            if steps.is_empty() {
-                return Err(SystemError::Event(event));
+                return Err(error);
             }
             break End::Singular;
         }
@@ -177,6 +170,26 @@ pub(super) fn follow(
         reason,
         occurrences,
     })
+}
+
+/// Expands everything about a point.
+///
+/// # Errors
+/// The first state or event without a series there.
+fn defined(
+    expansion: &mut Expansion,
+    system: &System,
+    time: f64,
+    values: &[f64],
+    events: usize,
+) -> Result<(), SystemError> {
+    let expanded = expansion.expand(time, values);
+    expanded.map_err(|state| SystemError::Start(system.state[state]))?;
+    let undefined = |event: &usize| !expansion.event(*event).iter().all(|value| value.is_finite());
+    match (0..events).find(undefined) {
+        Some(event) => Err(SystemError::Event(event)),
+        None => Ok(()),
+    }
 }
 
 /// Right sides and events, with their series.

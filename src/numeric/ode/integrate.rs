@@ -392,11 +392,8 @@ impl<S: Sample> Leg<'_, '_, S> {
                 trajectory.end = S::new(self.end_time, &trajectory.end.values());
                 return LegEnd::Stopped(StopReason::EndReached);
             }
-            if *attempts >= self.options.maximum_steps {
-                return LegEnd::Stopped(StopReason::MaximumSteps { time });
-            }
-            if self.options.interrupt.is_requested() {
-                return LegEnd::Stopped(StopReason::Interrupted { time });
+            if let Some(reason) = self.given_up(time, *attempts) {
+                return LegEnd::Stopped(reason);
             }
             *attempts += 1;
             let wanted = solver.h().min(self.options.maximum_step).min(remaining);
@@ -433,32 +430,49 @@ impl<S: Sample> Leg<'_, '_, S> {
             };
             trajectory.steps.push(step);
             trajectory.end = next.clone();
-            for (happening, event, rising) in happenings {
-                trajectory.occurrences.push(Occurrence {
-                    phase: self.phase,
-                    event,
-                    state: happening.clone(),
-                    rising,
-                });
-                match &self.events[event].action {
-                    Action::Record => {}
-                    Action::Stop => {
-                        trajectory.end = happening;
-                        return LegEnd::Stopped(StopReason::Event {
-                            phase: self.phase,
-                            event,
-                        });
-                    }
-                    Action::Switch(next_state) => {
-                        trajectory.end = happening.clone();
-                        let (phase, changed) = next_state(happening);
-                        return LegEnd::Switched(phase, changed);
-                    }
-                }
+            if let Some(end) = self.recorded(happenings, trajectory) {
+                return end;
             }
             state = next;
             first = false;
         }
+    }
+
+    /// Whether the steps are used up, or somebody wants it to end.
+    fn given_up(&self, time: f64, attempts: usize) -> Option<StopReason> {
+        if attempts >= self.options.maximum_steps {
+            return Some(StopReason::MaximumSteps { time });
+        }
+        let asked = self.options.interrupt.is_requested();
+        asked.then_some(StopReason::Interrupted { time })
+    }
+
+    /// Keeps what happened in a step, up to the first that ends the leg: then the path ends there, and this is how.
+    fn recorded(&self, happenings: Vec<(S, usize, bool)>, trajectory: &mut Trajectory<S>) -> Option<LegEnd<S>> {
+        for (happening, event, rising) in happenings {
+            trajectory.occurrences.push(Occurrence {
+                phase: self.phase,
+                event,
+                state: happening.clone(),
+                rising,
+            });
+            match &self.events[event].action {
+                Action::Record => {}
+                Action::Stop => {
+                    trajectory.end = happening;
+                    return Some(LegEnd::Stopped(StopReason::Event {
+                        phase: self.phase,
+                        event,
+                    }));
+                }
+                Action::Switch(next_state) => {
+                    trajectory.end = happening.clone();
+                    let (phase, changed) = next_state(happening);
+                    return Some(LegEnd::Switched(phase, changed));
+                }
+            }
+        }
+        None
     }
 
     /// A fresh solver at this state, with this first step (0: of its own choice).

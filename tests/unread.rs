@@ -317,7 +317,7 @@ fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, Simulate
 /// same, or the refusal names what is swept and what it would be overridden by.
 #[test]
 fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
-    const FILES: [&str; 18] = [
+    const FILES: [&str; 19] = [
         "",
         "[pendulum]\nbarrier = false",
         "[pendulum]\nbarrier = [-1.6, 0.1]",
@@ -325,6 +325,7 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
         "[pendulum]\nstart = -0.8",
         "[pendulum]\nmass = 0.1\nlength = 0.2\ngravity = 2.0\n[sphere]\nradius = 0.1\n[barrier]\nmodulus = 1e5",
         "[contact]\ngamma = 1e3",
+        "[contact]\ngamma = 0",
         "[contact]\nmu = 10",
         "[contact]\nlambda = 0.2",
         "[contact]\ngamma = 1e3\nlambda = 0.2",

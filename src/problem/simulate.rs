@@ -257,6 +257,10 @@ impl Problem {
             let first = swept.iter().copied().find(of_contact);
             first.map_or(Ok(()), |key| Err(SimulateError::NoBarrier(key)))?;
         }
+        if self.contact.gamma == Some(0.0) && !swept.contains(&Gamma) {
+            let first = swept.iter().copied().find(|key| *key == Place || of_contact(key));
+            first.map_or(Ok(()), |key| Err(SimulateError::Zero { key, other: Gamma }))?;
+        }
         if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta)) {
             return Err(SimulateError::Zero {
                 key: FrequencyRatio,

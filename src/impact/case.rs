@@ -328,7 +328,8 @@ impl Case {
         let (model, start) = self.motion()?;
         let damping = self.contact_damping;
         let scales = self.scales(model.gamma, start);
-        let touch_speed = self.touch_speed(start);
+        // Where gamma is zero there is no barrier to touch.
+        let touch_speed = self.touch_speed(start).filter(|_| model.gamma != 0.0);
         let form = |of: ContactDamping, scales: &ContactScales| Some(damping.in_form(of, scales).ok()?.value());
         let at_touch = ContactScales {
             speed: touch_speed,

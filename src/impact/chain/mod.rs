@@ -136,6 +136,8 @@ struct Leg {
     length: f64,
     /// How much later or earlier damping lets the motion arrive, for the same phase.
     lag: f64,
+    /// The sine and cosine of the phase at its end away from the turning point.
+    phase: (f64, f64),
 }
 
 /// Which energies are alike from one swing to the next: of those that leave a barrier, and of free ones.
@@ -274,11 +276,10 @@ impl<'a> Chain<'a> {
         None
     }
 
-    /// How much later than at the energy of the swing its phase at this spot is reached, which is passed with another energy.
-    fn later(&self, swing: &Swing, spot: &Spot, energy: f64) -> f64 {
-        let (sine, cosine) = spot.phase(swing.energy);
+    /// How much later than at the energy of the swing, where its phase is this one, the spot is passed with another energy.
+    fn later(swing: &Swing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
         let (own_sine, own_cosine) = spot.phase(energy);
-        let change = (own_sine * cosine - own_cosine * sine).atan2(own_cosine * cosine + own_sine * sine);
+        let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
     }
 
@@ -299,7 +300,7 @@ impl<'a> Chain<'a> {
             }
             let arrived = energy - self.below(&leg);
             if arrived > ahead.spot.energy {
-                let time = leg.time + leg.lag + self.later(&swing, &ahead.spot, arrived);
+                let time = leg.time + leg.lag + Self::later(&swing, leg.phase, &ahead.spot, arrived);
                 self.swing([energy, arrived], time, to, [-turn.x, ahead.spot.x]);
                 return self.contact(ahead, arrived);
             }
@@ -327,6 +328,7 @@ impl<'a> Chain<'a> {
             area: 2.0 * swing.quarter.area,
             length: 0.0,
             lag: 0.0,
+            phase: (0.0, 1.0),
         };
         let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
         let energy = swing.energy - self.below(&leg);
@@ -357,6 +359,7 @@ impl<'a> Chain<'a> {
             area: swing.quarter.area,
             length: 0.0,
             lag: 0.0,
+            phase: (0.0, 1.0),
         };
         let (before, _) = self.reference(from.energy, Kind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
@@ -396,6 +399,7 @@ impl<'a> Chain<'a> {
                     area: 0.5 * (end.area - start.area),
                     length: 0.5 * (ahead.spot.x - spot.x),
                     lag: 0.0,
+                    phase: (0.0, 1.0),
                 }
             };
             if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {
@@ -418,7 +422,7 @@ impl<'a> Chain<'a> {
         if ahead.is_some_and(|ahead| turn.x > ahead.spot.x) || turn.x < spot.x {
             return self.integrate();
         }
-        let time = leg.time - leg.lag + self.later(&swing, &back, energy);
+        let time = leg.time - leg.lag + Self::later(&swing, leg.phase, &back, energy);
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
         let reach = Stretch {
             time: leg.time - swing.quarter.time,
@@ -578,25 +582,21 @@ fn opposite(side: Side) -> Side {
 /// The leg between the turning point of a swing and a spot, which is counted from the bottom away from the turning point.
 fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
     let Model { zeta, alpha, .. } = *model;
-    let (length, lag) = match (zeta == 0.0, alpha == 0.0) {
-        (true, true) => (0.0, 0.0),
-        (_, no_friction) => {
-            let (_, cosine) = spot.phase(swing.energy);
-            let viscous = zeta * cosine * cosine;
-            match no_friction {
-                true => (0.0, viscous),
-                false => {
-                    let turn = Spot::turn(swing.energy);
-                    (turn.x + spot.x, viscous + cosine * alpha / turn.x.sin().max(alpha))
-                }
-            }
+    let phase = spot.phase(swing.energy);
+    let (_, cosine) = phase;
+    let (length, rubbed) = match alpha == 0.0 {
+        true => (0.0, 0.0),
+        false => {
+            let turn = Spot::turn(swing.energy).x;
+            (turn + spot.x, alpha / turn.sin().max(alpha))
         }
     };
     Leg {
         time: swing.quarter.time + reach.time,
         area: swing.quarter.area + reach.area,
         length,
-        lag,
+        lag: cosine * (zeta * cosine + rubbed),
+        phase,
     }
 }
 

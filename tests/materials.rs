@@ -128,7 +128,7 @@ fn known_rest_times_are_found_again() {
             duration: 400.0,
             ..Settings::default()
         };
-        let found = course(&model, Start::default(), &settings).expect("a motion");
+        let found = course(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
         found.rest_time.expect("rest")
     };
     for (gamma, mu, expected) in [
@@ -330,5 +330,32 @@ fn a_picture_shows_what_is_held_fixed() {
         let output = run(&[&["materials", &file, "--plot", "-"], &place[..]].concat());
         let picture = String::from_utf8_lossy(&output.stdout);
         assert!(words.iter().all(|words| picture.contains(words)), "{name}");
+    }
+}
+
+#[test]
+fn the_chain_tells_the_same_of_the_materials() {
+    let study = |integrator| {
+        let question = MaterialQuestion {
+            integrator,
+            ..MaterialQuestion::default()
+        };
+        study_materials(question).expect("a study")
+    };
+    let [chain, truth] = [Integrator::Chain, Integrator::Taylor].map(study);
+    for (row, of_truth) in chain.rows.iter().zip(&truth.rows) {
+        let [found, wanted] = [row, of_truth].map(|row| row.course.rest_time.expect("it rests"));
+        assert!((found / wanted - 1.0).abs() < 1e-3, "{found} {wanted}");
+        assert_eq!(row.course.impacts.len(), of_truth.course.impacts.len());
+        let [first, of_truth] = [row, of_truth].map(|row| row.first.expect("a contact"));
+        for (found, wanted) in [
+            (first.speed, of_truth.speed),
+            (first.duration, of_truth.duration),
+            (first.penetration, of_truth.penetration),
+            (first.peak_force, of_truth.peak_force),
+            (first.restitution, of_truth.restitution),
+        ] {
+            assert!((found / wanted - 1.0).abs() < 5e-3, "{found} {wanted}");
+        }
     }
 }

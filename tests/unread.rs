@@ -534,6 +534,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("friction", vec![], vec!["--tolerance", "0.1"]),
         ("friction", vec![], vec!["--timeout", "1e-9"]),
         ("materials", vec![], vec!["--only-own"]),
+        ("materials", vec![], vec!["--chain"]),
         ("materials", vec![], vec!["--format", "latex"]),
         ("materials", vec![], vec!["--output", file]),
         ("materials", vec![], vec!["--plot", "-"]),

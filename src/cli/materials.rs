@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lindstedt::Interrupt;
 use lindstedt::export::{json, latex, materials, text};
-use lindstedt::impact::{MaterialStudy, MaterialsError, Settings, study_materials};
+use lindstedt::impact::{Integrator, MaterialStudy, MaterialsError, Settings, study_materials};
 use lindstedt::problem::Problem;
 
 use super::files::width;
@@ -19,6 +19,9 @@ pub struct Arguments {
     /// Only the materials of the file, without those of the paper's Table 2
     #[arg(long)]
     only_own: bool,
+    /// Do not integrate: every motion as a chain of closed forms, good to a percent where damping is light
+    #[arg(long)]
+    chain: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -41,6 +44,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         interrupt: Interrupt::by(&STOP),
         ..question.settings
     };
+    if arguments.chain {
+        question.integrator = Integrator::Chain;
+    }
     let study = study_materials(question).map_err(|error| {
         let none = error == MaterialsError::NoMaterial;
         Failure::refused(

@@ -93,6 +93,8 @@ pub struct MaterialQuestion {
     pub sphere_yield: Option<f64>,
     /// How long and how closely the motions are followed.
     pub settings: Settings,
+    /// By which method they are followed; the picture shows them by the same.
+    pub integrator: Integrator,
     /// The dampings that nobody gave: the paper prints none.
     pub defaults: Vec<Parameter>,
 }
@@ -112,6 +114,7 @@ impl Default for MaterialQuestion {
                 duration: DEFAULT_DURATION,
                 ..Settings::default()
             },
+            integrator: Integrator::Taylor,
             defaults: vec![Parameter::Lambda, Parameter::Zeta],
         }
     }
@@ -159,19 +162,24 @@ pub struct Course {
 /// As [`simulate`].
 ///
 /// ```
-/// use lindstedt::impact::{Model, Settings, Start, course};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, course};
 ///
 /// let model = Model { zeta: 0.02, mu: 3e6, ..Model::default() };
-/// let found = course(&model, Start::default(), &Settings { duration: 200.0, ..Settings::default() })?;
+/// let found = course(&model, Start::default(), Integrator::Taylor, &Settings { duration: 200.0, ..Settings::default() })?;
 /// assert!(found.rest_time? < 100.0 && found.energies[1] < found.energies[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn course(model: &Model, start: Start, settings: &Settings) -> Result<Course, SimulationError> {
+pub fn course(
+    model: &Model,
+    start: Start,
+    integrator: Integrator,
+    settings: &Settings,
+) -> Result<Course, SimulationError> {
     let settings = Settings {
         keep_path: false,
         ..*settings
     };
-    let motion = simulate(model, start, Integrator::Taylor, &settings)?;
+    let motion = simulate(model, start, integrator, &settings)?;
     let rest_time = motion.rest().time;
     let before_rest = |impact: &&Contact| rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest);
     let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
@@ -328,7 +336,7 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
         model,
         start,
         rows,
-        no_barrier: course(&without, start, &longer(&question.settings))?.rest_time,
+        no_barrier: course(&without, start, question.integrator, &longer(&question.settings))?.rest_time,
         dissipation,
         held_fixed,
         question,
@@ -374,9 +382,9 @@ impl MaterialQuestion {
 fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Result<MaterialRow, MaterialsError> {
     let case = question.own_case(material);
     let (model, start) = MaterialQuestion::motion_of(material, &case)?;
-    let course = course(&model, start, &question.settings)?;
+    let course = course(&model, start, question.integrator, &question.settings)?;
     let first = match course.impacts.first() {
-        Some(impact) => first_contact(impact, &model, start, &question.settings, units)?,
+        Some(impact) => first_contact(impact, &model, start, question, units)?,
         None => None,
     };
     let lossless = Model { mu: 0.0, ..model };
@@ -395,7 +403,7 @@ fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Resul
         dissipation: case.dissipation(Some(units))?,
         yield_checks: checks.collect(),
         first,
-        lossless: self::course(&lossless, start, &longer(&question.settings))?.rest_time,
+        lossless: self::course(&lossless, start, question.integrator, &longer(&question.settings))?.rest_time,
         course,
         material: material.clone(),
     })
@@ -404,13 +412,13 @@ fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Resul
 /// A contact shorter than this part of the time at which it begins has lost digits of its duration to the clock.
 const CLOCK: f64 = 1e-6;
 
-/// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself. Of one that is too short for the
-/// clock duration and force are those of the closed form, in which the swing's own force is left out: it has no time to act.
+/// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself. Of one of a chain, or too short for the
+/// clock, duration and force are those of the closed form, in which the swing's own force is left out: it has no time to act.
 fn first_contact(
     impact: &Contact,
     model: &Model,
     start: Start,
-    settings: &Settings,
+    question: &MaterialQuestion,
     units: &Units,
 ) -> Result<Option<FirstContact>, SimulationError> {
     let (Some(exit), Some(restitution), Some(barrier)) =
@@ -418,16 +426,17 @@ fn first_contact(
     else {
         return Ok(None);
     };
-    let closed_form = match exit - impact.entry_time < CLOCK * exit {
+    let closed = question.integrator == Integrator::Chain || exit - impact.entry_time < CLOCK * exit;
+    let closed_form = match closed {
         true => HuntCrossley::new(1.5, model.gamma, model.mu / model.gamma, impact.speed_in).ok(),
         false => None,
     };
     let until = Settings {
         duration: exit,
         keep_path: true,
-        ..*settings
+        ..question.settings
     };
-    let motion = simulate(model, start, Integrator::Taylor, &until)?;
+    let motion = simulate(model, start, question.integrator, &until)?;
     let sign = impact.side.sign();
     let force = |t: f64| match motion.path.at(t) {
         Some((x, velocity)) => model.contact(sign * (x - barrier), sign * velocity),
@@ -499,7 +508,7 @@ fn held_fixed(question: &MaterialQuestion, dissipation: &Dissipation) -> Result<
             held.ratios.push(model.mu / model.gamma);
             held.restitutions.push(case.dissipation(None)?.restitution);
             held.rest_times
-                .push(course(&model, start, &question.settings)?.rest_time);
+                .push(course(&model, start, question.integrator, &question.settings)?.rest_time);
         }
         found.push(held);
     }
@@ -581,6 +590,6 @@ impl MaterialStudy {
             keep_path: true,
             ..self.question.settings
         };
-        Ok(simulate(model, start, Integrator::Taylor, &settings)?)
+        Ok(simulate(model, start, self.question.integrator, &settings)?)
     }
 }

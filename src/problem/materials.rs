@@ -9,7 +9,8 @@ use super::document::MaterialSection;
 use super::simulate::refuse_two_forms;
 use super::{DesignError, Problem, ProblemError, Reader, SimulateError, SphereSection, UnreadKey};
 use crate::impact::{
-    ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Material, MaterialQuestion, Modulus, Parameter, default_lambda,
+    ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Integrator, Material, MaterialQuestion, Modulus, Parameter,
+    default_lambda,
 };
 
 /// Why a problem file is no study of materials.
@@ -135,6 +136,7 @@ impl Problem {
             materials,
             sphere_yield: self.yield_limit("[sphere] yield", self.sphere.yield_limit)?,
             settings,
+            integrator: Integrator::Taylor,
             defaults,
         })
     }

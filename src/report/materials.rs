@@ -4,7 +4,7 @@
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::impact::{
-    ContactDamping, HeldFixed, MaterialRow, MaterialStudy, Model, Parameter, REST_FRACTION, YieldCheck,
+    ContactDamping, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model, Parameter, REST_FRACTION, YieldCheck,
 };
 
 /// Below this part of the rest time materials rest at the same time, for what an engineer decides by it.
@@ -112,8 +112,12 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         blocks.push(Block::Note(chosen(study.dissipation.friction_form, forms)));
     }
     let settings = &study.question.settings;
+    let route = match study.question.integrator {
+        Integrator::Chain => "by closed forms, swing and contact in turn, ",
+        Integrator::Taylor | Integrator::RungeKutta => "",
+    };
     blocks.push(Block::Note(format!(
-        "followed until t = {}; rest: {} % of the amplitude of the first swing",
+        "followed {route}until t = {}; rest: {} % of the amplitude of the first swing",
         decimal(settings.duration),
         decimal(100.0 * REST_FRACTION)
     )));

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::simulation::{Barrier, Dissipation};
+use super::simulation::{Barrier, Dissipation, ROUTES};
 use crate::impact::{self, ContactDamping, MaterialStudy, Parameter};
 use crate::report::material_sentences;
 
@@ -57,6 +57,9 @@ pub struct Parameters {
     pub time_unit: f64,
     /// How long the motions are followed, in units of time.
     pub duration: f64,
+    /// How the motions were found: by `integration`, or as a `chain` of closed forms.
+    #[schemars(extend("enum" = ROUTES))]
+    pub route: String,
     /// The relative tolerance of one step of the integrator.
     pub step_tolerance: f64,
     /// The part of the first amplitude at which the pendulum rests.
@@ -211,6 +214,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
             modulus: design.modulus,
             time_unit: study.units.time(),
             duration: settings.duration,
+            route: study.question.integrator.route().to_owned(),
             step_tolerance: settings.relative_tolerance,
             rest_fraction: impact::REST_FRACTION,
         },

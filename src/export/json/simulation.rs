@@ -25,7 +25,7 @@ pub struct SimulationDocument {
     #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
     pub integrator: String,
     /// How the motion was found: by `integration`, or as a `chain` of closed forms.
-    #[schemars(extend("enum" = ["integration", "chain"]))]
+    #[schemars(extend("enum" = ROUTES))]
     pub route: String,
     /// The phases of a chain, in time; null where the motion was integrated.
     pub phases: Option<Vec<ChainPhase>>,
@@ -391,6 +391,9 @@ pub struct Difference {
     pub until: f64,
 }
 
+/// The routes by which a motion is found.
+pub(super) const ROUTES: [&str; 2] = ["integration", "chain"];
+
 const INTEGRATORS: [Integrator; 3] = [Integrator::Taylor, Integrator::RungeKutta, Integrator::Chain];
 
 /// The document of kind `simulation`.
@@ -441,11 +444,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         dissipation: report.dissipation.map(Dissipation::from),
         time_unit: report.units.map(impact::Units::time),
         integrator: integrator(motion.integrator).to_owned(),
-        route: match motion.integrator {
-            Integrator::Chain => "chain",
-            Integrator::Taylor | Integrator::RungeKutta => "integration",
-        }
-        .to_owned(),
+        route: motion.integrator.route().to_owned(),
         phases: (motion.integrator == Integrator::Chain).then(|| motion.path.pieces().iter().map(phase).collect()),
         final_state: final_state(motion),
         samples: report.samples.iter().map(sample).collect(),

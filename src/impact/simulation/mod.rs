@@ -37,6 +37,16 @@ pub enum Integrator {
     Chain,
 }
 
+impl Integrator {
+    /// `chain`, or `integration` for both others.
+    pub fn route(self) -> &'static str {
+        match self {
+            Self::Chain => "chain",
+            Self::Taylor | Self::RungeKutta => "integration",
+        }
+    }
+}
+
 /// How long and how closely to follow a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use crate::export::simulation::{COMPARED, Report, friction, notes};
+use crate::export::simulation::{COMPARED, Report, friction, notes, phases};
 use crate::impact::{self, ClosedForm, Friction, Integrator, Piece, Regime, Side};
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of 1/omega of small swings,
@@ -283,10 +283,10 @@ pub struct Impact {
 pub struct ImpactError {
     /// The difference of the times of touch, in units of time.
     pub entry_time: f64,
-    /// The error of the speed of touch, as a fraction of it.
-    pub speed_in: f64,
-    /// The error of the greatest depth, as a fraction of it.
-    pub penetration: f64,
+    /// The error of the speed of touch, as a fraction of it; null where it is zero.
+    pub speed_in: Option<f64>,
+    /// The error of the greatest depth, as a fraction of it; null where a run ends before.
+    pub penetration: Option<f64>,
     /// The error of the duration, as a fraction of it; null where a run ends before.
     pub duration: Option<f64>,
     /// The error of the speed of release, as a fraction of it; null where a run ends before.
@@ -445,7 +445,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         time_unit: report.units.map(impact::Units::time),
         integrator: integrator(motion.integrator).to_owned(),
         route: motion.integrator.route().to_owned(),
-        phases: (motion.integrator == Integrator::Chain).then(|| motion.path.pieces().iter().map(phase).collect()),
+        phases: (motion.integrator == Integrator::Chain).then(|| phases(motion).iter().map(phase).collect()),
         final_state: final_state(motion),
         samples: report.samples.iter().map(sample).collect(),
         impacts: impacts(report),

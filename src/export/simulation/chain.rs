@@ -55,18 +55,31 @@ pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation
                 "",
                 format!("{entry_time:+.1e}"),
                 duration.map_or("-".to_owned(), percent),
-                percent(speed_in),
+                speed_in.map_or("-".to_owned(), percent),
                 speed_out.map_or("-".to_owned(), percent),
-                percent(penetration)
+                penetration.map_or("-".to_owned(), percent)
             ),
             None => writeln!(text, "  {:>4}  {:5}  not there by integration", "", ""),
         };
     }
 }
 
+/// The phases of a chain: steps of an integration that follow each other are one, which has no formula.
+pub(in crate::export) fn phases(motion: &Simulation) -> Vec<Piece> {
+    let integrated = |piece: &Piece| piece.closed_form().is_none() && piece.regime != Regime::Stuck;
+    let mut phases: Vec<Piece> = Vec::new();
+    for piece in motion.path.pieces() {
+        match phases.last_mut() {
+            Some(last) if integrated(last) && integrated(piece) => last.end = piece.end,
+            _ => phases.push(*piece),
+        }
+    }
+    phases
+}
+
 /// The formula of every phase.
-pub(super) fn phases(text: &mut String, motion: &Simulation) {
-    let pieces = motion.path.pieces();
+pub(super) fn formulas(text: &mut String, motion: &Simulation) {
+    let pieces = phases(motion);
     let _ = writeln!(
         text,
         "\nPhases: {}; x(t) with t from the beginning of each, sn(u, m) Jacobi's with the parameter m = k^2",

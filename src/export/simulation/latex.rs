@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::Report;
+use super::{Report, chain};
 use crate::decimal::significant;
 use crate::export::latex::scientific;
 use crate::impact::{ClosedForm, Piece};
@@ -30,7 +30,7 @@ pub fn simulation(report: &Report) -> String {
         text.push('\n');
     }
     text.push_str("% In each line t counts from the beginning of the phase; the second argument of sn is m = k^2.\n");
-    for pieces in motion.path.pieces().chunks(LINES) {
+    for pieces in chain::phases(motion).chunks(LINES) {
         let lines: Vec<String> = pieces.iter().map(phase).collect();
         let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
     }
@@ -73,8 +73,8 @@ fn impacts(report: &Report) -> String {
                 impact.entry_time,
                 error.map(|e| format!("${}$", scientific((1e6 * e.entry_time).round() / 1e6)))
             ),
-            cell(impact.speed_in, error.map(|e| percent(e.speed_in))),
-            cell(impact.penetration, error.map(|e| percent(e.penetration)))
+            cell(impact.speed_in, error.and_then(|e| e.speed_in).map(percent)),
+            cell(impact.penetration, error.and_then(|e| e.penetration).map(percent))
         );
     }
     text.push_str("\\end{tabular}\n");
@@ -108,10 +108,13 @@ fn phase(piece: &Piece) -> String {
                 true => String::new(),
                 false => format!("\\,e^{{{} t}}", scientific(-rate)),
             };
+            let speed = match scientific(speed) {
+                one if one == "1" => String::new(),
+                speed => format!("{speed} "),
+            };
             format!(
-                "{minus}2 \\arcsin\\left({}{decay} \\operatorname{{sn}}\\left({} t{},\\, {}\\right)\\right)",
+                "{minus}2 \\arcsin\\left({}{decay} \\operatorname{{sn}}\\left({speed}t{},\\, {}\\right)\\right)",
                 scientific(modulus),
-                scientific(speed),
                 signed(phase),
                 scientific(parameter)
             )

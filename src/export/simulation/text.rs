@@ -38,7 +38,7 @@ pub fn simulation(report: &Report) -> String {
         _ => impacts(&mut text, motion),
     }
     if motion.integrator == Integrator::Chain {
-        chain::phases(&mut text, motion);
+        chain::formulas(&mut text, motion);
     }
     rest(&mut text, report);
     // The formulas of a chain know the energy at the ends of each phase; their own velocities do not close its books.

@@ -51,6 +51,11 @@ pub enum ChainError {
         "the pendulum turns over with an energy of {0} m g L: the chain is for swings, below 2 m g L; leave out --chain"
     )]
     TurnsOver(f64),
+    /// At the upright position or beyond it.
+    #[error(
+        "the motion starts at x = {0}, not below the upright position: the chain begins with a swing, leave out --chain"
+    )]
+    Upright(f64),
     /// In the barrier.
     #[error("the motion starts inside the {} barrier: the chain begins with a swing, leave out --chain", .0.name())]
     Inside(Side),
@@ -89,7 +94,10 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
         return Err(ChainError::Overdamped(model.zeta));
     }
     let energy = model.swing_energy(start.x, start.velocity);
-    if energy >= 2.0 || start.x.abs() >= std::f64::consts::PI {
+    if start.x.abs() >= std::f64::consts::PI {
+        return Err(ChainError::Upright(start.x));
+    }
+    if energy >= 2.0 {
         return Err(ChainError::TurnsOver(energy));
     }
     if let Some((side, _)) = model.depth(start.x) {
@@ -187,7 +195,12 @@ impl<'a> Chain<'a> {
             Place::Turn(side, Spot::at(x.abs()), None)
         } else {
             let to = if velocity > 0.0 { Side::Right } else { Side::Left };
-            Place::Leaving(to, Spot::at(to.sign() * x), energy)
+            let spot = Spot::at(to.sign() * x);
+            let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
+            let place = Place::Leaving(to, spot, energy);
+            touched
+                .map_or(Some(place), |barrier| self.contact(barrier, velocity.abs()))
+                .unwrap_or(place)
         };
         while self.stop.is_none() {
             self.count += 1;
@@ -302,7 +315,7 @@ impl<'a> Chain<'a> {
             if arrived > ahead.spot.energy {
                 let time = leg.time + leg.lag + Self::later(&swing, leg.phase, &ahead.spot, arrived);
                 self.swing([energy, arrived], time, to, [-turn.x, ahead.spot.x]);
-                return self.contact(ahead, arrived);
+                return self.contact(ahead, (2.0 * (arrived - ahead.spot.energy)).sqrt());
             }
         }
         self.free(side, turn)
@@ -406,7 +419,7 @@ impl<'a> Chain<'a> {
                 let arrived = swing.energy - self.below(&leg);
                 if arrived > ahead.spot.energy {
                     self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
-                    return self.contact(ahead, arrived);
+                    return self.contact(ahead, (2.0 * (arrived - ahead.spot.energy)).sqrt());
                 }
             }
         }
@@ -424,11 +437,16 @@ impl<'a> Chain<'a> {
         }
         let time = leg.time - leg.lag + Self::later(&swing, leg.phase, &back, energy);
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
-        let reach = Stretch {
-            time: leg.time - swing.quarter.time,
-            area: leg.area - swing.quarter.area,
-        };
-        self.turned(to, turn, Some((swing, reach)))
+        // The way back to a barrier that was left is the way there; a start between the barriers is not on one.
+        let leaves = |barrier: &Barrier| barrier.spot == back;
+        let known = self.barrier(opposite(to)).is_some_and(leaves).then(|| {
+            let reach = Stretch {
+                time: leg.time - swing.quarter.time,
+                area: leg.area - swing.quarter.area,
+            };
+            (swing, reach)
+        });
+        self.turned(to, turn, known)
     }
 
     /// The pendulum rests at this spot for a moment, or for good.
@@ -451,13 +469,12 @@ impl<'a> Chain<'a> {
         Some(Place::Turn(side, turn, known))
     }
 
-    /// A contact entered with this energy.
-    fn contact(&mut self, barrier: &Barrier, energy: f64) -> Option<Place> {
+    /// A contact entered with this speed.
+    fn contact(&mut self, barrier: &Barrier, speed: f64) -> Option<Place> {
         if self.stop.is_some() {
             return None;
         }
         let Barrier { side, spot, .. } = *barrier;
-        let speed = (2.0 * (energy - spot.energy)).sqrt();
         let x = side.sign() * spot.x;
         self.state = [x, side.sign() * speed];
         let Some(bounce) = barrier.bounce(speed) else {
@@ -526,7 +543,7 @@ impl<'a> Chain<'a> {
         };
         let [x, velocity] = self.state;
         let motion = taylor::alone(*self.model, Start { x, velocity }, left);
-        self.stop = Some(motion.stop);
+        self.stop = Some(motion.stop.later(self.t));
         self.integrated = Some(motion);
         None
     }
@@ -772,6 +789,8 @@ mod tests {
         assert!(refused(heavy, start).contains("0.7"));
         let over = Start { x: 0.0, velocity: 2.1 };
         assert!(refused(Model::default(), over).contains("turns over"));
+        let upright = Start { x: -3.2, velocity: 0.0 };
+        assert!(refused(Model::default(), upright).contains("starts at x = -3.2"));
         let inside = Start { x: 0.4, velocity: 0.0 };
         assert!(refused(Model::default(), inside).contains("right barrier"));
     }

@@ -11,6 +11,8 @@
 //! (DLMF 19.25.5, 19.25.13, 22.19; the symmetric integrals by duplication, 19.36.) d(area)/dE is the time: the area is the action
 //! of the stretch, which viscous damping shrinks as exp(-2 zeta t).
 
+use std::f64::consts::PI;
+
 use spec_math::cephes64::{ellpe, ellpk};
 
 /// What a stretch of the swing takes: both counted from the bottom, negative on the left.
@@ -88,7 +90,14 @@ impl Swing {
     pub fn new(energy: f64) -> Self {
         let parameter = 0.5 * energy;
         let time = ellpk(1.0 - parameter);
-        let area = 4.0 * (ellpe(parameter) - (1.0 - parameter) * time);
+        let area = match parameter < SMALL {
+            // The difference has lost the digits: pi m 2F1(1/2, 1/2; 2; m) instead (DLMF 19.5.1, 19.5.2).
+            true => {
+                let series = 1.0 + parameter * (0.125 + parameter * (3.0 / 64.0 + parameter * 25.0 / 1024.0));
+                PI * parameter * series
+            }
+            false => 4.0 * (ellpe(parameter) - (1.0 - parameter) * time),
+        };
         Self {
             energy,
             quarter: Stretch { time, area },
@@ -150,6 +159,9 @@ fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
     (first, power * series / (mean * mean.sqrt()) + 3.0 * sum)
 }
 
+/// m below which the area of a quarter is a series: its first term left out is 0.015 m^4.
+const SMALL: f64 = 1e-3;
+
 /// How near each other the arguments are, in parts of their sum, when the series take over: a deviation of 0.03 from their mean leaves
 /// an error of 1e-9.
 const CLOSE: f64 = 0.015;
@@ -190,6 +202,20 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_small_swing_keeps_the_digits_of_its_area() {
+        for amplitude in [1e-12, 1e-7, 1e-4] {
+            let swing = Swing::new(Spot::at(amplitude).energy);
+            let m = 0.5 * swing.energy;
+            assert!(
+                (swing.quarter.area / (PI * m * (1.0 + 0.125 * m)) - 1.0).abs() < 1e-14,
+                "{amplitude}"
+            );
+        }
+        let [below, above] = [SMALL.next_down(), SMALL].map(|m| Swing::new(2.0 * m).quarter.area);
+        assert!((below / above - 1.0).abs() < 1e-12, "{below} {above}");
     }
 
     #[test]

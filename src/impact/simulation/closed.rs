@@ -131,9 +131,9 @@ impl fmt::Display for ClosedForm {
                     true => String::new(),
                     false => format!(" exp({} t)", decimal(-rate)),
                 };
-                let speed = match speed == 1.0 {
-                    true => "t".to_owned(),
-                    false => format!("{} t", decimal(speed)),
+                let speed = match decimal(speed) {
+                    one if one == "1" => "t".to_owned(),
+                    speed => format!("{speed} t"),
                 };
                 write!(
                     formatter,

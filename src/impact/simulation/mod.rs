@@ -127,6 +127,18 @@ impl Stop {
 }
 
 impl Stop {
+    /// The same so much later.
+    pub(super) fn later(self, time: f64) -> Self {
+        match self {
+            Self::Duration | Self::RestEnergy | Self::AtRest => self,
+            Self::NotFinite { t } => Self::NotFinite { t: time + t },
+            Self::Steps { t } => Self::Steps { t: time + t },
+            Self::Interrupted { t } => Self::Interrupted { t: time + t },
+            Self::StepTooSmall { t } => Self::StepTooSmall { t: time + t },
+            Self::Stalled { t } => Self::Stalled { t: time + t },
+        }
+    }
+
     /// In a word or two, for tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -346,11 +358,11 @@ pub struct Simulation {
 pub struct ContactDeviation {
     /// Time of the touch, in units of 1/omega: its difference.
     pub entry_time: f64,
-    /// Speed of the touch, in parts of the true one.
-    pub speed_in: f64,
-    /// Greatest depth, in parts of the true one.
-    pub penetration: f64,
-    /// Duration, in parts of the true one; nothing where one of the runs ends before.
+    /// Speed of the touch, in parts of the true one; nothing where that is zero.
+    pub speed_in: Option<f64>,
+    /// Greatest depth, in parts of the true one; nothing where one of the runs ends in the contact.
+    pub penetration: Option<f64>,
+    /// Duration, in parts of the true one; nothing likewise, and where it is too short for the clock.
     pub duration: Option<f64>,
     /// Speed of the release, in parts of the true one; nothing likewise.
     pub speed_out: Option<f64>,
@@ -388,16 +400,16 @@ impl Simulation {
 
     /// The contacts beside those of the true motion, in order; nothing for one that the true motion does not have.
     pub fn contact_deviations(&self, truth: &Self) -> Vec<Option<ContactDeviation>> {
-        let relative = |found: f64, truth: f64| found / truth - 1.0;
+        let relative = |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
         let error = |(index, found): (usize, &Contact)| {
             let truth = truth.impacts.get(index).filter(|truth| truth.side == found.side)?;
             let duration = |contact: &Contact| Some(contact.exit_time? - contact.entry_time);
-            let both =
-                |found: Option<f64>, truth: Option<f64>| Some(relative(found?, truth?)).filter(|e| e.is_finite());
+            let both = |found: Option<f64>, truth: Option<f64>| relative(found?, truth?);
+            let depth = |contact: &Contact| contact.exit_time.map(|_| contact.penetration);
             Some(ContactDeviation {
                 entry_time: found.entry_time - truth.entry_time,
                 speed_in: relative(found.speed_in, truth.speed_in),
-                penetration: relative(found.penetration, truth.penetration),
+                penetration: both(depth(found), depth(truth)),
                 duration: both(duration(found), duration(truth)),
                 speed_out: both(found.speed_out, truth.speed_out),
             })

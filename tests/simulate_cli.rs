@@ -222,6 +222,10 @@ fn wrong_arguments_get_theirs() {
         (vec!["--sample", "1e9"], "lies beyond the duration"),
         (vec!["--sample", "-1"], "sample"),
         (vec!["--format", "latex"], "no LaTeX form"),
+        (
+            vec!["--chain", "--sweep", "zeta=0.01,0.02", "--format", "latex"],
+            "a sweep has no LaTeX form",
+        ),
         (vec!["--integrator", "euler"], "taylor"),
     ] {
         let text = refusal(&[&[file.as_str()], arguments.as_slice()].concat());

@@ -70,7 +70,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => Problem::default(),
         Some(path) => from_file(path)?,
     };
-    if arguments.common.format == Format::Latex && !(arguments.chain && arguments.sweep.is_empty()) {
+    if arguments.common.format == Format::Latex && !arguments.sweep.is_empty() {
+        return Err(Failure::Usage(
+            "a sweep has no LaTeX form: choose --format text, json or csv".to_owned(),
+        ));
+    }
+    if arguments.common.format == Format::Latex && !arguments.chain {
         return Err(Failure::Usage(
             "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv, or --chain"
                 .to_owned(),

@@ -45,9 +45,9 @@ pub struct SimulationDocument {
     pub last_crossing: Option<f64>,
     /// The rest times of the same swing; null where nothing damps it, where it hits nothing, or where the pivot moves.
     pub baseline: Option<Baseline>,
-    /// The energy and the work of each force.
+    /// The energy and the work of each force; of a chain by its formulas, whose velocities are near and do not close the books.
     pub energy: Energy,
-    /// The largest energy that no work accounts for, as a fraction of the largest energy met.
+    /// The largest energy that no work accounts for, as a fraction of the largest energy met; of a chain that of its velocities.
     pub energy_residual: f64,
     /// Why the run ended, in words.
     pub stopped: String,

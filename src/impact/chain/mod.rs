@@ -28,6 +28,7 @@ use super::simulation::{
     has_rested,
 };
 use super::taylor;
+use crate::decimal::decimal;
 use bounce::Barrier;
 use swing::{Spot, Stretch, Swing};
 
@@ -48,7 +49,8 @@ pub enum ChainError {
     Overdamped(f64),
     /// Over the top.
     #[error(
-        "the pendulum turns over with an energy of {0} m g L: the chain is for swings, below 2 m g L; leave out --chain"
+        "the pendulum turns over with an energy of {} m g L: the chain is for swings, below 2 m g L; leave out --chain",
+        decimal(*.0)
     )]
     TurnsOver(f64),
     /// At the upright position or beyond it.

@@ -20,6 +20,7 @@ pub use table::{Entry, PiReading, Printed, SpeedRow, TABLE, Table, arctangent};
 
 use super::model::DEFAULT_AMPLITUDE;
 use super::simulate::SimulationError;
+use crate::decimal::decimal;
 
 /// What is asked of the friction.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +61,11 @@ pub enum FrictionError {
     #[error("a speed must be a finite number, not {0}")]
     Speed(f64),
     /// A release that is held.
-    #[error("alpha = {alpha} holds the pendulum where it is released, at x = -{amplitude}: sin A must be above alpha")]
+    #[error(
+        "alpha = {} holds the pendulum where it is released, at x = -{}: sin A must be above alpha",
+        decimal(*alpha),
+        decimal(*amplitude)
+    )]
     Held {
         /// The friction.
         alpha: f64,
@@ -68,7 +73,7 @@ pub enum FrictionError {
         amplitude: f64,
     },
     /// A friction too weak to be followed to the end.
-    #[error("alpha = {0} takes more steps to stop the swing than a run may have: give a larger one")]
+    #[error("alpha = {} takes more steps to stop the swing than a run may have: give a larger one", decimal(*.0))]
     Restless(f64),
     /// A motion that cannot begin.
     #[error(transparent)]

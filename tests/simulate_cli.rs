@@ -123,6 +123,35 @@ fn a_chain_prints_what_it_printed_and_is_judged() {
     assert!((sampled["samples"][0]["x"].as_f64().expect("x") - x).abs() < 1e-12);
 }
 
+/// The three rest times of a row of a sweep are those of single runs.
+#[test]
+fn a_sweep_has_the_baseline_of_every_row() {
+    let file = format!("{EXAMPLES}/damper.toml");
+    for route in [vec![], vec!["--chain"]] {
+        let swept = [
+            vec![file.as_str(), "--sweep", "zeta=0.01,0.03", "--baseline"],
+            route.clone(),
+        ]
+        .concat();
+        let document = json(&swept);
+        let row = &document["rows"][0];
+        let single = json(&[vec![file.as_str()], route].concat());
+        for (of_row, of_run) in [
+            ("rest_time", "this_barrier"),
+            ("rest_no_barrier", "no_barrier"),
+            ("rest_lossless", "lossless_barrier"),
+        ] {
+            let (found, wanted) = (row[of_row].as_f64(), single["baseline"][of_run].as_f64());
+            assert!(found.is_some() && found == wanted, "{of_row}: {found:?} {wanted:?}");
+        }
+        let table = output(&[swept.as_slice(), &["--format", "csv"]].concat());
+        assert!(
+            table.contains("\nzeta,impacts,rest_time,rest_no_barrier,rest_lossless,penetration,"),
+            "{table}"
+        );
+    }
+}
+
 #[test]
 fn every_example_agrees_with_the_judge() {
     for file in std::fs::read_dir(EXAMPLES)

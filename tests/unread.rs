@@ -510,6 +510,8 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),
         ("simulate", simulated[1..].to_vec(), vec!["--chain"]),
         ("simulate", swept[1..].to_vec(), vec!["--chain"]),
+        ("simulate", swept[1..].to_vec(), vec!["--baseline"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--baseline"]),
         ("simulate", simulated[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
         ("simulate", simulated[1..].to_vec(), vec!["--jobs", "1"]),
         ("simulate", swept[1..].to_vec(), vec!["--sample", "1"]),

@@ -8,7 +8,9 @@ use lindstedt::Interrupt;
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
-use lindstedt::impact::{Integrator, Model, Parameter, Settings, Simulation, Start, baseline, simulate};
+use lindstedt::impact::{
+    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline, simulate,
+};
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
 
@@ -34,6 +36,9 @@ pub struct Arguments {
     /// list (NAME=a,b,c); repeated, over every combination
     #[arg(long, value_name = "NAME=from:to:count", value_parser = axis, allow_hyphen_values = true)]
     sweep: Vec<Axis>,
+    /// In a sweep: beside each rest time those without a barrier and with one that loses nothing
+    #[arg(long, requires = "sweep")]
+    baseline: bool,
     /// Threads of a sweep; all cores without it. The result is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -269,7 +274,11 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let bar = if arguments.quiet {
         ProgressBar::hidden()
     } else {
-        ProgressBar::new(total as u64)
+        ProgressBar::new(if arguments.baseline {
+            3 * total as u64
+        } else {
+            total as u64
+        })
     };
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
         bar.set_style(style);
@@ -279,11 +288,33 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         false => Integrator::Taylor,
     };
     let progress = |done: usize| bar.inc(done as u64);
-    let rows: Vec<Summary> = match arguments.jobs {
-        Some(threads) => sweep_on(usize::from(threads), &motions, route, &settings, progress),
-        None => sweep(&motions, route, &settings, progress),
+    let follow = |motions: &[(Model, Start)], settings: &Settings| {
+        match arguments.jobs {
+            Some(threads) => sweep_on(usize::from(threads), motions, route, settings, progress),
+            None => sweep(motions, route, settings, progress),
+        }
+        .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))
+    };
+    let mut rows: Vec<Summary> = follow(&motions, &settings)?;
+    if arguments.baseline {
+        let longer = Settings {
+            duration: BASELINE_DURATIONS * settings.duration,
+            ..settings
+        };
+        let others = |change: fn(Model) -> Model| {
+            let changed: Vec<_> = motions.iter().map(|(model, start)| (change(*model), *start)).collect();
+            follow(&changed, &longer)
+        };
+        let without = others(|model| Model {
+            left: None,
+            right: None,
+            ..model
+        })?;
+        let lossless = others(|model| Model { mu: 0.0, ..model })?;
+        for (row, (without, lossless)) in rows.iter_mut().zip(without.iter().zip(&lossless)) {
+            row.baseline = Some([without.rest_time, lossless.rest_time]);
+        }
     }
-    .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();
     let report = SweepReport {
         axes: &arguments.sweep,

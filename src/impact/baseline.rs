@@ -64,7 +64,7 @@ impl Geometry {
 }
 
 /// So many times the duration of the run are the others followed for: they rest later.
-const LONGER: f64 = 4.0;
+pub const BASELINE_DURATIONS: f64 = 4.0;
 
 /// The rest times beside that of this motion; `None` where there is nothing to compare: no impact, nothing that damps the swing, or a
 /// pivot that moves.
@@ -90,7 +90,7 @@ pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError
         return Ok(None);
     }
     let settings = Settings {
-        duration: LONGER * motion.settings.duration,
+        duration: BASELINE_DURATIONS * motion.settings.duration,
         keep_path: false,
         ..motion.settings
     };

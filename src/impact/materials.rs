@@ -13,6 +13,7 @@
 
 use thiserror::Error;
 
+use super::baseline::BASELINE_DURATIONS;
 use super::case::{Case, CaseError};
 use super::contact::HuntCrossley;
 use super::dissipation::{ContactDamping, Dissipation};
@@ -42,9 +43,6 @@ pub fn default_lambda() -> f64 {
 
 /// How long the motions of a study are followed where no duration is given, in units of 1/omega.
 pub const DEFAULT_DURATION: f64 = 500.0;
-
-/// A barrier without loss, or none, is followed so many times as long: it rests later.
-const LONGER: f64 = 4.0;
 
 /// A material of a barrier.
 #[derive(Debug, Clone, PartialEq)]
@@ -346,7 +344,7 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
 /// The settings of a motion that rests later.
 fn longer(settings: &Settings) -> Settings {
     Settings {
-        duration: LONGER * settings.duration,
+        duration: BASELINE_DURATIONS * settings.duration,
         ..*settings
     }
 }

@@ -84,7 +84,7 @@ mod taylor;
 mod trial;
 mod units;
 
-pub use baseline::{Baseline, Geometry, baseline};
+pub use baseline::{BASELINE_DURATIONS, Baseline, Geometry, baseline};
 pub use case::{Case, CaseError};
 pub use chain::{ChainError, chain};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};

@@ -104,6 +104,8 @@ pub struct Summary {
     pub impacts: usize,
     /// When the envelope fell to a tenth of the first swing, in units of 1/omega; or why it did not.
     pub rest_time: Result<f64, NoRest>,
+    /// The rest times of the same swing without a barrier and with a lossless one, where they were asked for.
+    pub baseline: Option<[Result<f64, NoRest>; 2]>,
     /// The greatest depth in a barrier, rad; 0 without contact.
     pub deepest: f64,
     /// The greatest speed at a touch, rad times omega; 0 without contact.
@@ -127,6 +129,7 @@ impl Summary {
         Self {
             impacts: motion.impacts.len(),
             rest_time: motion.rest().time,
+            baseline: None,
             deepest: largest(|impact| impact.penetration),
             fastest: largest(|impact| impact.speed_in),
             // The sum of nothing is minus zero.

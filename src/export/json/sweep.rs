@@ -68,6 +68,10 @@ pub struct Row {
     pub impacts: usize,
     /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
     pub rest_time: Option<f64>,
+    /// The same without a barrier; null where it does not rest, and where the baseline was not asked for.
+    pub rest_no_barrier: Option<f64>,
+    /// The same with a barrier that loses nothing; null likewise.
+    pub rest_lossless: Option<f64>,
     /// The greatest depth in a barrier, in radians; 0 without contact.
     pub penetration: f64,
     /// The greatest speed at a touch, in radians per unit of time; 0 without contact.
@@ -124,11 +128,13 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
             values: axis.values().to_vec(),
         }
     });
-    let columns = columns(report.axes).into_iter().map(|column| Column {
-        name: column.name,
-        unit: column.unit.map(str::to_owned),
-        meaning: column.meaning.to_owned(),
-    });
+    let columns = columns(report.axes, report.has_baseline())
+        .into_iter()
+        .map(|column| Column {
+            name: column.name,
+            unit: column.unit.map(str::to_owned),
+            meaning: column.meaning.to_owned(),
+        });
     let document = SweepDocument {
         schema: Kind::Sweep.schema().to_owned(),
         axes: axes.collect(),
@@ -143,6 +149,8 @@ fn row(values: Vec<f64>, summary: &Summary) -> Row {
         values,
         impacts: summary.impacts,
         rest_time: summary.rest_time.ok(),
+        rest_no_barrier: summary.baseline.and_then(|[without, _]| without.ok()),
+        rest_lossless: summary.baseline.and_then(|[_, lossless]| lossless.ok()),
         penetration: summary.deepest,
         speed_in: summary.fastest,
         energy_lost: summary.energy_lost,

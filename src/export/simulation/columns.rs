@@ -40,17 +40,31 @@ const RESULTS: [(&str, Option<&str>, &str); 10] = [
     ("stopped", None, "why the run ended"),
 ];
 
-/// The columns: the parameters in the order of the axes, then what came of each motion.
+/// What stands after the rest time where the baseline was asked for.
+const BASELINE: [(&str, Option<&str>, &str); 2] = [
+    (
+        "rest_no_barrier",
+        Some("1/omega"),
+        "the rest time of the same swing without a barrier; empty or null where it does not rest",
+    ),
+    (
+        "rest_lossless",
+        Some("1/omega"),
+        "the rest time with a barrier that loses nothing; empty or null where it does not rest",
+    ),
+];
+
+/// The columns: the parameters in the order of the axes, then what came of each motion, with the rest times of the baseline or without.
 ///
 /// ```
 /// use lindstedt::export::simulation::columns;
 ///
-/// let columns = columns(&["length=0.05:0.3:6".parse()?]);
+/// let columns = columns(&["length=0.05:0.3:6".parse()?], false);
 /// assert_eq!((columns[0].name.as_str(), columns[0].unit), ("length", Some("m")));
 /// assert_eq!((columns[2].name.as_str(), columns[2].unit), ("rest_time", Some("1/omega")));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn columns(axes: &[Axis]) -> Vec<Column> {
+pub fn columns(axes: &[Axis], baseline: bool) -> Vec<Column> {
     let swept = axes.iter().map(|axis| {
         let parameter = axis.name().parse::<Parameter>().ok();
         let unit = parameter.map(Parameter::unit).filter(|unit| !unit.is_empty());
@@ -60,7 +74,10 @@ pub fn columns(axes: &[Axis]) -> Vec<Column> {
             meaning: parameter.map_or("a parameter", Parameter::meaning),
         }
     });
-    let results = RESULTS.map(|(name, unit, meaning)| Column {
+    let (to_rest, others) = RESULTS.split_at(2);
+    let beside: &[_] = if baseline { &BASELINE } else { &[] };
+    let results = to_rest.iter().chain(beside).chain(others);
+    let results = results.map(|&(name, unit, meaning)| Column {
         name: name.to_owned(),
         unit,
         meaning,

@@ -5,6 +5,7 @@ use std::io;
 
 use super::columns::columns;
 use super::{Report, SweepReport};
+use crate::impact::NoRest;
 
 /// Points inside each step of the integrator.
 const BETWEEN: usize = 3;
@@ -74,7 +75,7 @@ pub fn simulation(report: &Report) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    let columns = columns(report.axes);
+    let columns = columns(report.axes, report.has_baseline());
     let units: Vec<String> = columns
         .iter()
         .map(|column| format!("{} {}", column.name, column.unit.unwrap_or("-")))
@@ -85,7 +86,11 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         for value in report.values(row) {
             write!(to, "{value},")?;
         }
-        let rest = summary.rest_time.map_or(String::new(), |time| time.to_string());
+        let written = |time: Result<f64, NoRest>| time.map_or(String::new(), |time| time.to_string());
+        let mut rest = written(summary.rest_time);
+        if let Some([without, lossless]) = summary.baseline {
+            rest = format!("{rest},{},{}", written(without), written(lossless));
+        }
         writeln!(
             to,
             "{},{rest},{},{},{},{},{},{},{},{}",

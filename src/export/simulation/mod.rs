@@ -53,6 +53,11 @@ pub struct SweepReport<'a> {
 }
 
 impl SweepReport<'_> {
+    /// Whether the rest times without a barrier and with a lossless one are there.
+    pub(super) fn has_baseline(&self) -> bool {
+        self.rows.iter().any(|row| row.baseline.is_some())
+    }
+
     /// The values of the parameters of a row.
     pub(super) fn values(&self, row: usize) -> Vec<f64> {
         grid_values(self.axes, row)

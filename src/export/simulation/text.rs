@@ -416,12 +416,16 @@ fn energy(text: &mut String, motion: &Simulation) {
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     let width = |axis: &Axis| (axis.name().len() + 2).max(14);
+    let beside = match report.has_baseline() {
+        true => format!("{:>13}{:>13}", "no barrier", "lossless"),
+        false => String::new(),
+    };
     for axis in report.axes {
         write!(to, "{:>1$}", axis.name(), width(axis))?;
     }
     writeln!(
         to,
-        "{:>9}{:>13}{:>13}{:>11}{:>13}{:>13}",
+        "{:>9}{:>13}{beside}{:>13}{:>11}{:>13}{:>13}",
         "impacts", "rest time", "penetration", "speed in", "energy lost", "stopped at"
     )?;
     let block: usize = match report.axes {
@@ -435,7 +439,12 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         for (axis, value) in report.axes.iter().zip(report.values(row)) {
             write!(to, "{:>1$}", decimal(value), width(axis))?;
         }
-        let rest = summary.rest_time.map_or("-".to_owned(), decimal);
+        let written = |time: Result<f64, NoRest>| time.map_or("-".to_owned(), decimal);
+        let rest = written(summary.rest_time);
+        let beside = match summary.baseline {
+            Some([without, lossless]) => format!("{:>13}{:>13}", written(without), written(lossless)),
+            None => String::new(),
+        };
         let warning = if summary.stop.is_complete() { "" } else { "  incomplete" };
         let lost = if summary.energy_lost.abs() < 1e-9 {
             0.0
@@ -444,7 +453,7 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         };
         writeln!(
             to,
-            "{:>9}{rest:>13}{:>13}{:>11}{:>13}{:>13}{warning}",
+            "{:>9}{rest:>13}{beside}{:>13}{:>11}{:>13}{:>13}{warning}",
             summary.impacts,
             decimal(summary.deepest),
             decimal(summary.fastest),

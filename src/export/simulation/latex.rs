@@ -8,7 +8,7 @@ use crate::export::latex::scientific;
 use crate::impact::{ClosedForm, Piece};
 
 /// Lines of a block of formulas: a page takes no more, and a block does not break.
-const LINES: usize = 30;
+const LINES: usize = 24;
 
 /// The contacts and the phases of a chain.
 ///
@@ -127,11 +127,19 @@ fn phase(piece: &Piece) -> String {
             sines,
         } => {
             let wave = std::f64::consts::PI / duration;
-            let terms = (1..).zip(sines).map(|(j, sine)| {
+            let term = |(j, sine): (u32, f64)| {
                 let amplitude = signed(side.sign() * depth * sine);
                 format!("{amplitude} \\sin({} t)", scientific(f64::from(j) * wave))
-            });
-            format!("{}{}", scientific(barrier), terms.collect::<String>())
+            };
+            let [first, second, third] = sines;
+            // In one line they are wider than a page.
+            format!(
+                "{}{} \\\\\n&&&\\quad{}{}",
+                scientific(barrier),
+                term((1, first)),
+                term((2, second)),
+                term((3, third))
+            )
         }
     };
     format!("{span}x &= {formula}")

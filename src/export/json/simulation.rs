@@ -538,9 +538,7 @@ fn phase(piece: &Piece) -> ChainPhase {
             ..empty
         },
         Some(ClosedForm::Contact {
-            side,
             barrier,
-            depth,
             duration,
             sines,
         }) => ChainPhase {
@@ -548,7 +546,7 @@ fn phase(piece: &Piece) -> ChainPhase {
             contact: Some(ContactForm {
                 barrier,
                 duration,
-                sines: sines.map(|sine| side.sign() * depth * sine).to_vec(),
+                sines: sines.to_vec(),
             }),
             ..empty
         },

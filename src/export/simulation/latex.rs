@@ -120,17 +120,12 @@ fn phase(piece: &Piece) -> String {
             )
         }
         ClosedForm::Contact {
-            side,
             barrier,
-            depth,
             duration,
             sines,
         } => {
             let wave = std::f64::consts::PI / duration;
-            let term = |(j, sine): (u32, f64)| {
-                let amplitude = signed(side.sign() * depth * sine);
-                format!("{amplitude} \\sin({} t)", scientific(f64::from(j) * wave))
-            };
+            let term = |(j, sine): (u32, f64)| format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave));
             let [first, second, third] = sines;
             // In one line they are wider than a page.
             format!(

@@ -150,6 +150,19 @@ struct Leg {
     phase: (f64, f64),
 }
 
+impl Leg {
+    /// A leg of the free swing, of so much time and area, on which friction does nothing.
+    fn free(time: f64, area: f64) -> Self {
+        Self {
+            time,
+            area,
+            length: 0.0,
+            lag: 0.0,
+            phase: (0.0, 1.0),
+        }
+    }
+}
+
 /// Which energies are alike from one swing to the next: of those that leave a barrier, and of free ones.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
@@ -338,13 +351,7 @@ impl<'a> Chain<'a> {
 
     /// Two turning points under viscous damping, about the energy of the first; nothing where there is none.
     fn undulate(&mut self, side: Side, from: Spot) -> Option<Place> {
-        let half = |swing: &Swing| Leg {
-            time: 2.0 * swing.quarter.time,
-            area: 2.0 * swing.quarter.area,
-            length: 0.0,
-            lag: 0.0,
-            phase: (0.0, 1.0),
-        };
+        let half = |swing: &Swing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
         let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
         let energy = swing.energy - self.below(&leg);
         if !is_positive(energy) {
@@ -369,13 +376,7 @@ impl<'a> Chain<'a> {
     /// The next turning point with dry friction: half of the viscous damping before it, half after it; nothing where there is none.
     fn rub(&mut self, side: Side, from: Spot) -> Option<Place> {
         let to = opposite(side);
-        let quarter = |swing: &Swing| Leg {
-            time: swing.quarter.time,
-            area: swing.quarter.area,
-            length: 0.0,
-            lag: 0.0,
-            phase: (0.0, 1.0),
-        };
+        let quarter = |swing: &Swing| Leg::free(swing.quarter.time, swing.quarter.area);
         let (before, _) = self.reference(from.energy, Kind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
             true => Spot::turn(before.energy).x,
@@ -410,11 +411,8 @@ impl<'a> Chain<'a> {
             let crossing = |swing: &Swing| {
                 let (end, start) = (swing.reach(&ahead.spot), swing.reach(&spot));
                 Leg {
-                    time: 0.5 * (end.time - start.time),
-                    area: 0.5 * (end.area - start.area),
                     length: 0.5 * (ahead.spot.x - spot.x),
-                    lag: 0.0,
-                    phase: (0.0, 1.0),
+                    ..Leg::free(0.5 * (end.time - start.time), 0.5 * (end.area - start.area))
                 }
             };
             if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {

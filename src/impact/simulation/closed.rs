@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! swing:    x(t) = 2 s asin(k exp(-r t) sn(n t + u, m)),   s = 1 or -1, t from the beginning of the stretch
-//! contact:  x(t) = x_r + s D (a_1 sin(pi t/T) + a_2 sin(2 pi t/T) + a_3 sin(3 pi t/T))
+//! contact:  x(t) = x_r + a_1 sin(pi t/T) + a_2 sin(2 pi t/T) + a_3 sin(3 pi t/T)
 //! ```
 //!
 //! Without damping r = 0, n = 1 and m = k^2: the motion of the pendulum (DLMF 22.19.2). With it, k exp(-r t) is the sine of half the
@@ -36,17 +36,13 @@ pub enum ClosedForm {
         /// m, the parameter of sn.
         parameter: f64,
     },
-    /// x(t) = x_r + s D sum a_j sin(j pi t/T).
+    /// x(t) = x_r + sum a_j sin(j pi t/T).
     Contact {
-        /// Which barrier.
-        side: Side,
         /// x_r, rad.
         barrier: f64,
-        /// D, the greatest depth, rad.
-        depth: f64,
         /// T, in units of 1/omega.
         duration: f64,
-        /// a_1, a_2, a_3.
+        /// a_1, a_2, a_3, rad: negative into a barrier on the left.
         sines: [f64; 3],
     },
 }
@@ -58,16 +54,14 @@ impl ClosedForm {
         [depth, duration]: [f64; 2],
         [speed_in, speed_out]: [f64; 2],
     ) -> Self {
-        // a_1 + 3 a_3 + 2 a_2 and a_1 + 3 a_3 - 2 a_2 are the speeds in units of pi D/T, a_1 - a_3 = 1.
+        // In units of the depth a_1 + 3 a_3 + 2 a_2 and a_1 + 3 a_3 - 2 a_2 are the speeds in units of pi D/T, a_1 - a_3 = 1.
         let unit = PI * depth / duration;
         let (mean, half) = (0.5 * (speed_in + speed_out) / unit, 0.5 * (speed_in - speed_out) / unit);
         let third = 0.25 * (mean - 1.0);
         Self::Contact {
-            side,
             barrier,
-            depth,
             duration,
-            sines: [1.0 + third, 0.5 * half, third],
+            sines: [1.0 + third, 0.5 * half, third].map(|sine| side.sign() * depth * sine),
         }
     }
 
@@ -92,19 +86,17 @@ impl ClosedForm {
                 )
             }
             Self::Contact {
-                side,
                 barrier,
-                depth,
                 duration,
                 sines,
             } => {
-                let (mut place, mut rate) = (0.0, 0.0);
+                let (mut place, mut rate) = (barrier, 0.0);
                 for (j, sine) in (1..).zip(sines) {
                     let wave = f64::from(j) * PI / duration;
                     place += sine * (wave * t).sin();
                     rate += sine * wave * (wave * t).cos();
                 }
-                (barrier + side.sign() * depth * place, side.sign() * depth * rate)
+                (place, rate)
             }
         }
     }
@@ -144,15 +136,12 @@ impl fmt::Display for ClosedForm {
                 )
             }
             Self::Contact {
-                side,
                 barrier,
-                depth,
                 duration,
                 sines,
             } => {
                 write!(formatter, "{}", decimal(barrier))?;
-                for (j, sine) in (1..).zip(sines) {
-                    let amplitude = side.sign() * depth * sine;
+                for (j, amplitude) in (1..).zip(sines) {
                     if amplitude != 0.0 {
                         write!(
                             formatter,

@@ -317,9 +317,11 @@ impl Path {
             Representation::Constant { x } => node(x, 0.0),
             Representation::Closed(form) => {
                 let (x, velocity) = form.at(t - piece.start);
-                let depth = match form {
-                    ClosedForm::Contact { side, barrier, .. } => (side.sign() * (x - barrier)).max(0.0),
-                    ClosedForm::Swing { .. } => 0.0,
+                let depth = match (form, piece.regime) {
+                    (ClosedForm::Contact { barrier, .. }, Regime::Contact(side)) => {
+                        (side.sign() * (x - barrier)).max(0.0)
+                    }
+                    _ => 0.0,
                 };
                 Node {
                     depth,

@@ -1,6 +1,8 @@
 //! The chain of closed forms against the integration, on cases it was not made for, and against what it cannot break.
 
-use lindstedt::impact::{ContactDeviation, Integrator, Model, Settings, Simulation, Start, Stop, chain, simulate};
+use lindstedt::impact::{
+    ContactDeviation, Integrator, Model, Settings, Simulation, Start, Stop, baseline, chain, simulate,
+};
 use proptest::prelude::*;
 
 fn to_rest(duration: f64) -> Settings {
@@ -51,6 +53,66 @@ fn rest_times_are_within_a_percent_over_the_box_of_designs() {
     }
     errors.sort_by(f64::total_cmp);
     assert!(errors[errors.len() / 2] < 5e-4, "median {}", errors[errors.len() / 2]);
+}
+
+/// A run that stops as soon as the rest time is known has the rest time of a longer one.
+#[test]
+fn stopping_at_rest_changes_no_rest_time() {
+    for (zeta, alpha, right) in [(0.02, 0.0, Some(0.323)), (0.01, 0.01, None), (0.03, 0.0, Some(-0.05))] {
+        let model = Model {
+            zeta,
+            alpha,
+            gamma: 1e6,
+            mu: 1e5,
+            right,
+            ..Model::default()
+        };
+        for integrator in [Integrator::Chain, Integrator::Taylor] {
+            let [short, long] = [true, false].map(|stop_at_rest| {
+                let settings = Settings {
+                    stop_at_rest,
+                    ..to_rest(400.0)
+                };
+                simulate(&model, Start::default(), integrator, &settings).expect("a motion")
+            });
+            assert_eq!(short.stop, Stop::AtRest, "{model:?}");
+            assert!(short.end_time < long.end_time);
+            let [short, long] = [short, long].map(|motion| motion.rest().time.expect("it rests"));
+            assert!((short - long).abs() < 1e-9, "{short} {long} {model:?}");
+        }
+    }
+}
+
+/// The gain by the shorter swing that the ratio of the actions gives is the one that is integrated.
+#[test]
+fn the_gain_by_geometry_is_that_of_the_lossless_barrier() {
+    for (left, right, amplitude) in [
+        (None, Some(0.323), 1.5),
+        (None, Some(0.05), 1.5),
+        (Some(-0.4), Some(0.3), 1.2),
+        (Some(-0.7), None, 2.5),
+    ] {
+        let model = Model {
+            zeta: 0.002,
+            gamma: 1e8,
+            left,
+            right,
+            ..Model::default()
+        };
+        let start = Start {
+            x: 0.0,
+            velocity: 2.0 * f64::sin(0.5 * amplitude),
+        };
+        let settings = to_rest(4000.0);
+        let motion = simulate(&model, start, Integrator::Taylor, &settings).expect("a motion");
+        let found = baseline(&motion).expect("motions").expect("a baseline");
+        let (none, lossless) = (found.no_barrier.expect("rest"), found.lossless_barrier.expect("rest"));
+        let gain = found.geometry.expect("viscous damping alone").gain;
+        assert!(
+            (gain / (none - lossless) - 1.0).abs() < 0.02,
+            "{gain} {none} {lossless}"
+        );
+    }
 }
 
 /// The table of `docs/chain.md` is what is computed.
@@ -212,15 +274,20 @@ fn a_contact_that_is_cut_off_has_no_error_of_its_depth() {
     assert!(first.speed_in.is_some() && first.penetration.is_none(), "{first:?}");
 }
 
-#[test]
-fn a_pendulum_that_leans_on_its_barrier_is_handed_to_the_integration() {
-    let model = Model {
+/// A pendulum that comes to lean on a barrier beyond the bottom.
+fn leaning() -> Model {
+    Model {
         zeta: 0.02,
         gamma: 1e4,
         mu: 1e3,
         right: Some(-0.1),
         ..Model::default()
-    };
+    }
+}
+
+#[test]
+fn a_pendulum_that_leans_on_its_barrier_is_handed_to_the_integration() {
+    let model = leaning();
     let settings = Settings {
         duration: 700.0,
         ..Settings::default()
@@ -241,13 +308,7 @@ fn a_pendulum_that_leans_on_its_barrier_is_handed_to_the_integration() {
 
 #[test]
 fn where_the_integration_gives_up_is_told_by_the_clock_of_the_whole() {
-    let model = Model {
-        zeta: 0.02,
-        gamma: 1e4,
-        mu: 1e3,
-        right: Some(-0.1),
-        ..Model::default()
-    };
+    let model = leaning();
     let settings = Settings {
         duration: 700.0,
         maximum_steps: 300,

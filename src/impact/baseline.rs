@@ -27,7 +27,8 @@ pub struct Baseline {
     pub no_barrier: Result<f64, NoRest>,
     /// With the same barrier, elastic: mu = 0.
     pub lossless_barrier: Result<f64, NoRest>,
-    /// What the actions say of the difference; nothing with dry friction, or where the first swing turns over.
+    /// What the actions say of the difference; nothing with dry friction, where the first swing turns over, or where two
+    /// barriers hold it within a tenth of it.
     pub geometry: Option<Geometry>,
 }
 
@@ -45,7 +46,8 @@ pub struct Geometry {
 impl Geometry {
     /// By the actions of a swing of this amplitude, rad, between the barriers of the model; nothing where the formula says nothing.
     fn of(model: &Model, amplitude: f64) -> Option<Self> {
-        if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI {
+        let caged = model.is_caged(REST_FRACTION * amplitude);
+        if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI || caged {
             return None;
         }
         let ratio = |amplitude: f64| {

@@ -200,6 +200,11 @@ impl Model {
         }
     }
 
+    /// Whether both barriers stand within this angle.
+    pub(super) fn is_caged(&self, angle: f64) -> bool {
+        self.left.is_some_and(|left| left.abs() < angle) && self.right.is_some_and(|right| right.abs() < angle)
+    }
+
     /// Whether dry friction is Coulomb's and there is some: then the motion is followed one direction at a time.
     pub fn sticks(&self) -> bool {
         self.friction == Friction::Exact && self.alpha > 0.0

@@ -83,6 +83,30 @@ fn stopping_at_rest_changes_no_rest_time() {
     }
 }
 
+/// Between two barriers nearer than the level of rest it rests by definition at once, by either route, and is said to be held there.
+#[test]
+fn a_caged_pendulum_is_said_to_be_one() {
+    let caged = |right: f64| Model {
+        zeta: 0.01,
+        left: Some(-1e-4),
+        right: Some(right),
+        ..Model::default()
+    };
+    let start = Start { x: 0.0, velocity: 1.0 };
+    let motion = |model: &Model, integrator| simulate(model, start, integrator, &to_rest(50.0)).expect("a motion");
+    let [found, truth] = [Integrator::Chain, Integrator::Taylor].map(|route| motion(&caged(1e-4), route));
+    assert!(found.is_caged() && truth.is_caged());
+    assert_eq!((found.stop, found.impacts.len()), (Stop::AtRest, truth.impacts.len()));
+    assert!(
+        baseline(&truth)
+            .expect("motions")
+            .expect("a baseline")
+            .geometry
+            .is_none()
+    );
+    assert!(!motion(&caged(0.2), Integrator::Chain).is_caged());
+}
+
 /// The gain by the shorter swing that the ratio of the actions gives is the one that is integrated.
 #[test]
 fn the_gain_by_geometry_is_that_of_the_lossless_barrier() {

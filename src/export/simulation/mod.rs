@@ -98,6 +98,13 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
             ),
         });
     }
+    if motion.is_caged() {
+        notes.push(
+            "both barriers stand within a tenth of the first swing: the envelope is below it at once, so the rest time says where they \
+             stand and nothing of the energy left"
+                .to_owned(),
+        );
+    }
     if let Some((side, depth)) = motion.model.depth(motion.start.x) {
         notes.push(format!(
             "the motion starts inside the {} barrier, {} deep: the first impact has no touch and so no restitution",

@@ -497,6 +497,8 @@ impl<'a> Chain<'a> {
             self.state = [x, away.sign() * bounce.speed_out];
             if self.settings.rest_energy.is_some_and(|rest| energy <= rest) {
                 self.stop = Some(Stop::RestEnergy);
+            } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
+                self.stop = Some(Stop::AtRest);
             }
         }
         self.impacts.push(contact);

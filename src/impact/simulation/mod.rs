@@ -417,6 +417,12 @@ impl Simulation {
         self.impacts.iter().enumerate().map(error).collect()
     }
 
+    /// Whether two barriers hold the pendulum within a tenth of its first swing: then the envelope says at once that it rests, whatever
+    /// energy is left.
+    pub fn is_caged(&self) -> bool {
+        self.model.is_caged(REST_FRACTION * self.rest().amplitude)
+    }
+
     /// Whether a barrier was touched at all.
     pub fn touches(&self) -> bool {
         !self.impacts.is_empty()

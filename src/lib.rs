@@ -35,6 +35,7 @@
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
 //! | [`problem`] | problem files |
 //! | [`catalog`] | classical oscillators |
+//! | [`audit`] | claims of publications, computed again, each with a verdict |
 //! | [`report`] | what a report of a result says, for every format |
 //! | [`export`] | text, LaTeX, JSON, pictures |
 //!
@@ -88,6 +89,8 @@ pub mod impact;
 pub mod problem;
 
 pub mod catalog;
+
+pub mod audit;
 
 pub mod report;
 

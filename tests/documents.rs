@@ -7,8 +7,8 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
-    MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument,
+    self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
+    ImpactDocument, Kind, MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -101,6 +101,7 @@ fn reads_back(document: &Value) {
         Kind::Sweep => again::<SweepDocument>(document),
         Kind::Friction => again::<FrictionDocument>(document),
         Kind::Materials => again::<MaterialsDocument>(document),
+        Kind::Audit => again::<AuditDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
     };
     assert_eq!(written.to_string(), document.to_string());
@@ -125,6 +126,10 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/materials", ".toml") {
         add(&["materials", &file.to_string_lossy()]);
     }
+    for file in files("examples/audit", ".toml") {
+        add(&["audit", &file.to_string_lossy()]);
+    }
+    add(&["paper"]);
     add(&["impact", "--compare"]);
     add(&["simulate", "--integrator", "both"]);
     add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
@@ -192,6 +197,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/materials/1") => "/materials/0/rest",
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         Some("lindstedt/friction/1") => "/speeds/0/printed_value",
+        Some("lindstedt/audit/1") => "/claims/0/entries/0",
         _ => "/entries/0/methods/0",
     };
     document.pointer_mut(place).expect("an object")

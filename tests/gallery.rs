@@ -135,6 +135,26 @@ fn every_comparison_prints_what_it_printed() {
     });
 }
 
+/// Claims of publications with their verdicts, in text, LaTeX and JSON.
+#[test]
+fn every_audit_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("audit-text", output(&["audit", path]));
+                insta::assert_snapshot!("audit-latex", output(&["audit", path, "--format", "latex"]));
+                let mut document: Value =
+                    serde_json::from_str(&output(&["audit", path, "--format", "json"])).expect("the output is JSON");
+                rounded(&mut document);
+                insta::assert_json_snapshot!("audit-json", document);
+            }
+        );
+    });
+}
+
 /// The same swing against barriers of several materials, in text, LaTeX and JSON.
 #[test]
 fn every_study_of_materials_prints_what_it_printed() {

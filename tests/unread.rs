@@ -414,6 +414,9 @@ fn options_of(command: &str) -> Vec<String> {
     names.filter(|name| name != "help").collect()
 }
 
+/// A file of claims.
+const AUDIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/frequencies.toml");
+
 #[test]
 fn every_option_changes_the_answer_or_is_refused_by_name() {
     let cubic = "x'' + x + eps*x^3 + eps*x^5 = 0";
@@ -543,6 +546,19 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("materials", vec![], vec!["--tolerance", "0.1"]),
         ("materials", vec![], vec!["--timeout", "1e-9"]),
         ("materials", vec![], vec!["--quiet"]),
+        ("audit", vec![AUDIT], vec!["--strict"]),
+        ("audit", vec![AUDIT], vec!["--format", "latex"]),
+        ("audit", vec![AUDIT], vec!["--format", "csv"]),
+        ("audit", vec![AUDIT], vec!["--output", file]),
+        ("audit", vec![AUDIT], vec!["--plot", "-"]),
+        ("audit", vec![AUDIT], vec!["--tolerance", "0.1"]),
+        ("audit", vec![AUDIT], vec!["--timeout", "1e-9"]),
+        ("paper", vec![], vec!["--strict"]),
+        ("paper", vec![], vec!["--format", "latex"]),
+        ("paper", vec![], vec!["--output", file]),
+        ("paper", vec![], vec!["--plot", "-"]),
+        ("paper", vec![], vec!["--tolerance", "0.1"]),
+        ("paper", vec![], vec!["--timeout", "1e-9"]),
         ("catalog", vec![], vec!["--format", "csv"]),
         ("catalog", vec![], vec!["--format", "json"]),
         ("catalog", vec![], vec!["--output", file]),
@@ -560,6 +576,8 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "simulate",
         "friction",
         "materials",
+        "audit",
+        "paper",
         "catalog",
         "schema",
     ] {

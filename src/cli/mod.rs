@@ -6,6 +6,7 @@
 //! Results go to standard output or the file of `--output`, all else to standard error. Exit codes: 0 done, 1 refused or
 //! failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a partial result, 70 internal error.
 
+mod audit;
 mod catalog;
 mod compare;
 mod derive;
@@ -42,8 +43,8 @@ struct Cli {
 const AFTER_HELP: &str = "\
 Without a command: lindstedt impact, the paper's pendulum and barrier.
 
-Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance); 4 stopped
-before the end: what is printed is partial and says so.";
+Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance; audit and
+paper always); 4 stopped before the end: what is printed is partial and says so.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -59,6 +60,10 @@ enum Command {
     Friction(friction::Arguments),
     /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
     Materials(materials::Arguments),
+    /// Claims of a publication from a file, each computed again, with a verdict
+    Audit(audit::Arguments),
+    /// Every number, equation, table and figure of the paper, computed again, with a verdict
+    Paper(audit::PaperArguments),
     /// List the classical oscillators that `derive` knows by name
     Catalog(catalog::Arguments),
     /// Print the JSON Schema of a kind of document: every key with its meaning and unit
@@ -179,6 +184,8 @@ impl Command {
             Self::Simulate(arguments) => arguments.common.clone(),
             Self::Friction(arguments) => arguments.common.clone(),
             Self::Materials(arguments) => arguments.common.clone(),
+            Self::Audit(arguments) => arguments.common.clone(),
+            Self::Paper(arguments) => arguments.common.clone(),
             Self::Catalog(arguments) => arguments.common.clone(),
             Self::Schema(arguments) => arguments.common(),
         }
@@ -192,7 +199,8 @@ impl Command {
             Self::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
             Self::Simulate(arguments) => arguments.file.as_deref(),
             Self::Materials(arguments) => arguments.file.as_deref(),
-            Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
+            Self::Audit(arguments) => Some(&arguments.file),
+            Self::Paper(_) | Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
         }
     }
 
@@ -205,6 +213,11 @@ impl Command {
         }
     }
 
+    /// Whether a verdict that fails is exit code 3 without `--tolerance`.
+    fn is_judged(&self) -> bool {
+        matches!(self, Self::Audit(_) | Self::Paper(_))
+    }
+
     /// Does the work.
     fn run(&self) -> Result<Outcome, Failure> {
         match self {
@@ -214,6 +227,8 @@ impl Command {
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Friction(arguments) => friction::run(arguments),
             Self::Materials(arguments) => materials::run(arguments),
+            Self::Audit(arguments) => audit::run(arguments),
+            Self::Paper(arguments) => audit::run_paper(arguments),
             Self::Catalog(arguments) => catalog::run(arguments),
             Self::Schema(arguments) => schema::run(arguments),
         }
@@ -235,6 +250,7 @@ pub fn run() -> ExitCode {
         .command
         .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
     let common = command.common();
+    let judged = common.tolerance.is_some() || command.is_judged();
     match files::check(&common, command.input()) {
         Err(Failure::Refused(message)) => return fail(1, &message),
         Err(Failure::Usage(message)) => return fail(2, &message),
@@ -242,7 +258,7 @@ pub fn run() -> ExitCode {
     }
     let (outcome, in_vain) = within_limits(command, common.timeout);
     match (outcome, in_vain) {
-        (Some(Some(Ok(outcome))), _) => finish(outcome, &common),
+        (Some(Some(Ok(outcome))), _) => finish(outcome, &common, judged),
         (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
         (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
         (None, Some((code, message))) => fail(code, &message),
@@ -333,7 +349,7 @@ fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Wor
     None
 }
 
-fn finish(outcome: Outcome, common: &Common) -> ExitCode {
+fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
     let mut no_picture = None;
     match outcome.picture {
         Some((path, Ok(picture))) => {
@@ -354,7 +370,7 @@ fn finish(outcome: Outcome, common: &Common) -> ExitCode {
     match written {
         Err(error) => fail(1, &error),
         Ok(()) if outcome.partial => ExitCode::from(4),
-        Ok(()) if common.tolerance.is_some() && outcome.verdict == Some(Verdict::Fail) => ExitCode::from(3),
+        Ok(()) if judged && outcome.verdict == Some(Verdict::Fail) => ExitCode::from(3),
         Ok(()) if no_picture.is_some() => ExitCode::from(1),
         Ok(()) => ExitCode::SUCCESS,
     }

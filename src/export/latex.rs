@@ -16,6 +16,7 @@ pub use expression::{expression, symbol};
 pub use super::steps::latex as steps;
 use num_traits::Zero;
 
+use crate::audit::Audit;
 use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
@@ -148,6 +149,19 @@ pub fn friction(study: &FrictionStudy) -> String {
 /// ```
 pub fn materials(study: &MaterialStudy) -> String {
     document(&report::materials(study))
+}
+
+/// Claims with their verdicts: a table of each verdict, with the evidence in comments.
+///
+/// ```
+/// use lindstedt::audit::{Claims, audit};
+///
+/// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
+/// assert!(lindstedt::export::latex::audit(&audit(claims)).contains(r"\begin{tabular}"));
+/// # Ok::<(), lindstedt::audit::ClaimsError>(())
+/// ```
+pub fn audit(audit: &Audit) -> String {
+    document(&report::audit(audit))
 }
 
 /// Every method in one table; those that do not apply stand in comments below it.

@@ -10,6 +10,7 @@ mod table;
 use std::fmt::Write as _;
 
 pub use super::steps::text as steps;
+use crate::audit::Audit;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
 use crate::impact::friction::FrictionStudy;
@@ -123,6 +124,19 @@ pub fn friction(study: &FrictionStudy) -> String {
 /// ```
 pub fn materials(study: &MaterialStudy, width: usize) -> String {
     document(&report::materials(study), width)
+}
+
+/// Claims with their verdicts, in lines of at most `width` characters where words allow it.
+///
+/// ```
+/// use lindstedt::audit::{Claims, audit};
+///
+/// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
+/// assert!(lindstedt::export::text::audit(&audit(claims), 80).contains("1 reproduced"));
+/// # Ok::<(), lindstedt::audit::ClaimsError>(())
+/// ```
+pub fn audit(audit: &Audit, width: usize) -> String {
+    document(&report::audit(audit), width)
 }
 
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.

@@ -11,7 +11,7 @@ use crate::expr::excerpt;
 use crate::spelling::nearest;
 
 /// The message of the parser, with its place shown as everywhere else.
-pub(super) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
+pub(crate) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
     let said = error.message();
     // Of several lines the first says what is wrong and the others what the parser made of it.
     let what = said.lines().next().unwrap_or_default();

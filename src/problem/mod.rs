@@ -34,6 +34,7 @@ pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
 pub use keys::{KEYS, Reader, UnreadKey};
 pub use materials::MaterialsFileError;
+pub(crate) use mistakes::in_words;
 pub use simulate::{Simulate, SimulateError};
 
 /// The largest file that is read, in bytes.

@@ -4,6 +4,7 @@
 //! [`Impact`](crate::impact::Impact), a [`FrictionStudy`](crate::impact::friction::FrictionStudy). Out go documents, sections of blocks; every format of `export` knows each kind of block
 //! and nothing of the results. Which law is shown, what is left out and what stands beside what is chosen here, once.
 
+mod audit;
 mod comparison;
 mod friction;
 mod impact;
@@ -11,6 +12,9 @@ mod impact_comparison;
 mod materials;
 mod solution;
 
+pub use audit::audit;
+#[cfg(feature = "json")]
+pub(crate) use audit::{computed as audit_computed, entry as audit_entry, printed as audit_printed};
 pub use comparison::comparison;
 pub use friction::friction;
 pub use impact::impact;

@@ -12,6 +12,7 @@
 //! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What has no value is null: a key is
 //! never left out.
 
+pub mod audit;
 pub mod catalog;
 pub mod comparison;
 pub mod friction;
@@ -29,6 +30,7 @@ use std::io;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+pub use audit::{AuditDocument, audit};
 pub use catalog::{CatalogDocument, catalog};
 pub use comparison::{ComparisonDocument, comparison};
 pub use friction::{FrictionDocument, friction};

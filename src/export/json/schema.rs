@@ -5,8 +5,8 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, JsonError,
-    MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument, unexpected,
+    AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
+    JsonError, MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -29,13 +29,15 @@ pub enum Kind {
     Friction,
     /// `materials`.
     Materials,
+    /// `audit`, `paper`.
+    Audit,
     /// `catalog`.
     Catalog,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -44,6 +46,7 @@ impl Kind {
         Self::Sweep,
         Self::Friction,
         Self::Materials,
+        Self::Audit,
         Self::Catalog,
     ];
 
@@ -58,6 +61,7 @@ impl Kind {
             Self::Sweep => "lindstedt/sweep/1",
             Self::Friction => "lindstedt/friction/1",
             Self::Materials => "lindstedt/materials/1",
+            Self::Audit => "lindstedt/audit/1",
             Self::Catalog => "lindstedt/catalog/1",
         }
     }
@@ -92,6 +96,7 @@ impl Kind {
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
+            Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
         };
         schema.insert("title".to_owned(), self.schema().into());

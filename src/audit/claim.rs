@@ -1,0 +1,318 @@
+//! A claim: what a publication prints, and how it is to be computed.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::printed::{Printed, Rounding};
+use crate::expr::Expr;
+use crate::impact::Rule;
+use crate::method::Options;
+use crate::oscillator::Oscillator;
+use crate::solution::{AmplitudeConvention, Method};
+use crate::symbol::Symbol;
+
+/// One claim of a publication.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// Its name, one of its own in a file.
+    pub id: String,
+    /// Where it is printed.
+    pub place: String,
+    /// What is claimed, in words.
+    pub says: String,
+    /// How it is computed.
+    pub question: Question,
+    /// What is printed: one entry, or the rows of a table.
+    pub entries: Vec<Entry>,
+    /// What may be supposed: for each subject its alternatives, of which at most one is.
+    pub suppositions: Vec<Vec<Supposition>>,
+    /// A number that the publication does not print, to be solved for.
+    pub unknown: Option<Unknown>,
+    /// What the publication does not print and the claim cannot be computed without, in words.
+    pub needs: Vec<String>,
+    /// The verdict that is known already; without it a claim is expected to be reproduced.
+    pub expected: Option<Verdict>,
+    /// What a reader should know beside it.
+    pub note: Option<String>,
+}
+
+/// One thing that is printed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Values of this entry alone.
+    pub values: BTreeMap<Symbol, Expr>,
+    /// As it is printed.
+    pub printed: String,
+    /// How that is read, where it is printed in words.
+    pub read_as: Option<String>,
+    /// What that says.
+    pub stated: Stated,
+}
+
+/// What a printed text says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stated {
+    /// A number.
+    Number(Printed),
+    /// A formula.
+    Formula(Expr),
+    /// How the numbers of all entries follow each other.
+    Trend(Trend),
+    /// No more than the claim itself says.
+    Words,
+}
+
+/// How numbers follow each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trend {
+    /// Each is smaller than the one before: `falls`.
+    Falls,
+    /// Each is larger than the one before: `rises`.
+    Rises,
+    /// The first is the smallest: `first is least`.
+    FirstIsLeast,
+    /// The first is the largest: `first is greatest`.
+    FirstIsGreatest,
+}
+
+impl Trend {
+    /// Every trend.
+    pub const ALL: [Self; 4] = [Self::Falls, Self::Rises, Self::FirstIsLeast, Self::FirstIsGreatest];
+
+    /// The words in a file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Falls => "falls",
+            Self::Rises => "rises",
+            Self::FirstIsLeast => "first is least",
+            Self::FirstIsGreatest => "first is greatest",
+        }
+    }
+
+    /// The trend of these words.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|trend| trend.name() == name)
+    }
+
+    /// Whether these numbers follow each other so. What differs by less than this part of its size is the same, and neither
+    /// falls nor rises.
+    pub fn holds(self, numbers: &[f64], same: f64) -> bool {
+        let falls = |one: f64, other: f64| other < one - same * one.abs();
+        let first = numbers.first().copied().unwrap_or(f64::NAN);
+        let mut pairs = numbers.windows(2);
+        let mut others = numbers.iter().skip(1);
+        match self {
+            Self::Falls => pairs.all(|pair| falls(pair[0], pair[1])),
+            Self::Rises => pairs.all(|pair| falls(pair[1], pair[0])),
+            Self::FirstIsLeast => others.all(|other| falls(*other, first)),
+            Self::FirstIsGreatest => others.all(|other| falls(first, *other)),
+        }
+    }
+}
+
+/// How a claim is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// What is computed.
+    pub quantity: Quantity,
+    /// The equation of motion, for what is derived from one.
+    pub equation: Option<Oscillator>,
+    /// Method, order and the like.
+    pub options: Options,
+    /// How the line of equation (15) is fitted.
+    pub rule: Rule,
+    /// Values of names, which may use each other.
+    pub values: BTreeMap<Symbol, Expr>,
+    /// What stands for pi.
+    pub pi: Option<Expr>,
+    /// How digits come about.
+    pub rounding: Rounding,
+    /// The relative error that is allowed, in place of digits; of a trend, what counts as the same.
+    pub tolerance: Option<f64>,
+}
+
+/// What is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// A number: a formula in values and in what the program computes, [`NAMES`](super::NAMES).
+    Value(Expr),
+    /// The coefficient of a term in a derived law.
+    Coefficient {
+        /// Whether of omega^2, otherwise of omega.
+        squared: bool,
+        /// The term, a product of powers.
+        term: Expr,
+    },
+    /// A derived law as a whole.
+    Law {
+        /// Whether omega^2, otherwise omega.
+        squared: bool,
+    },
+    /// The Taylor polynomial of a formula in x about zero.
+    Taylor {
+        /// The formula.
+        formula: Expr,
+        /// The highest power.
+        degree: u32,
+    },
+    /// A formula, the same as the printed one for every value of its symbols.
+    Identity(Expr),
+    /// How a formula changes from entry to entry.
+    Trend(Expr),
+    /// How many coordinates an equation has: letters with two primes.
+    Coordinates(Expr),
+    /// Options that are to go together.
+    Settings(Vec<(String, String)>),
+    /// Nothing: what it needs is not printed.
+    Nothing,
+}
+
+/// A number that is not printed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unknown {
+    /// Its name.
+    pub name: Symbol,
+    /// The least and the greatest value that it may have.
+    pub within: [f64; 2],
+}
+
+/// Something that may be supposed where the claim alone is not reproduced.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Supposition {
+    /// Another value of pi.
+    Pi(Expr),
+    /// Digits that come about another way.
+    Rounding(Rounding),
+    /// Another method.
+    Method(Method),
+    /// Another order.
+    Order(u32),
+    /// Degrees of an approximant.
+    Degrees(u32, u32),
+    /// Another degree of the Taylor polynomial of the force.
+    Taylor(u32),
+    /// Another meaning of the amplitude.
+    Amplitude(AmplitudeConvention),
+    /// Another way to fit the line.
+    Rule(Rule),
+    /// Another reading of what is printed, and how it is typed.
+    Formula(Expr, String),
+    /// Values that are not printed, or others than the printed ones.
+    Values(Vec<(Symbol, Expr)>),
+}
+
+impl fmt::Display for Supposition {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pi(value) => write!(formatter, "pi = {}", decimal_text(value)),
+            Self::Rounding(Rounding::Rounded) => formatter.write_str("digits rounded"),
+            Self::Rounding(Rounding::Cut) => formatter.write_str("digits cut off"),
+            Self::Rounding(Rounding::Either) => formatter.write_str("digits rounded or cut off"),
+            Self::Method(method) => write!(formatter, "method {}", method.name()),
+            Self::Order(order) => write!(formatter, "order {order}"),
+            Self::Degrees(above, below) => write!(formatter, "degrees {above},{below}"),
+            Self::Taylor(degree) => write!(formatter, "Taylor degree {degree}"),
+            Self::Amplitude(convention) => write!(formatter, "amplitude {}", convention.name()),
+            Self::Rule(rule) => write!(formatter, "line by {rule}"),
+            Self::Formula(_, typed) => write!(formatter, "read as {typed}"),
+            Self::Values(values) => {
+                let each: Vec<String> = values
+                    .iter()
+                    .map(|(name, value)| format!("{name} = {}", decimal_text(value)))
+                    .collect();
+                formatter.write_str(&each.join(", "))
+            }
+        }
+    }
+}
+
+/// A value as it was probably typed: a decimal where it is a fraction of powers of two and five.
+fn decimal_text(value: &Expr) -> String {
+    let Some(number) = value.as_number() else {
+        return value.to_string();
+    };
+    let text = crate::decimal::significant_fraction(number, 12);
+    let again = crate::expr::parse_expression(&text);
+    match again.is_ok_and(|again| again.as_number() == Some(number)) {
+        true => text,
+        false => value.to_string(),
+    }
+}
+
+impl Question {
+    /// The question with this supposed.
+    pub(super) fn supposing(&self, suppositions: &[&Supposition]) -> Self {
+        let mut question = self.clone();
+        for supposition in suppositions {
+            match supposition {
+                Supposition::Pi(value) => question.pi = Some(value.clone()),
+                Supposition::Rounding(rounding) => question.rounding = *rounding,
+                Supposition::Method(method) => question.options.method = Some(*method),
+                Supposition::Order(order) => question.options.order = Some(*order),
+                Supposition::Degrees(above, below) => question.options.pade = Some((*above, *below)),
+                Supposition::Taylor(degree) => question.options.taylor = Some(*degree),
+                Supposition::Amplitude(convention) => question.options.amplitude = Some(*convention),
+                Supposition::Rule(rule) => question.rule = *rule,
+                Supposition::Formula(formula, _) => question.quantity.read_as(formula),
+                Supposition::Values(values) => question.values.extend(values.iter().cloned()),
+            }
+        }
+        question
+    }
+}
+
+impl Quantity {
+    fn read_as(&mut self, other: &Expr) {
+        match self {
+            Self::Value(formula)
+            | Self::Taylor { formula, .. }
+            | Self::Identity(formula)
+            | Self::Trend(formula)
+            | Self::Coordinates(formula) => *formula = other.clone(),
+            Self::Coefficient { .. } | Self::Law { .. } | Self::Settings(_) | Self::Nothing => {}
+        }
+    }
+}
+
+/// What is found of a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// To every printed digit.
+    Reproduced,
+    /// To every printed digit, by something that the publication does not say and the program found.
+    UnderAssumption,
+    /// Something that is needed is not printed.
+    NotReproducible,
+    /// Something else is computed.
+    Inconsistent,
+}
+
+impl Verdict {
+    /// Every verdict, the best first.
+    pub const ALL: [Self; 4] = [
+        Self::Reproduced,
+        Self::UnderAssumption,
+        Self::NotReproducible,
+        Self::Inconsistent,
+    ];
+
+    /// The name in files and documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reproduced => "reproduced",
+            Self::UnderAssumption => "reproduced-under-assumption",
+            Self::NotReproducible => "not-reproducible",
+            Self::Inconsistent => "inconsistent",
+        }
+    }
+
+    /// The verdict of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|verdict| verdict.name() == name)
+    }
+
+    /// Whether the printed comes out, with or without an assumption.
+    pub fn is_reproduced(self) -> bool {
+        matches!(self, Self::Reproduced | Self::UnderAssumption)
+    }
+}

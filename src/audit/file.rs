@@ -1,0 +1,957 @@
+//! Files of claims, in TOML: `docs/audit.md` says what each key means.
+//!
+//! In: the text of a file. Out: [`Claims`], or the first mistake with its line and a caret below its place. A key that would say nothing
+//! to its claim is refused by name.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::str::FromStr;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown, Verdict};
+use super::printed::{Printed, Rounding};
+use super::quantity::{NAMES, is_a_name};
+use super::{Claims, MOST_COMBINATIONS, identity, options};
+use crate::catalog;
+use crate::decimal::decimal;
+use crate::exact::Rational;
+use crate::expr::{Expr, ParseError, excerpt, parse_expression};
+use crate::impact::Rule;
+use crate::method::Options;
+use crate::oscillator::Oscillator;
+use crate::problem::{LARGEST_FILE, Order, ProblemError, in_words};
+use crate::solution::{AmplitudeConvention, Method};
+use crate::spelling::nearest;
+use crate::symbol::Symbol;
+
+/// Why a file has no claims that can be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ClaimsError {
+    /// Not TOML, or a key or value that does not belong there.
+    #[error(transparent)]
+    File(#[from] ProblemError),
+    /// A claim that says nothing that could be computed; the text shows the line.
+    #[error("{message}")]
+    Claim {
+        /// The message with the line and a caret.
+        message: String,
+        /// What to write instead, where it is known.
+        help: Option<String>,
+    },
+    /// A file without a claim.
+    #[error("there is no claim: give each as [[claim]] with an id, a quantity and what is printed")]
+    NoClaim,
+}
+
+impl ClaimsError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::File(error) => error.help(),
+            Self::Claim { help, .. } => help.clone(),
+            Self::NoClaim => None,
+        }
+    }
+}
+
+/// What is wrong, and where.
+struct Mistake {
+    span: Range<usize>,
+    what: String,
+    help: Option<String>,
+}
+
+type Found<T> = Result<T, Mistake>;
+
+fn mistake<T>(span: Range<usize>, what: impl Into<String>) -> Found<T> {
+    Err(Mistake {
+        span,
+        what: what.into(),
+        help: None,
+    })
+}
+
+fn helped<T>(span: Range<usize>, what: impl Into<String>, help: impl Into<String>) -> Found<T> {
+    Err(Mistake {
+        span,
+        what: what.into(),
+        help: Some(help.into()),
+    })
+}
+
+impl FromStr for Claims {
+    type Err = ClaimsError;
+
+    fn from_str(text: &str) -> Result<Self, ClaimsError> {
+        if text.len() > LARGEST_FILE {
+            return Err(ProblemError::TooLarge.into());
+        }
+        let text = text.trim_start_matches('\u{feff}');
+        let document: Document = toml::from_str(text).map_err(|error| in_words(text, &error))?;
+        read(document)
+            .map_err(|found| {
+                let line = text[..found.span.start].matches('\n').count() + 1;
+                let [shown, carets] = excerpt(text, &found.span);
+                ClaimsError::Claim {
+                    message: format!("line {line}: {}\n  {shown}\n  {carets}", found.what),
+                    help: found.help,
+                }
+            })?
+            .ok_or(ClaimsError::NoClaim)
+    }
+}
+
+/// Names with what stands for them.
+type Table = BTreeMap<String, Spanned<toml::Value>>;
+type Text = Spanned<String>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(default)]
+    title: String,
+    #[serde(default)]
+    values: Table,
+    #[serde(default)]
+    claim: Vec<Section>,
+}
+
+/// A `[[claim]]` as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Section {
+    id: Text,
+    #[serde(rename = "where", default)]
+    place: String,
+    #[serde(default)]
+    says: String,
+    quantity: Option<Text>,
+    formula: Option<Text>,
+    of: Option<Text>,
+    term: Option<Text>,
+    equation: Option<Text>,
+    method: Option<Text>,
+    order: Option<Spanned<Order>>,
+    small: Option<Text>,
+    amplitude: Option<Text>,
+    taylor: Option<Spanned<u32>>,
+    linearisation: Option<Text>,
+    values: Option<Spanned<Table>>,
+    settings: Option<Spanned<BTreeMap<String, Text>>>,
+    printed: Option<Text>,
+    read_as: Option<Text>,
+    entries: Option<Spanned<Vec<Spanned<Row>>>>,
+    tolerance: Option<Spanned<f64>>,
+    rounding: Option<Text>,
+    unknown: Option<Text>,
+    within: Option<Spanned<[toml::Value; 2]>>,
+    suppose: Option<Spanned<Suppose>>,
+    #[serde(default)]
+    needs: Vec<String>,
+    expect: Option<Text>,
+    note: Option<String>,
+}
+
+/// A row of a printed table.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Row {
+    #[serde(default)]
+    values: Table,
+    printed: Option<Text>,
+    read_as: Option<Text>,
+}
+
+/// What may be supposed, in lists of alternatives.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Suppose {
+    pi: Vec<Spanned<toml::Value>>,
+    rounding: Vec<Text>,
+    method: Vec<Text>,
+    order: Vec<Order>,
+    taylor: Vec<u32>,
+    amplitude: Vec<Text>,
+    linearisation: Vec<Text>,
+    formula: Vec<Text>,
+    values: Vec<Table>,
+}
+
+/// The quantities that are no names of numbers.
+const KINDS: [&str; 8] = [
+    "value",
+    "coefficient",
+    "law",
+    "taylor",
+    "identity",
+    "trend",
+    "coordinates",
+    "options",
+];
+
+/// Keys that some quantities read and others do not.
+const OF_A_LAW: [&str; 6] = ["equation", "method", "order", "small", "amplitude", "taylor"];
+
+/// The keys of the question that a quantity reads.
+fn keys_of(kind: &str) -> Vec<&'static str> {
+    let own: &[&str] = match kind {
+        "coefficient" => &["of", "term"],
+        "law" => &["of"],
+        "taylor" => &["formula", "order"],
+        "identity" => &["formula", "values"],
+        "coordinates" => &["formula"],
+        "options" => &["settings"],
+        "" => &["values"],
+        "value" | "trend" => &[
+            "formula",
+            "linearisation",
+            "values",
+            "entries",
+            "unknown",
+            "tolerance",
+            "rounding",
+        ],
+        _ => &["linearisation", "values", "entries", "unknown", "tolerance", "rounding"],
+    };
+    let of_a_law: &[&str] = match kind {
+        "taylor" | "identity" | "coordinates" | "options" | "" => &[],
+        _ => &OF_A_LAW,
+    };
+    let of_a_number: &[&str] = match kind {
+        "coefficient" | "coordinates" => &["tolerance", "rounding"],
+        _ => &[],
+    };
+    [own, of_a_law, of_a_number].concat()
+}
+
+fn read(document: Document) -> Found<Option<Claims>> {
+    let values = table(&document.values)?;
+    let mut ids: BTreeSet<String> = BTreeSet::new();
+    let mut claims = Vec::new();
+    for section in &document.claim {
+        if !ids.insert(section.id.get_ref().clone()) {
+            return mistake(
+                section.id.span(),
+                format!("there are two claims `{}`", section.id.get_ref()),
+            );
+        }
+        claims.push(claim(section, &values)?);
+    }
+    Ok((!claims.is_empty()).then_some(Claims {
+        title: document.title,
+        claims,
+    }))
+}
+
+fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
+    let kind = kind(section)?;
+    check_keys(section, kind)?;
+    // In a formula the names of the file stay letters.
+    let mut values = match kind {
+        "identity" | "law" | "taylor" | "coefficient" | "coordinates" => BTreeMap::new(),
+        _ => shared.clone(),
+    };
+    if let Some(own) = &section.values {
+        values.extend(table(own.get_ref())?);
+    }
+    let entries = entries(section, kind)?;
+    let unknown = unknown(section, &values)?;
+    let question = Question {
+        quantity: quantity(section, kind)?,
+        equation: section.equation.as_ref().map(equation).transpose()?,
+        options: options_of(section)?,
+        rule: section
+            .linearisation
+            .as_ref()
+            .map(rule)
+            .transpose()?
+            .unwrap_or_default(),
+        values,
+        pi: None,
+        rounding: section.rounding.as_ref().map(rounding).transpose()?.unwrap_or_default(),
+        tolerance: section.tolerance.as_ref().map(tolerance).transpose()?,
+    };
+    let suppositions = match &section.suppose {
+        Some(suppose) => suppositions(suppose.get_ref())?,
+        None => vec![],
+    };
+    let combinations = suppositions
+        .iter()
+        .map(|subject| subject.len() + 1)
+        .try_fold(1_usize, usize::checked_mul);
+    if combinations.is_none_or(|count| count > MOST_COMBINATIONS) {
+        let span = section.suppose.as_ref().map_or(section.id.span(), Spanned::span);
+        return mistake(
+            span,
+            format!("these are more than {MOST_COMBINATIONS} combinations of suppositions"),
+        );
+    }
+    let claim = Claim {
+        id: section.id.get_ref().clone(),
+        place: section.place.clone(),
+        says: section.says.clone(),
+        question,
+        entries,
+        suppositions,
+        unknown,
+        needs: section.needs.clone(),
+        expected: section.expect.as_ref().map(verdict).transpose()?,
+        note: section.note.clone(),
+    };
+    check_names(section, &claim)?;
+    Ok(claim)
+}
+
+/// The quantity: one of [`KINDS`], a name of a number, or nothing where only what is missing is told.
+fn kind(section: &Section) -> Found<&str> {
+    let Some(quantity) = &section.quantity else {
+        return match section.needs.is_empty() {
+            false => Ok(""),
+            true => helped(
+                section.id.span(),
+                format!("claim `{}` has no quantity", section.id.get_ref()),
+                format!("give `quantity`: {}, or a number such as paper_speed", KINDS.join(", ")),
+            ),
+        };
+    };
+    let name = quantity.get_ref().as_str();
+    if KINDS.contains(&name) || is_a_name(name) {
+        return Ok(name);
+    }
+    let known = KINDS.into_iter().chain(NAMES.iter().map(|entry| entry.0));
+    let help = match nearest(name, known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("give {}, or a number such as paper_speed", KINDS.join(", ")),
+    };
+    helped(quantity.span(), format!("unknown quantity `{name}`"), help)
+}
+
+/// Refuses what this quantity would not read.
+fn check_keys(section: &Section, kind: &str) -> Found<()> {
+    let span = |text: &Option<Text>| text.as_ref().map(Spanned::span);
+    let given: [(&str, Option<Range<usize>>); 16] = [
+        ("formula", span(&section.formula)),
+        ("of", span(&section.of)),
+        ("term", span(&section.term)),
+        ("equation", span(&section.equation)),
+        ("method", span(&section.method)),
+        ("order", section.order.as_ref().map(Spanned::span)),
+        ("small", span(&section.small)),
+        ("amplitude", span(&section.amplitude)),
+        ("taylor", section.taylor.as_ref().map(Spanned::span)),
+        ("linearisation", span(&section.linearisation)),
+        ("values", section.values.as_ref().map(Spanned::span)),
+        ("settings", section.settings.as_ref().map(Spanned::span)),
+        ("entries", section.entries.as_ref().map(Spanned::span)),
+        ("tolerance", section.tolerance.as_ref().map(Spanned::span)),
+        ("rounding", span(&section.rounding)),
+        ("unknown", span(&section.unknown)),
+    ];
+    let known = keys_of(kind);
+    for (key, span) in given {
+        if let Some(span) = span.filter(|_| !known.contains(&key)) {
+            let words = match kind {
+                "" => "a claim without a quantity".to_owned(),
+                kind => format!("the quantity `{kind}`"),
+            };
+            return mistake(span, format!("`{key}` says nothing to {words}: leave it out"));
+        }
+    }
+    if let Some(suppose) = &section.suppose {
+        let subjects = suppose.get_ref();
+        let tried = [
+            ("rounding", subjects.rounding.is_empty()),
+            ("method", subjects.method.is_empty()),
+            ("order", subjects.order.is_empty()),
+            ("taylor", subjects.taylor.is_empty()),
+            ("amplitude", subjects.amplitude.is_empty()),
+            ("linearisation", subjects.linearisation.is_empty()),
+            ("values", subjects.values.is_empty()),
+        ];
+        let odd = tried.iter().find(|(key, none)| !none && !known.contains(key));
+        let is_number = known.contains(&"values") && !matches!(kind, "" | "identity");
+        let odd_number = [("pi", subjects.pi.is_empty()), ("formula", subjects.formula.is_empty())];
+        let odd_number = odd_number.iter().find(|(_, none)| !none && !is_number);
+        if let Some((key, _)) = odd.or(odd_number) {
+            return mistake(
+                suppose.span(),
+                format!("to suppose another `{key}` says nothing to the quantity `{kind}`: leave it out"),
+            );
+        }
+    }
+    match (&section.within, &section.unknown) {
+        (Some(within), None) => mistake(within.span(), "`within` needs the name of an `unknown`"),
+        _ => Ok(()),
+    }
+}
+
+/// What is computed.
+fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
+    let needed = |key: &str, text: &Option<Text>| -> Found<Text> {
+        match text {
+            Some(text) => Ok(text.clone()),
+            None => mistake(
+                section.id.span(),
+                format!(
+                    "claim `{}` has no `{key}`, which the quantity `{kind}` needs",
+                    section.id.get_ref()
+                ),
+            ),
+        }
+    };
+    let formula = || -> Found<Expr> { equal_to_zero(&needed("formula", &section.formula)?) };
+    let squared = || match section.of.as_ref().map(|of| (of.get_ref().as_str(), of.span())) {
+        None | Some(("frequency_squared", _)) => Ok(true),
+        Some(("frequency", _)) => Ok(false),
+        Some((other, span)) => helped(
+            span,
+            format!("`{other}` is no law"),
+            "give frequency_squared or frequency",
+        ),
+    };
+    if matches!(kind, "coefficient" | "law") {
+        needed("equation", &section.equation)?;
+    }
+    Ok(match kind {
+        "" => Quantity::Nothing,
+        "value" => Quantity::Value(expression(&needed("formula", &section.formula)?)?),
+        "trend" => Quantity::Trend(expression(&needed("formula", &section.formula)?)?),
+        "coefficient" => {
+            let text = needed("term", &section.term)?;
+            let term = expression(&text)?;
+            let polynomial = term.to_polynomial(&mut |_| None).ok().flatten();
+            let is_product = polynomial.is_some_and(|terms| {
+                terms
+                    .single_term()
+                    .is_some_and(|(_, number)| num_traits::One::is_one(number))
+            });
+            if !is_product {
+                return mistake(
+                    text.span(),
+                    format!("`{term}` is no product of powers, such as A^2*eps"),
+                );
+            }
+            Quantity::Coefficient {
+                squared: squared()?,
+                term,
+            }
+        }
+        "law" => Quantity::Law { squared: squared()? },
+        "taylor" => Quantity::Taylor {
+            formula: formula()?,
+            degree: match section.order.as_ref().map(Spanned::get_ref) {
+                Some(Order::Power(degree)) if *degree <= MOST_TAYLOR => *degree,
+                _ => {
+                    let span = section.order.as_ref().map_or(section.id.span(), Spanned::span);
+                    return mistake(
+                        span,
+                        format!("a Taylor polynomial needs an `order`, its degree, up to {MOST_TAYLOR}"),
+                    );
+                }
+            },
+        },
+        "identity" => Quantity::Identity(formula()?),
+        "coordinates" => Quantity::Coordinates(formula()?),
+        "options" => Quantity::Settings(settings(section)?),
+        name => Quantity::Value(Expr::symbol(name)),
+    })
+}
+
+/// The highest degree of a Taylor polynomial.
+const MOST_TAYLOR: u32 = 100;
+
+fn settings(section: &Section) -> Found<Vec<(String, String)>> {
+    let Some(settings) = &section.settings else {
+        return mistake(
+            section.id.span(),
+            format!(
+                "claim `{}` has no `settings`, the options that go together",
+                section.id.get_ref()
+            ),
+        );
+    };
+    let one = |(name, value): (&String, &Text)| {
+        let spoken = name.replace('_', " ");
+        match options::KNOWN.contains(&spoken.as_str()) {
+            true => Ok((spoken, value.get_ref().clone())),
+            false => {
+                let near = nearest(&spoken, options::KNOWN);
+                let help = near.map_or_else(
+                    || format!("the rules know {}", options::KNOWN.join(", ")),
+                    |near| format!("did you mean `{}`?", near.replace(' ', "_")),
+                );
+                helped(value.span(), format!("unknown option `{name}`"), help)
+            }
+        }
+    };
+    settings.get_ref().iter().map(one).collect()
+}
+
+/// What is printed.
+fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
+    let id = section.id.get_ref();
+    let several = section.entries.as_ref();
+    let own = |row: &Row| table(&row.values);
+    if kind == "trend" {
+        let Some(rows) = several.filter(|rows| rows.get_ref().len() > 1) else {
+            let span = several.map_or(section.id.span(), Spanned::span);
+            return mistake(
+                span,
+                format!("claim `{id}` has no trend: give `entries`, two or more, with `values`"),
+            );
+        };
+        let Some(text) = section.read_as.as_ref().or(section.printed.as_ref()) else {
+            return no_number(section);
+        };
+        let Some(trend) = Trend::from_name(text.get_ref()) else {
+            let known = Trend::ALL.map(Trend::name).join(", ");
+            return helped(
+                text.span(),
+                format!("`{}` is no trend", text.get_ref()),
+                format!("what is printed may be read as one: read_as = {known}"),
+            );
+        };
+        let printed = section.printed.as_ref().unwrap_or(text).get_ref();
+        let row = |row: &Spanned<Row>| match row.get_ref().printed.as_ref().or(row.get_ref().read_as.as_ref()) {
+            Some(text) => mistake(
+                text.span(),
+                "the entries of a trend have `values` alone: what is printed is the trend",
+            ),
+            None => Ok(Entry {
+                values: own(row.get_ref())?,
+                printed: printed.clone(),
+                read_as: section.read_as.as_ref().map(|text| text.get_ref().clone()),
+                stated: Stated::Trend(trend),
+            }),
+        };
+        return rows.get_ref().iter().map(row).collect();
+    }
+    if let Some(rows) = several {
+        if let Some(text) = section.printed.as_ref().or(section.read_as.as_ref()) {
+            return mistake(
+                text.span(),
+                "what is printed stands in each of the `entries` already: give one of them",
+            );
+        }
+        if rows.get_ref().is_empty() {
+            return mistake(rows.span(), "there is no entry");
+        }
+        let row = |row: &Spanned<Row>| {
+            let Some(printed) = &row.get_ref().printed else {
+                return mistake(
+                    row.span(),
+                    format!("an entry of claim `{id}` has no number: give `printed`"),
+                );
+            };
+            Ok(Entry {
+                values: own(row.get_ref())?,
+                printed: printed.get_ref().clone(),
+                read_as: row.get_ref().read_as.as_ref().map(|text| text.get_ref().clone()),
+                stated: stated(kind, row.get_ref().read_as.as_ref().unwrap_or(printed))?,
+            })
+        };
+        return rows.get_ref().iter().map(row).collect();
+    }
+    let stated = match (&section.printed, kind) {
+        (None, "" | "options") => Stated::Words,
+        (None, _) => return no_number(section),
+        (Some(printed), kind) => stated(kind, section.read_as.as_ref().unwrap_or(printed))?,
+    };
+    if let (Some(text), "" | "options") = (&section.read_as, kind) {
+        return mistake(
+            text.span(),
+            "`read_as` says nothing here: there is no number to be read",
+        );
+    }
+    Ok(vec![Entry {
+        values: BTreeMap::new(),
+        printed: section
+            .printed
+            .as_ref()
+            .map_or(String::new(), |text| text.get_ref().clone()),
+        read_as: section.read_as.as_ref().map(|text| text.get_ref().clone()),
+        stated,
+    }])
+}
+
+fn no_number<T>(section: &Section) -> Found<T> {
+    helped(
+        section.id.span(),
+        format!("claim `{}` has nothing that is printed", section.id.get_ref()),
+        "give `printed`, the text with all its digits: printed = \"0.8478\"",
+    )
+}
+
+/// What a printed text says, for this quantity.
+fn stated(kind: &str, text: &Text) -> Found<Stated> {
+    match kind {
+        "" | "options" => Ok(Stated::Words),
+        "law" => {
+            let right = text.get_ref().rsplit('=').next().unwrap_or_default();
+            Ok(Stated::Formula(parsed(right, text.span())?))
+        }
+        "taylor" | "identity" => Ok(Stated::Formula(equal_to_zero(text)?)),
+        _ => match Printed::read(text.get_ref()) {
+            Some(printed) => Ok(Stated::Number(printed)),
+            None => helped(
+                text.span(),
+                format!("`{}` is no number", text.get_ref()),
+                "write 0.8478, 9.258e-8, 7/1536, 0.586 % or a bound < 2 %; what words mean goes to `read_as`",
+            ),
+        },
+    }
+}
+
+fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> Found<Option<Unknown>> {
+    let Some(name) = &section.unknown else {
+        return Ok(None);
+    };
+    let Some(within) = &section.within else {
+        return helped(
+            name.span(),
+            format!("the unknown `{}` has no range", name.get_ref()),
+            "give within = [least, greatest]",
+        );
+    };
+    let symbol = symbol(name.get_ref(), name.span())?;
+    if values.contains_key(&symbol) {
+        return mistake(
+            name.span(),
+            format!("`{symbol}` has a value and is no unknown: give one of them"),
+        );
+    }
+    let end = |value: &toml::Value| -> Found<f64> {
+        let expr = number(value, within.span())?;
+        let found = identity::with_definitions(&expr, values).and_then(|expr| {
+            let number = expr.evaluate(&BTreeMap::new());
+            number.map_err(|error| error.to_string())
+        });
+        found.or_else(|reason| mistake(within.span(), reason))
+    };
+    let ends = [end(&within.get_ref()[0])?, end(&within.get_ref()[1])?];
+    if ends[0] >= ends[1] {
+        return mistake(
+            within.span(),
+            format!(
+                "the range of `{symbol}` is turned round: {} is not below {}",
+                decimal(ends[0]),
+                decimal(ends[1])
+            ),
+        );
+    }
+    Ok(Some(Unknown {
+        name: symbol,
+        within: ends,
+    }))
+}
+
+fn options_of(section: &Section) -> Found<Options> {
+    let (order, pade) = match section.order.as_ref().map(Spanned::get_ref) {
+        None => (None, None),
+        Some(Order::Power(order)) => (Some(*order), None),
+        Some(Order::Degrees([above, below])) => (None, Some((*above, *below))),
+    };
+    Ok(Options {
+        method: section.method.as_ref().map(method).transpose()?,
+        order,
+        pade,
+        amplitude: section.amplitude.as_ref().map(convention).transpose()?,
+        small: section.small.as_ref().map(|text| text.get_ref().clone()),
+        taylor: section.taylor.as_ref().map(|degree| *degree.get_ref()),
+        ..Options::default()
+    })
+}
+
+fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
+    let each = |texts: &[Text], read: &dyn Fn(&Text) -> Found<Supposition>| -> Found<Vec<Supposition>> {
+        texts.iter().map(read).collect()
+    };
+    let order = |order: &Order| match *order {
+        Order::Power(order) => Supposition::Order(order),
+        Order::Degrees([above, below]) => Supposition::Degrees(above, below),
+    };
+    let pi = |value: &Spanned<toml::Value>| -> Found<Supposition> {
+        let found = number(value.get_ref(), value.span())?;
+        match found.as_number().is_some_and(|number| *number > Rational::default()) {
+            true => Ok(Supposition::Pi(found)),
+            false => mistake(
+                value.span(),
+                "a value of pi is a positive number, such as 3.14 or \"22/7\"",
+            ),
+        }
+    };
+    let subjects = [
+        suppose
+            .values
+            .iter()
+            .map(|values| Ok(Supposition::Values(table(values)?.into_iter().collect())))
+            .collect::<Found<_>>()?,
+        suppose.pi.iter().map(pi).collect::<Found<_>>()?,
+        each(&suppose.rounding, &|text| Ok(Supposition::Rounding(rounding(text)?)))?,
+        each(&suppose.formula, &|text| {
+            Ok(Supposition::Formula(expression(text)?, text.get_ref().clone()))
+        })?,
+        each(&suppose.method, &|text| Ok(Supposition::Method(method(text)?)))?,
+        suppose.order.iter().map(order).collect(),
+        suppose
+            .taylor
+            .iter()
+            .map(|degree| Supposition::Taylor(*degree))
+            .collect(),
+        each(&suppose.amplitude, &|text| {
+            Ok(Supposition::Amplitude(convention(text)?))
+        })?,
+        each(&suppose.linearisation, &|text| Ok(Supposition::Rule(rule(text)?)))?,
+    ];
+    Ok(subjects
+        .into_iter()
+        .filter(|subject: &Vec<Supposition>| !subject.is_empty())
+        .collect())
+}
+
+/// The names that a question uses, through the values that they are made of.
+fn used(claim: &Claim) -> BTreeSet<Symbol> {
+    let mut formulas: Vec<Expr> = match &claim.question.quantity {
+        Quantity::Value(formula) | Quantity::Trend(formula) => vec![formula.clone()],
+        _ => vec![],
+    };
+    let mut tables = vec![claim.question.values.clone()];
+    for supposition in claim.suppositions.iter().flatten() {
+        match supposition {
+            Supposition::Formula(formula, _) => formulas.push(formula.clone()),
+            Supposition::Values(values) => tables.push(values.iter().cloned().collect()),
+            _ => {}
+        }
+    }
+    tables.extend(claim.entries.iter().map(|entry| entry.values.clone()));
+    let mut found = BTreeSet::new();
+    while let Some(formula) = formulas.pop() {
+        for name in formula.symbols() {
+            if found.insert(name) {
+                formulas.extend(tables.iter().filter_map(|table| table.get(&name).cloned()));
+            }
+        }
+    }
+    found
+}
+
+/// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks for.
+fn check_names(section: &Section, claim: &Claim) -> Found<()> {
+    if !matches!(claim.question.quantity, Quantity::Value(_) | Quantity::Trend(_)) {
+        return Ok(());
+    }
+    let used = used(claim);
+    let place = section
+        .formula
+        .as_ref()
+        .or(section.quantity.as_ref())
+        .unwrap_or(&section.id)
+        .span();
+    let given = |name: Symbol| {
+        let supposed = claim.suppositions.iter().flatten().any(|one| match one {
+            Supposition::Values(values) => values.iter().any(|(known, _)| *known == name),
+            _ => false,
+        });
+        let values = std::iter::once(&claim.question.values).chain(claim.entries.iter().map(|entry| &entry.values));
+        supposed || values.into_iter().any(|values| values.contains_key(&name))
+    };
+    let names = || NAMES.iter().map(|entry| entry.0);
+    for name in &used {
+        let is_open = !given(*name) && !is_a_name(name.name()) && name.name().contains('_');
+        if let Some(near) = nearest(name.name(), names()).filter(|_| is_open) {
+            return helped(
+                place,
+                format!("`{name}` has no value and is no number that is computed"),
+                format!("did you mean `{near}`?"),
+            );
+        }
+    }
+    let asks = |wanted: &dyn Fn(&str) -> bool| used.iter().any(|name| is_a_name(name.name()) && wanted(name.name()));
+    let of_a_law = |name: &str| ["frequency", "true_frequency", "max_deviation"].contains(&name);
+    let of_an_impact = |name: &str| {
+        !of_a_law(name)
+            && ["paper_", "energy_", "true_", "line_"]
+                .iter()
+                .any(|head| name.starts_with(head))
+    };
+    if asks(&of_a_law) && section.equation.is_none() {
+        return helped(
+            place,
+            format!(
+                "claim `{}` has no equation that a frequency could be derived from",
+                claim.id
+            ),
+            "give equation = \"x'' + sin(x) = 0\", or a name of the catalogue",
+        );
+    }
+    let keys = [
+        section.equation.as_ref().map(|text| ("equation", text.span())),
+        section.method.as_ref().map(|text| ("method", text.span())),
+        section.order.as_ref().map(|order| ("order", order.span())),
+        section.small.as_ref().map(|text| ("small", text.span())),
+        section.amplitude.as_ref().map(|text| ("amplitude", text.span())),
+        section.taylor.as_ref().map(|degree| ("taylor", degree.span())),
+    ];
+    if let (Some((key, span)), false) = (
+        keys.into_iter().flatten().next(),
+        asks(&of_a_law) || asks(&of_an_impact),
+    ) {
+        return mistake(
+            span,
+            format!("`{key}` says nothing here: the formula asks for nothing that is derived"),
+        );
+    }
+    if let (Some(text), false) = (&section.linearisation, asks(&of_an_impact)) {
+        return mistake(
+            text.span(),
+            "`linearisation` says nothing here: the formula asks for no contact",
+        );
+    }
+    match (&claim.unknown, &section.unknown) {
+        (Some(unknown), Some(text)) if !used.contains(&unknown.name) && !depends(&used, unknown.name) => mistake(
+            text.span(),
+            format!("the unknown `{}` does not occur in the claim", unknown.name),
+        ),
+        _ => Ok(()),
+    }
+}
+
+/// Whether one of the computed numbers among these names needs that one.
+fn depends(used: &BTreeSet<Symbol>, name: Symbol) -> bool {
+    let needs = |used: &Symbol| {
+        let entry = NAMES.iter().find(|entry| entry.0 == used.name());
+        entry.is_some_and(|entry| {
+            let mut words = entry.1.split(", ");
+            entry.1.starts_with("equation") || words.any(|word| word == name.name())
+        })
+    };
+    used.iter().any(needs)
+}
+
+fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {
+    let row = |(name, value): (&String, &Spanned<toml::Value>)| {
+        Ok((symbol(name, value.span())?, number(value.get_ref(), value.span())?))
+    };
+    table.iter().map(row).collect()
+}
+
+fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
+    let found = parse_expression(name).ok().and_then(|name| name.as_symbol());
+    match found.filter(|symbol| symbol.name() == name) {
+        Some(symbol) => Ok(symbol),
+        None => mistake(
+            span,
+            format!("`{name}` is no name: letters, digits and `_`, a letter first"),
+        ),
+    }
+}
+
+/// A number or a formula, exactly as it is typed.
+fn number(value: &toml::Value, span: Range<usize>) -> Found<Expr> {
+    match value {
+        toml::Value::String(text) => parsed(text, span),
+        toml::Value::Integer(number) => parsed(&number.to_string(), span),
+        toml::Value::Float(number) if number.is_finite() => parsed(&number.to_string(), span),
+        _ => mistake(span, "expected a number, or a formula in quotes"),
+    }
+}
+
+fn expression(text: &Text) -> Found<Expr> {
+    parsed(text.get_ref(), text.span())
+}
+
+fn parsed(text: &str, span: Range<usize>) -> Found<Expr> {
+    parse_expression(text).map_err(|ParseError { message, help, .. }| Mistake {
+        span,
+        what: message,
+        help,
+    })
+}
+
+/// A formula, or of an equation the difference of its sides.
+fn equal_to_zero(text: &Text) -> Found<Expr> {
+    match text.get_ref().split_once('=') {
+        None => expression(text),
+        Some((left, right)) => Ok(&parsed(left, text.span())? - &parsed(right, text.span())?),
+    }
+}
+
+fn equation(text: &Text) -> Found<Oscillator> {
+    let equation = catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
+    Oscillator::parse(equation).or_else(|error| {
+        // Its own picture of the place is that of the text alone.
+        let what = error.to_string();
+        mistake(text.span(), what.lines().next().unwrap_or_default())
+    })
+}
+
+fn method(text: &Text) -> Found<Method> {
+    let name = text.get_ref();
+    Method::from_name(name).ok_or_else(|| {
+        let near = nearest(name, Method::ALL.map(Method::name));
+        Mistake {
+            span: text.span(),
+            what: format!("unknown method `{name}`"),
+            help: Some(match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("choose {}", Method::ALL.map(Method::name).join(", ")),
+            }),
+        }
+    })
+}
+
+fn convention(text: &Text) -> Found<AmplitudeConvention> {
+    match AmplitudeConvention::from_name(text.get_ref()) {
+        Some(convention) => Ok(convention),
+        None => mistake(
+            text.span(),
+            format!(
+                "unknown amplitude `{}`: choose initial or first-harmonic",
+                text.get_ref()
+            ),
+        ),
+    }
+}
+
+fn rule(text: &Text) -> Found<Rule> {
+    text.get_ref()
+        .parse()
+        .or_else(|error| mistake(text.span(), format!("{error}")))
+}
+
+fn rounding(text: &Text) -> Found<Rounding> {
+    match Rounding::from_name(text.get_ref()) {
+        Some(rounding) => Ok(rounding),
+        None => {
+            let known = Rounding::ALL.map(Rounding::name).join(", ");
+            mistake(
+                text.span(),
+                format!("unknown rounding `{}`: choose {known}", text.get_ref()),
+            )
+        }
+    }
+}
+
+fn verdict(text: &Text) -> Found<Verdict> {
+    match Verdict::from_name(text.get_ref()) {
+        Some(verdict) => Ok(verdict),
+        None => {
+            let known = Verdict::ALL.map(Verdict::name).join(", ");
+            mistake(
+                text.span(),
+                format!("unknown verdict `{}`: choose {known}", text.get_ref()),
+            )
+        }
+    }
+}
+
+fn tolerance(number: &Spanned<f64>) -> Found<f64> {
+    let value = *number.get_ref();
+    match value.is_finite() && value > 0.0 {
+        true => Ok(value),
+        false => mistake(number.span(), format!("a tolerance is a positive number, not {value}")),
+    }
+}

@@ -1,0 +1,569 @@
+//! What a claim may be about: the names that formulas may use, and the program that computes them.
+//!
+//! In: a [`Question`] and the values of an entry. Out: what is computed, or what it lacks. The numbers come from where every other
+//! command has them: laws from [`method::solve`](crate::method::solve), true frequencies from the judge, phases and contacts from
+//! [`impact`](crate::impact), rest times from its simulation.
+
+use std::cell::OnceCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::claim::{Quantity, Question};
+use super::{identity, options};
+use crate::exact::rational::{from_f64, to_f64};
+use crate::exact::{Monomial, Polynomial, Rational};
+use crate::expr::{CompiledFunction, Expr, Node};
+use crate::impact::{
+    ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing, ThreePhases, course, hertz,
+    three_phases,
+};
+use crate::method::numbers::frequency_squared_of;
+use crate::method::solve;
+use crate::oscillator::Oscillator;
+use crate::series::taylor::taylor;
+use crate::solution::Solution;
+use crate::symbol::Symbol;
+use crate::values::Values;
+use crate::verify::{DEFAULT_TOLERANCE, judge, needed_values};
+
+/// What the program computes by name, beside the values that a file gives: the name, what it needs, what it is.
+pub const NAMES: [(&str, &str, &str); 26] = [
+    ("frequency", "equation, its parameters, A", "omega by the method"),
+    (
+        "true_frequency",
+        "equation, its parameters, A",
+        "omega of the true motion",
+    ),
+    (
+        "max_deviation",
+        "equation, its parameters, A",
+        "largest deviation of the motion over one true period, over |A|",
+    ),
+    (
+        "paper_time_to_contact",
+        "A, xc",
+        "time from the release to the barrier, by one cosine",
+    ),
+    ("paper_speed", "A, xc", "speed at the barrier, by one cosine"),
+    (
+        "paper_penetration",
+        "A, xc, gamma",
+        "greatest depth, by the fitted line",
+    ),
+    (
+        "paper_duration",
+        "A, xc, gamma",
+        "duration of the contact, by the fitted line",
+    ),
+    (
+        "paper_period",
+        "A, xc, gamma",
+        "period of the motion with its impact, by one cosine and the fitted line",
+    ),
+    ("paper_phase", "A, xc", "phase of the return, equation (16)"),
+    ("paper_frequency", "A, xc", "omega of the approach"),
+    (
+        "paper_deviation",
+        "A, xc, gamma",
+        "largest deviation of these phases from the true motion, over |A|",
+    ),
+    (
+        "energy_speed",
+        "A, xc",
+        "speed at the barrier by the energy, exact for the equation",
+    ),
+    (
+        "energy_penetration",
+        "A, xc, gamma",
+        "greatest depth by the fitted line with that speed",
+    ),
+    (
+        "energy_duration",
+        "A, xc, gamma",
+        "duration by the fitted line with that speed",
+    ),
+    (
+        "line_slope",
+        "A, xc, gamma",
+        "slope p of the line p*x - q, per unit of gamma",
+    ),
+    ("line_constant", "A, xc, gamma", "constant q of that line"),
+    ("line_depth", "A, xc, gamma", "depth over which it is fitted"),
+    (
+        "true_time_to_contact",
+        "A, xc, gamma",
+        "time to the barrier, by Runge-Kutta",
+    ),
+    ("true_speed", "A, xc, gamma", "speed at the barrier, by Runge-Kutta"),
+    ("true_penetration", "A, xc, gamma", "greatest depth, by Runge-Kutta"),
+    (
+        "true_duration",
+        "A, xc, gamma",
+        "duration of the contact, by Runge-Kutta",
+    ),
+    ("true_period", "A, xc, gamma", "period with the impact, by Runge-Kutta"),
+    (
+        "hertz_factor",
+        "",
+        "duration times speed over depth of every Hertz contact",
+    ),
+    (
+        "rest_time",
+        "A, xc, gamma, mu, zeta, alpha",
+        "when the envelope crosses 10 %, by simulation",
+    ),
+    (
+        "rest_time_without_barrier",
+        "A, zeta, alpha",
+        "the same without a barrier",
+    ),
+    (
+        "stall_generation",
+        "window",
+        "the first generation at which a stall over a window of generations can be seen",
+    ),
+];
+
+/// What is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Computed {
+    /// A number.
+    Number(f64),
+    /// A fraction.
+    Exact(Rational),
+    /// A formula.
+    Formula(Expr),
+    /// What options have against each other.
+    Conflicts(Vec<String>),
+}
+
+impl Computed {
+    /// As a number, where it is one.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Exact(fraction) => Some(to_f64(fraction)),
+            Self::Formula(_) | Self::Conflicts(_) => None,
+        }
+    }
+}
+
+/// Why nothing is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lack {
+    /// These are not given.
+    Missing(BTreeSet<String>),
+    /// There is no such number, for this reason.
+    Refused(String),
+}
+
+/// Computes one question, for any entry and any value of an unknown.
+pub(super) struct Evaluator<'a> {
+    question: &'a Question,
+    law: OnceCell<Result<(Oscillator, Solution), String>>,
+    swing: OnceCell<Result<(Oscillator, Solution), String>>,
+}
+
+impl<'a> Evaluator<'a> {
+    pub(super) fn new(question: &'a Question) -> Self {
+        Self {
+            question,
+            law: OnceCell::new(),
+            swing: OnceCell::new(),
+        }
+    }
+
+    /// What is computed with the values of an entry, and of an unknown where one is tried.
+    pub(super) fn compute(
+        &self,
+        entry: &BTreeMap<Symbol, Expr>,
+        unknown: Option<(Symbol, f64)>,
+    ) -> Result<Computed, Lack> {
+        let question = self.question;
+        let mut values = question.values.clone();
+        values.extend(entry.iter().map(|(name, value)| (*name, value.clone())));
+        match &question.quantity {
+            Quantity::Value(formula) | Quantity::Trend(formula) => {
+                let mut scope = Scope {
+                    evaluator: self,
+                    known: unknown.into_iter().collect(),
+                    values,
+                    open: vec![],
+                    impact: None,
+                };
+                scope.formula(formula).map(Computed::Number)
+            }
+            Quantity::Coefficient { squared, term } => {
+                let law = self.polynomial(*squared)?;
+                let monomial =
+                    monomial(term).ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
+                Ok(Computed::Exact(law.coefficient(&monomial)))
+            }
+            Quantity::Law { squared } => Ok(Computed::Formula(Expr::from(&self.polynomial(*squared)?))),
+            Quantity::Taylor { formula, degree } => {
+                let about = [(Symbol::new("x"), Rational::default())];
+                let parts = taylor(formula, &about, *degree).map_err(|error| Lack::Refused(error.to_string()))?;
+                Ok(Computed::Formula(Expr::sum(parts)))
+            }
+            Quantity::Identity(formula) => identity::with_definitions(formula, &values)
+                .map(Computed::Formula)
+                .map_err(Lack::Refused),
+            Quantity::Coordinates(formula) => {
+                let symbols = formula.symbols();
+                let accelerations = symbols.iter().filter(|symbol| symbol.primes() == 2);
+                Ok(Computed::Number(accelerations.count() as f64))
+            }
+            Quantity::Settings(settings) => Ok(Computed::Conflicts(options::conflicts(settings))),
+            Quantity::Nothing => Err(Lack::Missing(BTreeSet::new())),
+        }
+    }
+
+    /// The derived law.
+    fn law(&self) -> Result<&(Oscillator, Solution), Lack> {
+        let Some(equation) = &self.question.equation else {
+            return Err(missing("equation"));
+        };
+        let found = self.law.get_or_init(|| {
+            let solution = solve(equation, &self.question.options).map_err(|error| error.to_string())?;
+            Ok((equation.clone(), solution))
+        });
+        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+    }
+
+    /// omega or omega^2 as a polynomial.
+    fn polynomial(&self, squared: bool) -> Result<Polynomial, Lack> {
+        let (_, solution) = self.law()?;
+        let found = match squared {
+            true => solution.law.frequency_squared(),
+            false => solution.law.frequency(),
+        };
+        found.cloned().ok_or_else(|| {
+            let name = if squared { "omega^2" } else { "omega" };
+            Lack::Refused(format!("{} gives no polynomial for {name}", solution.title()))
+        })
+    }
+
+    /// The swing of an impact, the pendulum where no equation is given, and its law, of order 2 where none is asked for.
+    fn swing(&self) -> Result<&(Oscillator, Solution), Lack> {
+        let found = self.swing.get_or_init(|| {
+            let words = |error: &dyn std::error::Error| error.to_string();
+            let equation = match &self.question.equation {
+                Some(equation) => equation.clone(),
+                None => Oscillator::parse("x'' + sin(x) = 0").map_err(|error| words(&error))?,
+            };
+            let mut options = self.question.options.clone();
+            if options.method.is_none() {
+                options.order = options.order.or(Some(2));
+            }
+            let solution = solve(&equation, &options).map_err(|error| words(&error))?;
+            Ok((equation, solution))
+        });
+        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+    }
+}
+
+fn missing(name: &str) -> Lack {
+    Lack::Missing(BTreeSet::from([name.to_owned()]))
+}
+
+fn refused(error: &impl std::fmt::Display) -> Lack {
+    Lack::Refused(error.to_string())
+}
+
+/// A product of powers as a monomial.
+fn monomial(term: &Expr) -> Option<Monomial> {
+    let polynomial = term.to_polynomial(&mut |_| None).ok()??;
+    let (monomial, number) = polynomial.single_term()?;
+    num_traits::One::is_one(number).then(|| monomial.clone())
+}
+
+/// The names of one evaluation and what they are.
+struct Scope<'a, 'b> {
+    evaluator: &'b Evaluator<'a>,
+    values: BTreeMap<Symbol, Expr>,
+    known: BTreeMap<Symbol, f64>,
+    /// What is being worked out, to see circles.
+    open: Vec<Symbol>,
+    impact: Option<Box<Impact>>,
+}
+
+impl Scope<'_, '_> {
+    /// The value of a formula.
+    fn formula(&mut self, formula: &Expr) -> Result<f64, Lack> {
+        let formula = match &self.evaluator.question.pi {
+            Some(pi) => with_pi(formula, pi).map_err(|error| refused(&error))?,
+            None => formula.clone(),
+        };
+        let symbols: Vec<Symbol> = formula.symbols().into_iter().collect();
+        let numbers = self.all(&symbols)?;
+        formula.evaluate(&numbers).map_err(|error| refused(&error))
+    }
+
+    /// The values of these names: all that are missing are told at once.
+    fn all(&mut self, names: &[Symbol]) -> Result<BTreeMap<Symbol, f64>, Lack> {
+        let (mut found, mut lacking) = (BTreeMap::new(), BTreeSet::new());
+        for name in names {
+            match self.value(*name) {
+                Ok(value) => {
+                    found.insert(*name, value);
+                }
+                Err(Lack::Missing(names)) => lacking.extend(names),
+                Err(reason) => return Err(reason),
+            }
+        }
+        match lacking.is_empty() {
+            true => Ok(found),
+            false => Err(Lack::Missing(lacking)),
+        }
+    }
+
+    fn numbers<const N: usize>(&mut self, names: [&str; N]) -> Result<[f64; N], Lack> {
+        let names = names.map(Symbol::new);
+        let found = self.all(&names)?;
+        Ok(names.map(|name| found.get(&name).copied().unwrap_or(f64::NAN)))
+    }
+
+    fn value(&mut self, name: Symbol) -> Result<f64, Lack> {
+        if let Some(value) = self.known.get(&name) {
+            return Ok(*value);
+        }
+        let value = match self.values.get(&name).cloned() {
+            Some(_) if self.open.contains(&name) => {
+                return Err(Lack::Refused(format!("`{name}` is defined by itself")));
+            }
+            Some(formula) => {
+                self.open.push(name);
+                let value = self.formula(&formula);
+                self.open.pop();
+                value?
+            }
+            None => self.computed(name.name())?,
+        };
+        self.known.insert(name, value);
+        Ok(value)
+    }
+
+    /// What the program computes under this name.
+    fn computed(&mut self, name: &str) -> Result<f64, Lack> {
+        match name {
+            "frequency" => self.frequency(),
+            "true_frequency" => Ok(self.judged()?.true_frequency),
+            "max_deviation" => {
+                let judged = self.judged()?;
+                judged
+                    .max_deviation
+                    .ok_or_else(|| Lack::Refused("the formula has no motion".to_owned()))
+            }
+            "hertz_factor" => Ok(hertz::duration_factor()),
+            "rest_time" => self.rest_time(true),
+            "rest_time_without_barrier" => self.rest_time(false),
+            // The best value of so many generations ago is needed beside that of now.
+            "stall_generation" => {
+                let [window] = self.numbers(["window"])?;
+                Ok(window + 1.0)
+            }
+            "paper_deviation" => {
+                let impact = self.impact()?;
+                let column = impact.column(Reading::Paper);
+                let column = column.ok_or_else(|| Lack::Refused(impact.no_paper.clone().unwrap_or_default()))?;
+                Ok(column.deviation.total / impact.amplitude())
+            }
+            "energy_speed" | "energy_penetration" | "energy_duration" => {
+                let phases = self.phases(name, ContactSpeed::Energy)?;
+                Ok(of_phases(name, &phases).unwrap_or(f64::NAN))
+            }
+            "line_slope" | "line_constant" | "line_depth" => {
+                let phases = self.phases(name, ContactSpeed::Paper)?;
+                let [barrier] = self.numbers(["xc"])?;
+                let fitted = phases
+                    .fitted
+                    .ok_or_else(|| Lack::Refused("there is no line".to_owned()))?;
+                Ok(match name {
+                    "line_slope" => fitted.line.slope,
+                    "line_constant" => fitted.line.q(barrier),
+                    _ => fitted.depth,
+                })
+            }
+            _ if name.starts_with("paper_") && is_a_name(name) => {
+                let phases = self.phases(name, ContactSpeed::Paper)?;
+                of_phases(name, &phases).ok_or_else(|| Lack::Refused("the approach is no cosine".to_owned()))
+            }
+            _ if name.starts_with("true_") && is_a_name(name) => {
+                let numbers = self.impact()?.truth.quantities();
+                let place = QUANTITIES_OF_AN_IMPACT.iter().position(|known| name.ends_with(known));
+                Ok(place.map_or(f64::NAN, |place| numbers[place]))
+            }
+            _ => Err(missing(name)),
+        }
+    }
+
+    fn frequency(&mut self) -> Result<f64, Lack> {
+        let (equation, solution) = self.evaluator.law()?;
+        let numbers = self.all(&needed_values(solution))?;
+        let square = frequency_squared_of(equation, solution, &numbers).map_err(|error| refused(&error))?;
+        match square > 0.0 {
+            true => Ok(square.sqrt()),
+            false => Err(Lack::Refused(format!(
+                "omega^2 = {} by {}, which is no frequency",
+                crate::decimal::decimal(square),
+                solution.title()
+            ))),
+        }
+    }
+
+    fn judged(&mut self) -> Result<crate::verify::Verification, Lack> {
+        let (equation, solution) = self.evaluator.law()?;
+        let numbers = self.all(&needed_values(solution))?;
+        let at = exact(&numbers)?;
+        judge(equation, solution, &at, DEFAULT_TOLERANCE).map_err(|error| refused(&error))
+    }
+
+    /// The three phases of an impact with a line for the barrier.
+    fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, Lack> {
+        let (equation, law) = self.evaluator.swing()?;
+        // How stiff the barrier is says nothing of the way to it.
+        let hits = NAMES
+            .iter()
+            .any(|(known, needs, _)| *known == name && needs.contains("gamma"));
+        let needed: Vec<Symbol> = ["A", "xc", "gamma"][..if hits { 3 } else { 2 }]
+            .iter()
+            .map(|name| Symbol::new(name))
+            .chain(equation.parameters.iter().copied())
+            .collect();
+        let numbers = self.all(&needed)?;
+        let number = |name: &str| numbers.get(&Symbol::new(name)).copied().unwrap_or(f64::NAN);
+        let square = frequency_squared_of(equation, law, &numbers).map_err(|error| refused(&error))?;
+        let compiled = |expr: &Expr| CompiledFunction::new(expr, &arguments(equation)).map_err(|error| refused(&error));
+        let slope = equation
+            .force
+            .differentiate(equation.coordinate)
+            .map_err(|error| refused(&error))?;
+        let (force, slope) = (compiled(&equation.force)?, compiled(&slope)?);
+        let call = |function: &CompiledFunction, x: f64| {
+            let others = equation.parameters.iter().map(|name| number(name.name()));
+            function.call(&std::iter::once(x).chain(others).collect::<Vec<f64>>())
+        };
+        let swing = Swing {
+            amplitude: number("A"),
+            barrier: number("xc"),
+            stiffness: if hits {
+                number("gamma")
+            } else {
+                hertz::DEFAULT_STIFFNESS
+            },
+            frequency_squared: square,
+            linear_stiffness: call(&slope, 0.0),
+            restoring_force: &|x| call(&force, x),
+            elastic_force: &hertz::elastic_force,
+            rule: self.evaluator.question.rule,
+        };
+        three_phases(&swing, speed).map_err(|error| refused(&error))
+    }
+
+    /// The impact with its true motion.
+    fn impact(&mut self) -> Result<&Impact, Lack> {
+        if self.impact.is_none() {
+            let [amplitude, barrier, stiffness] = self.numbers(["A", "xc", "gamma"])?;
+            let question = self.evaluator.question;
+            let parameters = question
+                .equation
+                .as_ref()
+                .map_or(vec![], |equation| equation.parameters.clone());
+            let values = exact(&self.all(&parameters)?)?;
+            let setup = Setup {
+                swing: question.equation.clone(),
+                values,
+                release: -amplitude,
+                barrier,
+                stiffness,
+                rule: question.rule,
+                ..Setup::default()
+            };
+            let found = crate::impact::solve(setup).map_err(|error| refused(&error))?;
+            self.impact = Some(Box::new(found));
+        }
+        self.impact
+            .as_deref()
+            .ok_or_else(|| Lack::Refused("there is no impact".to_owned()))
+    }
+
+    fn rest_time(&mut self, with_barrier: bool) -> Result<f64, Lack> {
+        let barrier = match with_barrier {
+            true => Some(self.numbers(["xc", "gamma", "mu", "A", "zeta", "alpha"])?),
+            false => None,
+        };
+        let [amplitude, zeta, alpha] = self.numbers(["A", "zeta", "alpha"])?;
+        let usual = Model::default();
+        let model = Model {
+            zeta,
+            alpha,
+            gamma: barrier.map_or(usual.gamma, |numbers| numbers[1]),
+            mu: barrier.map_or(0.0, |numbers| numbers[2]),
+            right: barrier.map(|numbers| numbers[0]),
+            ..usual
+        };
+        let start = Start {
+            x: -amplitude,
+            velocity: 0.0,
+        };
+        let settings = Settings {
+            duration: LONGEST,
+            stop_at_rest: true,
+            ..Settings::default()
+        };
+        let found = course(&model, start, Integrator::Taylor, &settings).map_err(|error| refused(&error))?;
+        found.rest_time.map_err(|reason| refused(&reason))
+    }
+}
+
+/// How long a motion is followed to its rest, in units of 1/omega.
+const LONGEST: f64 = 2000.0;
+
+/// The numbers of an impact in the order of [`ThreePhases::quantities`].
+const QUANTITIES_OF_AN_IMPACT: [&str; 5] = ["_time_to_contact", "_speed", "_penetration", "_duration", "_period"];
+
+/// Whether the program computes something under this name.
+pub(super) fn is_a_name(name: &str) -> bool {
+    NAMES.iter().any(|(known, ..)| *known == name)
+}
+
+fn of_phases(name: &str, phases: &ThreePhases) -> Option<f64> {
+    let cosine = |index: usize| match phases.phases[index].form {
+        Form::Cosine { frequency, phase, .. } => Some((frequency, phase)),
+        _ => None,
+    };
+    match name {
+        "paper_frequency" => Some(cosine(0)?.0),
+        "paper_phase" => Some(cosine(2)?.1),
+        _ => {
+            let place = QUANTITIES_OF_AN_IMPACT.iter().position(|known| name.ends_with(known))?;
+            Some(phases.quantities()[place])
+        }
+    }
+}
+
+fn arguments(equation: &Oscillator) -> Vec<Symbol> {
+    std::iter::once(equation.coordinate)
+        .chain(equation.parameters.iter().copied())
+        .collect()
+}
+
+/// Doubles as values.
+fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, Lack> {
+    let mut values = Values::default();
+    for (name, number) in numbers {
+        let number = from_f64(*number).ok_or_else(|| Lack::Refused(format!("`{name}` is no number")))?;
+        values
+            .insert(*name, Expr::number(number))
+            .map_err(|error| refused(&error))?;
+    }
+    Ok(values)
+}
+
+/// A formula with this value in place of pi.
+fn with_pi(formula: &Expr, pi: &Expr) -> Result<Expr, crate::expr::ExprError> {
+    formula.fold(|node, children: &[Expr]| match node.node() {
+        Node::Pi => Ok(pi.clone()),
+        _ if children.is_empty() => Ok(node.clone()),
+        _ => node.with_children(children),
+    })
+}

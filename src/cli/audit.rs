@@ -1,0 +1,80 @@
+//! `lindstedt audit FILE` and `lindstedt paper`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use lindstedt::audit::{Claims, ClaimsError, audit};
+use lindstedt::export::{json, latex, text};
+use lindstedt::verify::Verdict;
+
+use super::files::{is_standard, width};
+use super::{Common, Failure, Format, Outcome, json_text, read, whole};
+
+/// Every claim of the paper, the file that `lindstedt paper` runs.
+const PAPER: &str = include_str!("../../examples/audit/paper.toml");
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A TOML file of claims, or - for standard input
+    pub file: PathBuf,
+    #[command(flatten)]
+    own: Own,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Args)]
+pub struct PaperArguments {
+    #[command(flatten)]
+    own: Own,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Args)]
+struct Own {
+    /// Exit with code 3 for every claim that is not reproduced, also where the file expects so
+    #[arg(long)]
+    strict: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let text = read(&arguments.file)?;
+    let name = match is_standard(&arguments.file) {
+        true => "standard input".into(),
+        false => arguments.file.to_string_lossy(),
+    };
+    outcome(&text, &name, &arguments.own, &arguments.common)
+}
+
+pub fn run_paper(arguments: &PaperArguments) -> Result<Outcome, Failure> {
+    outcome(PAPER, "the paper", &arguments.own, &arguments.common)
+}
+
+fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outcome, Failure> {
+    if common.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "--tolerance: each claim has its own digits, or a tolerance in the file".to_owned(),
+        ));
+    }
+    if common.plot.is_some() {
+        return Err(Failure::Usage("--plot: an audit draws no picture".to_owned()));
+    }
+    let claims: Claims = claims
+        .parse()
+        .map_err(|error: ClaimsError| Failure::refused(&format!("{name}: {error}"), error.help()))?;
+    let audit = audit(claims);
+    let text = match common.format {
+        Format::Text => text::audit(&audit, width(common.output.as_deref())),
+        Format::Latex => latex::audit(&audit),
+        Format::Csv => return super::no_table(),
+        Format::Json => json_text(&json::audit(&audit))?,
+    };
+    Ok(Outcome {
+        result: whole(text),
+        picture: None,
+        note: None,
+        verdict: Some(Verdict::of(audit.passes(own.strict))),
+        partial: false,
+    })
+}

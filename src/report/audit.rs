@@ -1,0 +1,195 @@
+//! An audit: a table of verdicts, and of every claim that is not simply reproduced what speaks for its verdict.
+
+use super::{Block, Document, Heading};
+use crate::audit::{Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
+use crate::decimal::{decimal, significant};
+
+/// The document of an audit.
+///
+/// ```
+/// use lindstedt::audit::{Claims, audit};
+///
+/// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"3\"".parse()?;
+/// let audit = audit(claims);
+/// let text = lindstedt::export::text::document(&lindstedt::report::audit(&audit), 120);
+/// assert!(text.contains("inconsistent") && text.contains("computed 2"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn audit(audit: &Audit) -> Document<'_> {
+    let mut sections = vec![summary(audit)];
+    for verdict in Verdict::ALL {
+        let found: Vec<&Finding> = audit
+            .findings
+            .iter()
+            .filter(|finding| finding.verdict == verdict)
+            .collect();
+        if !found.is_empty() {
+            sections.push(table(verdict, &found));
+        }
+    }
+    for finding in &audit.findings {
+        let plain = finding.verdict == Verdict::Reproduced && finding.claim.note.is_none() && finding.is_as_expected();
+        if !plain {
+            sections.push(story(finding));
+        }
+    }
+    Document { sections }
+}
+
+fn summary(audit: &Audit) -> Vec<Block<'_>> {
+    let counts = Verdict::ALL.map(|verdict| format!("{} {}", audit.count(verdict), verdict.name()));
+    let title = match audit.title.is_empty() {
+        true => "Audit".to_owned(),
+        false => audit.title.clone(),
+    };
+    let unexpected = audit
+        .findings
+        .iter()
+        .filter(|finding| !finding.is_as_expected())
+        .count();
+    let expected = match unexpected {
+        0 => "every verdict is the expected one".to_owned(),
+        1 => "one verdict is not the expected one".to_owned(),
+        count => format!("{count} verdicts are not the expected ones"),
+    };
+    vec![
+        Block::Heading(title),
+        Block::Note(format!("{} claims: {}", audit.findings.len(), counts.join(", "))),
+        Block::Note(expected),
+    ]
+}
+
+fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
+    let name = verdict.name();
+    let assumes = verdict == Verdict::UnderAssumption;
+    let row = |finding: &&Finding| {
+        let cells = [
+            shortened(&finding.claim.place),
+            finding.claim.id.clone(),
+            shortened(&printed(finding)),
+            shortened(&computed(finding)),
+        ];
+        let assumption = assumes.then(|| finding.assumption());
+        cells.into_iter().chain(assumption).collect()
+    };
+    let head = ["where", "claim", "printed", "computed"]
+        .into_iter()
+        .chain(assumes.then_some("assumption"));
+    vec![
+        Block::Note(format!("verdict: {name}")),
+        Block::Table {
+            head: head
+                .map(|word| Heading {
+                    text: word,
+                    latex: word,
+                })
+                .collect(),
+            rows: findings.iter().map(row).collect(),
+        },
+    ]
+}
+
+/// The most characters of a cell.
+const WIDEST: usize = 30;
+
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(WIDEST) {
+        None => text.to_owned(),
+        Some((cut, _)) => format!("{}...", &text[..cut]),
+    }
+}
+
+/// What is printed, in one line.
+pub(crate) fn printed(finding: &Finding) -> String {
+    let entries = &finding.claim.entries;
+    match &entries[..] {
+        [entry] => entry.printed.clone(),
+        [entry, ..] if matches!(entry.stated, Stated::Trend(_)) => entry.printed.clone(),
+        several => format!("{} entries", several.len()),
+    }
+}
+
+/// What is computed, in one line; empty where nothing is.
+pub(crate) fn computed(finding: &Finding) -> String {
+    let Some(shown) = finding.shown() else {
+        return String::new();
+    };
+    let trend = matches!(
+        finding.claim.entries.first().map(|entry| &entry.stated),
+        Some(Stated::Trend(_))
+    );
+    match &shown.computed[..] {
+        [_] => entry(finding, shown, 0)
+            .or_else(|| demanded(finding))
+            .unwrap_or_default(),
+        several if trend => {
+            let each: Vec<String> = (0..several.len())
+                .filter_map(|index| entry(finding, shown, index))
+                .collect();
+            each.join(", ")
+        }
+        several => {
+            let count = shown.reproduced.iter().filter(|entry| **entry).count();
+            format!("{count} of {}", several.len())
+        }
+    }
+}
+
+/// What a claim would need of an unknown number that may not be so.
+fn demanded(finding: &Finding) -> Option<String> {
+    let demand = finding.demand?;
+    Some(format!(
+        "needs {} = {}",
+        demand.unknown.name,
+        significant(demand.value, 3)
+    ))
+}
+
+/// What is computed for an entry, with two digits more than are printed; in the unit of what is printed; nothing where it lacks something.
+pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<String> {
+    let alike = |number: f64| match finding.claim.entries.get(index).map(|entry| &entry.stated) {
+        Some(Stated::Number(printed)) => printed.alike(number, 6),
+        _ => decimal(number),
+    };
+    match tried.computed.get(index)? {
+        Ok(Computed::Number(number)) => Some(alike(*number)),
+        Ok(Computed::Exact(fraction)) => Some(fraction.to_string()),
+        Ok(Computed::Formula(formula)) => Some(formula.to_string()),
+        Ok(Computed::Conflicts(conflicts)) => Some(match conflicts.len() {
+            0 => "no conflict".to_owned(),
+            1 => "one conflict".to_owned(),
+            count => format!("{count} conflicts"),
+        }),
+        Err(Lack::Missing(_) | Lack::Refused(_)) => None,
+    }
+}
+
+/// A claim and what speaks for its verdict.
+fn story(finding: &Finding) -> Vec<Block<'_>> {
+    let claim = &finding.claim;
+    let place = if claim.place.is_empty() {
+        &claim.id
+    } else {
+        &claim.place
+    };
+    let says = if claim.says.is_empty() {
+        String::new()
+    } else {
+        format!(": {}", claim.says)
+    };
+    let mut blocks = vec![
+        Block::Heading(place.clone()),
+        Block::Sentence(format!("{}, {}{says}", claim.id, finding.verdict.name())),
+    ];
+    let assumption = finding.assumption();
+    if !assumption.is_empty() {
+        blocks.push(Block::Sentence(format!("assumption: {assumption}")));
+    }
+    blocks.extend(finding.evidence.iter().cloned().map(Block::Sentence));
+    blocks.extend(claim.note.iter().cloned().map(Block::Sentence));
+    if !finding.is_as_expected() {
+        let expected = claim.expected.map_or("reproduced", Verdict::name);
+        blocks.push(Block::Sentence(format!("expected: {expected}")));
+    }
+    blocks
+}

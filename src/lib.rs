@@ -28,8 +28,10 @@
 //! | [`expr`] | the expression tree, its parser, printer, calculus and evaluation; names that are free |
 //! | [`series`] | Taylor, Fourier, running convolutions |
 //! | [`system`] | first-order systems of any size by Taylor series and by Runge-Kutta, with events |
+//! | [`mechanics`] | energies to equations of motion, units, dimensionless groups, modes |
 //! | [`solution`] | what a method returns: law, motion, notes, and how they were reached, line by line |
 //! | [`oscillator`] | what a method is given |
+//! | [`trajectory`] | any equation or mechanism followed in numbers, its energy accounted for |
 //! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
 //! | [`verify`] | the true motion and the verdict |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
@@ -69,11 +71,15 @@ pub mod series;
 
 pub mod system;
 
+pub mod mechanics;
+
 mod derivation;
 
 pub mod solution;
 
 pub mod oscillator;
+
+pub mod trajectory;
 
 mod conservative;
 

@@ -8,7 +8,8 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
-    ImpactDocument, Kind, MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument,
+    ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, PrimaryDocument, PrimarySweepDocument,
+    SimulationDocument, SolutionDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -100,6 +101,10 @@ fn reads_back(document: &Value) {
         Kind::Simulation => again::<SimulationDocument>(document),
         Kind::Sweep => again::<SweepDocument>(document),
         Kind::Friction => again::<FrictionDocument>(document),
+        Kind::Lagrangian => again::<LagrangianDocument>(document),
+        Kind::Motion => again::<MotionDocument>(document),
+        Kind::Primary => again::<PrimaryDocument>(document),
+        Kind::PrimarySweep => again::<PrimarySweepDocument>(document),
         Kind::Materials => again::<MaterialsDocument>(document),
         Kind::Audit => again::<AuditDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
@@ -131,6 +136,31 @@ fn documents() -> Vec<(String, Value)> {
     }
     add(&["paper"]);
     add(&["impact", "--compare"]);
+    for file in files("examples/lagrange", ".toml") {
+        add(&["lagrange", &file.to_string_lossy()]);
+    }
+    add(&["lagrange"]);
+    for file in files("examples/primary", ".toml") {
+        add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
+    }
+    add(&[
+        "simulate",
+        "examples/primary/driven.toml",
+        "--sweep",
+        "frequency=18:20:3",
+    ]);
+    let links = "examples/lagrange/double-pendulum.toml";
+    add(&[
+        "simulate",
+        links,
+        "--from",
+        "a=1.5,b=-0.5",
+        "--until",
+        "5",
+        "--integrator",
+        "both",
+    ]);
+    add(&["simulate", "x'' + x + x^3 = 0", "--from", "x=1"]);
     add(&["simulate", "--integrator", "both"]);
     add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
     let three = ["gamma=1e4:1e6:2:log", "zeta=0.1,0.3,0.2", "alpha=0.1:0:2"];
@@ -198,6 +228,12 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         Some("lindstedt/friction/1") => "/speeds/0/printed_value",
         Some("lindstedt/audit/1") => "/claims/0/entries/0",
+        Some("lindstedt/lagrangian/1") => match document["equilibria"][0].is_null() {
+            true => "/groups/0",
+            false => "/equilibria/0",
+        },
+        Some("lindstedt/motion/1" | "lindstedt/primary/1") => "/final_state",
+        Some("lindstedt/primary-sweep/1") => "/rows/0",
         _ => "/entries/0/methods/0",
     };
     document.pointer_mut(place).expect("an object")

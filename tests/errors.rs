@@ -31,6 +31,8 @@ fn message(file: &Path) -> String {
         _ if bytes.starts_with(b"# impact") => run(&["impact", path], b""),
         _ if bytes.starts_with(b"# materials") => run(&["materials", path], b""),
         _ if bytes.starts_with(b"# audit") => run(&["audit", path], b""),
+        _ if bytes.starts_with(b"# lagrange") => run(&["lagrange", path], b""),
+        _ if bytes.starts_with(b"# simulate") => run(&["simulate", path], b""),
         _ => run(&["derive", path], b""),
     };
     let text = String::from_utf8(output.stderr).expect("messages are text");

@@ -155,6 +155,66 @@ fn every_audit_prints_what_it_printed() {
     });
 }
 
+/// Every mechanism, its equations of motion and its groups, in text, LaTeX and JSON; the paper's among them.
+#[test]
+fn every_mechanism_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/lagrange"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("lagrange-text", output(&["lagrange", path]));
+                insta::assert_snapshot!("lagrange-latex", output(&["lagrange", path, "--format", "latex"]));
+                let mut document: Value =
+                    serde_json::from_str(&output(&["lagrange", path, "--format", "json"])).expect("the output is JSON");
+                rounded(&mut document);
+                insta::assert_json_snapshot!("lagrange-json", document);
+            }
+        );
+        insta::assert_snapshot!("lagrange-paper-text", output(&["lagrange"]));
+        insta::assert_snapshot!("lagrange-paper-latex", output(&["lagrange", "--format", "latex"]));
+        let mut document: Value =
+            serde_json::from_str(&output(&["lagrange", "--format", "json"])).expect("the output is JSON");
+        rounded(&mut document);
+        insta::assert_json_snapshot!("lagrange-paper-json", document);
+        let links = "examples/lagrange/double-pendulum.toml";
+        let course = ["simulate", links, "--from", "a=1.5,b=-0.5", "--until", "2"];
+        insta::assert_snapshot!("motion-text", output(&course));
+        insta::assert_snapshot!(
+            "motion-csv",
+            output(&[&course[..], &["--format", "csv", "--sample", "1"]].concat())
+        );
+        insta::assert_snapshot!("help-lagrange", output(&["lagrange", "--help"]));
+    });
+}
+
+/// A main mass with its damper, in text, JSON and comma-separated values, and driven at several frequencies.
+#[test]
+fn every_main_mass_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                let text = output(&["simulate", path, "--sample", "10"]);
+                // What is lost to rounding differs from machine to machine.
+                let (kept, rest) = text.split_once("  unaccounted for").expect("an account");
+                let rest = rest.split_once('\n').expect("a line").1;
+                insta::assert_snapshot!("primary-text", format!("{kept}{rest}"));
+            }
+        );
+        let driven = "examples/primary/driven.toml";
+        let swept = ["simulate", driven, "--sweep", "frequency=17:21:5"];
+        insta::assert_snapshot!("primary-sweep-text", output(&swept));
+        insta::assert_snapshot!(
+            "primary-sweep-csv",
+            output(&[&swept[..], &["--format", "csv"]].concat())
+        );
+    });
+}
+
 /// The same swing against barriers of several materials, in text, LaTeX and JSON.
 #[test]
 fn every_study_of_materials_prints_what_it_printed() {

@@ -44,8 +44,12 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
+const MECHANISM: &str = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2 + x^4/4\"\n";
+
+const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
+
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 48] = [
+const LINES: [(&str, &str, &str); 61] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -53,6 +57,31 @@ const LINES: [(&str, &str, &str); 48] = [
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
     ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
     ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),
+    (
+        "[lagrangian] coordinates",
+        "[lagrangian]\ncoordinates = [\"u\"]\nkinetic = \"u'^2/2\"\npotential = \"u^2/2 + u^4/4\"",
+        "",
+    ),
+    (
+        "[lagrangian] kinetic",
+        "kinetic = \"x'^2/3\"",
+        "[lagrangian]\ncoordinates = [\"x\"]\n",
+    ),
+    (
+        "[lagrangian] potential",
+        "potential = \"x^2/2 + x^4/4\"",
+        "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/3\"\n",
+    ),
+    ("[lagrangian] dissipation", "dissipation = \"x'^2/4\"", MECHANISM),
+    ("[lagrangian] forces", "forces = { x = \"-x^3\" }", MECHANISM),
+    ("[units]", "[units]\nx = \"m\"", MECHANISM),
+    ("[primary] mass", "[primary]\nmass = 1", ""),
+    ("[primary] stiffness", "stiffness = 50", "[primary]\nmass = 1\n"),
+    ("[primary] damping", "damping = 0.25", MAIN_MASS),
+    ("[primary] displacement", "displacement = 0.25", MAIN_MASS),
+    ("[primary] speed", "speed = 0.25", MAIN_MASS),
+    ("[primary] force", "force = 0.25", MAIN_MASS),
+    ("[primary] frequency", "frequency = 12", MAIN_MASS),
     ("[pendulum] amplitude", "[pendulum]\namplitude = 1.25", ""),
     ("[pendulum] barrier", "[pendulum]\nbarrier = 0.25", ""),
     ("[pendulum] side", "[pendulum]\nside = \"left\"", ""),
@@ -133,6 +162,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             ("impact", Reader::Impact),
             ("simulate", Reader::Simulate),
             ("materials", Reader::Materials),
+            ("lagrange", Reader::Lagrange),
         ] {
             // Keys of the top stand first; those of a section that is there already stand in it.
             let (with, without) = match (key.starts_with('['), line.starts_with('[')) {
@@ -154,6 +184,13 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 true => (format!("{line}\n"), String::new()),
                 false => (with, without),
             };
+            // A mechanism needs the rest of its impact, and one that is derived a mechanism.
+            let foreign = reader == Reader::Lagrange && !key.starts_with("[lagrangian]") && beside != MECHANISM;
+            let named_otherwise = foreign && beside.starts_with('[');
+            let (with, without) = match foreign {
+                true => (format!("{with}{MECHANISM}"), format!("{without}{MECHANISM}")),
+                false => (with, without),
+            };
             // What compares needs numbers.
             let mut arguments = vec![command, "--format", "json"];
             if command == "compare" && key != "[values]" {
@@ -162,9 +199,17 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                     arguments.extend(["--at", "eps=0.5"]);
                 }
             }
+            if command == "impact" && beside.starts_with("[lagrangian]") {
+                arguments.extend(["--at", "A=0.5", "--at", "xc=0.1", "--at", "gamma=1e4"]);
+            }
             let answer = of_file("key", &with, &arguments);
             let refused = is_refused(&answer, word);
-            let named = refused || answer.2.contains("`equation`") || answer.2.contains("start");
+            let named = refused
+                || named_otherwise
+                || answer.2.contains("`equation`")
+                || ["start", "[lagrangian]", "[primary]"]
+                    .iter()
+                    .any(|word| answer.2.contains(word));
             if !readers.contains(&reader) {
                 assert!(
                     matches!(answer.0, Some(1 | 2)) && named,
@@ -174,6 +219,49 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             }
             let base = of_file("base", &without, &arguments);
             assert!(answer != base, "`{key}` changes nothing for {command}: {answer:?}");
+        }
+    }
+}
+
+/// An equation or a mechanism of one's own, followed from its start.
+#[test]
+fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
+    for (key, line, beside) in LINES {
+        let (_, readers) = KEYS.iter().find(|(known, _)| *known == key).expect("a key");
+        let of_mechanism = key.starts_with("[lagrangian]") || key == "[units]";
+        let (with, without) = match of_mechanism {
+            true => (format!("{beside}{line}\n"), beside.to_owned()),
+            false if key == "equation" => (format!("{line}\n"), "equation = \"x'' + x = 0\"".to_owned()),
+            false => {
+                let equation = "equation = \"x'' + eps*x^3 + A = 0\"\n";
+                let line = line.replace("A = 0.25\neps = 0.5", "A = 0.25");
+                let line = line.replace("A = 0.25", "eps = 0.25");
+                let equation = equation.replace(" + A", "");
+                let sections = if beside.starts_with('[') { beside } else { "" };
+                (format!("{equation}{sections}{line}\n"), format!("{equation}{sections}"))
+            }
+        };
+        let coordinate = if key == "[lagrangian] coordinates" {
+            "u=0.5"
+        } else {
+            "x=0.5"
+        };
+        let mut arguments = vec!["simulate", "--format", "json", "--from", coordinate];
+        if !of_mechanism && key != "equation" && key != "[values]" {
+            arguments.extend(["--at", "eps=1"]);
+        }
+        let answer = of_file("own", &with, &arguments);
+        let (_, word) = key.split_once("] ").unwrap_or(("", key));
+        match readers.contains(&Reader::Trajectory) {
+            false => assert!(
+                matches!(answer.0, Some(1 | 2)) && answer.2.contains(word.trim_matches(['[', ']']))
+                    || !beside.is_empty(),
+                "`{key}`: {answer:?}"
+            ),
+            true => assert!(
+                answer != of_file("own-base", &without, &arguments),
+                "`{key}`: {answer:?}"
+            ),
         }
     }
 }
@@ -434,6 +522,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "--sweep",
         "alpha=0.1:0.2:2",
     ];
+    let own = ["simulate", "x'' + k*x = 0", "--from", "x=1", "--at", "k=1"];
     let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
     // Command, what stands beside the option, the option.
     let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
@@ -530,6 +619,24 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             [&long[1..], &["--timeout", "1e-9"]].concat(),
             vec!["--quiet"],
         ),
+        ("simulate", own[1..].to_vec(), vec!["--from", "x'=0.5"]),
+        ("simulate", own[1..].to_vec(), vec!["--until", "3"]),
+        ("simulate", own[1..4].to_vec(), vec!["--at", "k=2"]),
+        ("simulate", own[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", own[1..].to_vec(), vec!["--chain"]),
+        ("simulate", own[1..].to_vec(), vec!["--sample", "1"]),
+        ("simulate", own[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
+        ("simulate", own[1..].to_vec(), vec!["--plot", "-"]),
+        ("simulate", vec![], vec!["--from", "x=1"]),
+        ("simulate", vec![], vec!["--until", "3"]),
+        ("simulate", vec![], vec!["--at", "k=2"]),
+        ("lagrange", vec![], vec!["--at", "m=1"]),
+        ("lagrange", vec![], vec!["--format", "latex"]),
+        ("lagrange", vec![], vec!["--output", file]),
+        ("lagrange", vec![], vec!["--plot", "-"]),
+        ("lagrange", vec![], vec!["--tolerance", "0.1"]),
+        ("lagrange", vec![], vec!["--timeout", "1e-9"]),
+        ("lagrange", vec![], vec!["--quiet"]),
         ("friction", vec![], vec!["--alpha", "0.1"]),
         ("friction", vec![], vec!["--amplitude", "1"]),
         ("friction", vec![], vec!["--speed", "0.01"]),
@@ -574,6 +681,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "compare",
         "impact",
         "simulate",
+        "lagrange",
         "friction",
         "materials",
         "audit",

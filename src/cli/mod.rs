@@ -13,10 +13,13 @@ mod derive;
 mod files;
 mod friction;
 mod impact;
+mod lagrange;
 mod materials;
+mod primary;
 mod problem;
 mod schema;
 mod simulate;
+mod trajectory;
 
 use std::fmt::Display;
 use std::io::{Read as _, Write as _};
@@ -54,10 +57,12 @@ enum Command {
     Compare(compare::Arguments),
     /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
     Impact(impact::Arguments),
-    /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time
+    /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism
     Simulate(simulate::Arguments),
     /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
     Friction(friction::Arguments),
+    /// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes
+    Lagrange(lagrange::Arguments),
     /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
     Materials(materials::Arguments),
     /// Claims of a publication from a file, each computed again, with a verdict
@@ -183,6 +188,7 @@ impl Command {
             Self::Impact(arguments) => arguments.common.clone(),
             Self::Simulate(arguments) => arguments.common.clone(),
             Self::Friction(arguments) => arguments.common.clone(),
+            Self::Lagrange(arguments) => arguments.common.clone(),
             Self::Materials(arguments) => arguments.common.clone(),
             Self::Audit(arguments) => arguments.common.clone(),
             Self::Paper(arguments) => arguments.common.clone(),
@@ -197,7 +203,8 @@ impl Command {
             Self::Derive(arguments) => problem::path(&arguments.problem),
             Self::Compare(arguments) => problem::path(&arguments.problem),
             Self::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
-            Self::Simulate(arguments) => arguments.file.as_deref(),
+            Self::Simulate(arguments) => arguments.problem.as_deref().and_then(problem::path),
+            Self::Lagrange(arguments) => arguments.file.as_deref(),
             Self::Materials(arguments) => arguments.file.as_deref(),
             Self::Audit(arguments) => Some(&arguments.file),
             Self::Paper(_) | Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
@@ -226,6 +233,7 @@ impl Command {
             Self::Impact(arguments) => impact::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Friction(arguments) => friction::run(arguments),
+            Self::Lagrange(arguments) => lagrange::run(arguments),
             Self::Materials(arguments) => materials::run(arguments),
             Self::Audit(arguments) => audit::run(arguments),
             Self::Paper(arguments) => audit::run_paper(arguments),

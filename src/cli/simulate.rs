@@ -1,10 +1,7 @@
-//! `lindstedt simulate [FILE]`.
-
-use std::path::PathBuf;
+//! `lindstedt simulate [PROBLEM]`.
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::Interrupt;
 use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
@@ -13,21 +10,33 @@ use lindstedt::impact::{
 };
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
+use lindstedt::{Interrupt, system};
 
-use super::problem::from_file;
+use super::primary;
+use super::problem::problem;
+use super::trajectory::{self, Asked};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// A TOML file, or - for standard input; without it the paper's pendulum and barrier
-    pub file: Option<PathBuf>,
+    /// A TOML file, - for standard input, an equation in quotes or a name of the catalogue; without it the paper's pendulum and barrier
+    pub problem: Option<String>,
+    /// Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"): what is left out is 0
+    #[arg(long, value_name = "x=VALUE", allow_hyphen_values = true)]
+    from: Vec<String>,
+    /// How long it is followed; 50 without it
+    #[arg(long, value_name = "T", value_parser = super::positive, allow_hyphen_values = true)]
+    until: Option<f64>,
+    /// A value of one of its parameters (1.5, 3/2, pi/3); repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
     /// Report the state at this time (repeatable)
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     sample: Vec<f64>,
     /// The method: power series with the contact in a variable in which it is analytic; Runge-Kutta, one smooth phase at
     /// a time; or both, and how far they differ
-    #[arg(long, value_enum, default_value_t = Method::Taylor)]
-    integrator: Method,
+    #[arg(long, value_enum)]
+    integrator: Option<Method>,
     /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with its formula, and its error against
     /// the integration; a sweep is not judged
     #[arg(long, conflicts_with = "integrator")]
@@ -71,10 +80,26 @@ fn axis(text: &str) -> Result<Axis, String> {
 const ENERGY_TOLERANCE: f64 = 1e-6;
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let problem = match &arguments.file {
+    let problem = match &arguments.problem {
         None => Problem::default(),
-        Some(path) => from_file(path)?,
+        Some(text) => problem(text)?,
     };
+    if problem.equation.is_some() || problem.lagrangian.is_some() {
+        return own(arguments, &problem);
+    }
+    let foreign = [
+        ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
+        ("--until", arguments.until.is_some(), "duration in [run]"),
+        ("--at", !arguments.at.is_empty(), "the keys of a file"),
+    ];
+    if let Some((option, _, instead)) = foreign.iter().find(|(_, given, _)| *given) {
+        return Err(Failure::Usage(format!(
+            "{option} belongs to an equation or a mechanism of one's own; for the pendulum and its barrier give {instead}"
+        )));
+    }
+    if problem.primary.is_some() {
+        return main_mass(arguments, &problem);
+    }
     if arguments.common.format == Format::Latex && !arguments.sweep.is_empty() {
         return Err(Failure::Usage(
             "a sweep has no LaTeX form: choose --format text, json or csv".to_owned(),
@@ -99,6 +124,66 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { note, ..outcome })
 }
 
+/// A main mass that carries the pendulum.
+fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+    let foreign = [
+        ("--chain", arguments.chain),
+        ("--integrator", arguments.integrator.is_some()),
+        ("--baseline", arguments.baseline),
+        ("--jobs", arguments.jobs.is_some()),
+    ];
+    if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
+        return Err(Failure::Usage(format!(
+            "{option} belongs to the pendulum alone: a file with [primary] is followed by power series, on all cores where its force \
+             is swept"
+        )));
+    }
+    let outcome = primary::run(
+        problem,
+        &primary::Asked {
+            samples: &arguments.sample,
+            sweep: &arguments.sweep,
+            quiet: arguments.quiet,
+            common: &arguments.common,
+        },
+    )?;
+    let note = outcome.note.filter(|_| !arguments.quiet);
+    Ok(Outcome { note, ..outcome })
+}
+
+/// An equation or a mechanism of one's own.
+fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+    let foreign = [
+        ("--chain", arguments.chain),
+        ("--sweep", !arguments.sweep.is_empty()),
+        ("--jobs", arguments.jobs.is_some()),
+    ];
+    if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
+        return Err(Failure::Usage(format!(
+            "{option} belongs to the pendulum and its barrier: an equation or a mechanism of one's own is followed alone"
+        )));
+    }
+    let integrators: &[system::Integrator] = match arguments.integrator {
+        None => &[],
+        Some(Method::Taylor) => &[system::Integrator::Taylor],
+        Some(Method::RungeKutta) => &[system::Integrator::RungeKutta],
+        Some(Method::Both) => &[system::Integrator::Taylor, system::Integrator::RungeKutta],
+    };
+    let outcome = trajectory::run(
+        problem,
+        &Asked {
+            from: &arguments.from,
+            until: arguments.until,
+            at: &arguments.at,
+            samples: &arguments.sample,
+            integrators,
+            common: &arguments.common,
+        },
+    )?;
+    let note = outcome.note.filter(|_| !arguments.quiet);
+    Ok(Outcome { note, ..outcome })
+}
+
 fn refused(error: SimulateError) -> Failure {
     let help = error.help();
     Failure::refused(&error, help)
@@ -116,12 +201,13 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     }
     let follow =
         |integrator| simulate(&model, start, integrator, &settings).map_err(|error| Failure::refused(&error, None));
-    let motion = match arguments.integrator {
+    let integrator = arguments.integrator.unwrap_or(Method::Taylor);
+    let motion = match integrator {
         _ if arguments.chain => follow(Integrator::Chain)?,
         Method::RungeKutta => follow(Integrator::RungeKutta)?,
         Method::Taylor | Method::Both => follow(Integrator::Taylor)?,
     };
-    let judge = match arguments.integrator {
+    let judge = match integrator {
         _ if arguments.chain => Some(follow(Integrator::Taylor)?),
         Method::Both => Some(follow(Integrator::RungeKutta)?),
         Method::Taylor | Method::RungeKutta => None,
@@ -261,7 +347,11 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
                 .to_owned(),
         ));
     }
-    if arguments.integrator != Method::Taylor || !arguments.sample.is_empty() {
+    if arguments
+        .integrator
+        .is_some_and(|integrator| integrator != Method::Taylor)
+        || !arguments.sample.is_empty()
+    {
         return Err(Failure::Usage(
             "a sweep is done by Taylor series, or with --chain by closed forms, and reports one line a motion: leave out \
              --integrator and --sample"

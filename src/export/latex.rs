@@ -22,6 +22,7 @@ use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Impact, ImpactComparison, MaterialStudy};
+use crate::mechanics::MechanismStudy;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -164,6 +165,19 @@ pub fn audit(audit: &Audit) -> String {
     document(&report::audit(audit))
 }
 
+/// A mechanism, its equations of motion and its groups.
+///
+/// ```
+/// use lindstedt::mechanics::{MechanismQuestion, study};
+///
+/// let study = study(MechanismQuestion::of_paper())?;
+/// assert!(lindstedt::export::latex::mechanism(&study).contains(r"\gamma"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn mechanism(study: &MechanismStudy) -> String {
+    document(&report::mechanism(study))
+}
+
 /// Every method in one table; those that do not apply stand in comments below it.
 ///
 /// ```
@@ -243,7 +257,7 @@ impl Page {
             Block::Equality { left, right } => {
                 self.rows.push(format!("{} &= {}", expression(left), expression(right)));
             }
-            Block::Line(line) => self.rows.extend(super::steps::line_as_latex(line)),
+            Block::Line(line) => self.rows.extend(super::steps::line_as_latex(line.as_ref())),
             Block::CycleAmplitude {
                 symbol: name,
                 amplitude,

@@ -12,8 +12,10 @@ pub mod friction;
 pub mod json;
 pub mod latex;
 pub mod materials;
+pub mod primary;
 pub mod simulation;
 pub(crate) mod steps;
 pub mod text;
+pub mod trajectory;
 
 pub use crate::decimal::{decimal, significant};

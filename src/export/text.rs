@@ -15,6 +15,7 @@ use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Impact, ImpactComparison, MaterialStudy};
+use crate::mechanics::MechanismStudy;
 use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::Solution;
@@ -137,6 +138,19 @@ pub fn materials(study: &MaterialStudy, width: usize) -> String {
 /// ```
 pub fn audit(audit: &Audit, width: usize) -> String {
     document(&report::audit(audit), width)
+}
+
+/// A mechanism, its equations of motion and its groups, in lines of at most `width` characters where words allow it.
+///
+/// ```
+/// use lindstedt::mechanics::{MechanismQuestion, study};
+///
+/// let study = study(MechanismQuestion::of_paper())?;
+/// assert!(lindstedt::export::text::mechanism(&study, 120).contains("gamma"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn mechanism(study: &MechanismStudy, width: usize) -> String {
+    document(&report::mechanism(study), width)
 }
 
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.

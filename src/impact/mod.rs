@@ -75,6 +75,7 @@ mod model;
 mod parameter;
 mod phases;
 mod polynomial;
+pub mod primary;
 mod setup;
 mod si;
 mod simulate;

@@ -1,5 +1,7 @@
 //! The document: what a problem file may hold, section by section, and the defaults of what it leaves out.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 
 use crate::impact::hertz::Design;
@@ -39,6 +41,12 @@ pub struct Problem {
     pub barrier: BarrierSection,
     /// Duration and accuracy of integrations.
     pub run: Run,
+    /// The main mass that carries the pendulum.
+    pub primary: Option<PrimarySection>,
+    /// A mechanism by its energies.
+    pub lagrangian: Option<LagrangianSection>,
+    /// The units of its coordinates and parameters.
+    pub units: BTreeMap<String, String>,
     /// The materials of a study.
     pub material: Vec<MaterialSection>,
     /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
@@ -172,6 +180,42 @@ pub enum Barrier {
     Right(f64),
     /// The positions of both.
     Both([f64; 2]),
+}
+
+/// `[primary]`, SI units: the main mass on spring and dashpot that carries the pendulum and its barriers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PrimarySection {
+    /// Its mass without the pendulum, kg.
+    pub mass: Option<f64>,
+    /// The stiffness of its spring, N/m.
+    pub stiffness: Option<f64>,
+    /// The coefficient of its dashpot, N s/m; none without it.
+    pub damping: Option<f64>,
+    /// Where it begins, m.
+    pub displacement: Option<f64>,
+    /// How fast it begins, m/s.
+    pub speed: Option<f64>,
+    /// The amplitude of a harmonic force on it, N.
+    pub force: Option<f64>,
+    /// The angular frequency of that force, rad/s.
+    pub frequency: Option<f64>,
+}
+
+/// `[lagrangian]`: energies as expressions, with `q'` for the velocity of the coordinate `q`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LagrangianSection {
+    /// The generalised coordinates, in the order of their equations.
+    pub coordinates: Vec<String>,
+    /// The kinetic energy.
+    pub kinetic: Option<String>,
+    /// The potential energy; none without it.
+    pub potential: Option<String>,
+    /// Rayleigh's dissipation function: `c*x'^2/2` for a dashpot, `F*abs(x')` for dry friction.
+    pub dissipation: Option<String>,
+    /// The generalised force on each coordinate that has one.
+    pub forces: BTreeMap<String, String>,
 }
 
 /// `[contact]`

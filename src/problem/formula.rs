@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{Order, Problem, ProblemError, Reader, UnreadKey};
+use super::{MechanismFileError, Order, Problem, ProblemError, Reader, UnreadKey};
 use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -25,12 +25,15 @@ pub struct Formula<'a> {
 }
 
 /// Why a file gives no formula.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FormulaError {
     /// A key that belongs to another command.
     #[error(transparent)]
     Unread(#[from] UnreadKey),
+    /// A mechanism whose equation cannot be taken.
+    #[error(transparent)]
+    Mechanism(#[from] MechanismFileError),
     /// No equation.
     #[error("the file has no `equation`")]
     NoEquation,
@@ -41,6 +44,7 @@ impl FormulaError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::NoEquation => Some("equation = \"x'' + sin(x) = 0\"".to_owned()),
+            Self::Mechanism(error) => error.help(),
             Self::Unread(_) => None,
         }
     }
@@ -61,6 +65,7 @@ impl Problem {
     /// ```
     pub fn formula(&self, reader: Reader) -> Result<Formula<'_>, FormulaError> {
         self.check_keys(reader)?;
+        self.check_derived_equation()?;
         Ok(Formula {
             equation: self.equation.as_deref().ok_or(FormulaError::NoEquation)?,
             about: self.about.as_deref(),

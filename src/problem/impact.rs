@@ -318,6 +318,7 @@ fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFile
 
 /// The swing, about the equilibrium asked for.
 fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
+    problem.check_derived_equation().map_err(ProblemError::from)?;
     let Some(equation) = &problem.equation else {
         return match problem.about {
             None => Ok(None),

@@ -19,9 +19,13 @@ pub enum Reader {
     Simulate,
     /// `lindstedt materials`
     Materials,
+    /// `lindstedt lagrange`
+    Lagrange,
+    /// `lindstedt simulate` of an equation or a mechanism
+    Trajectory,
 }
 
-use Reader::{Compare, Derive, Impact, Materials, Simulate};
+use Reader::{Compare, Derive, Impact, Lagrange, Materials, Simulate, Trajectory};
 
 impl fmt::Display for Reader {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -29,21 +33,38 @@ impl fmt::Display for Reader {
             Derive => "lindstedt derive",
             Compare => "lindstedt compare",
             Impact => "lindstedt impact",
-            Simulate => "lindstedt simulate",
+            Simulate | Trajectory => "lindstedt simulate",
             Materials => "lindstedt materials",
+            Lagrange => "lindstedt lagrange",
         })
     }
 }
 
+/// Those that read an equation of motion, and with it a mechanism.
+const MECHANISM: [Reader; 5] = [Derive, Compare, Impact, Trajectory, Lagrange];
+
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 48] = [
-    ("equation", &[Derive, Compare, Impact, Simulate]),
+pub const KEYS: [(&str, &[Reader]); 61] = [
+    ("equation", &[Derive, Compare, Impact, Simulate, Trajectory]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
     ("small", &[Derive, Compare]),
     ("amplitude", &[Derive, Impact]),
     ("about", &[Derive, Compare, Impact]),
-    ("[values]", &[Derive, Compare, Impact]),
+    ("[values]", &[Derive, Compare, Impact, Lagrange, Trajectory]),
+    ("[lagrangian] coordinates", &MECHANISM),
+    ("[lagrangian] kinetic", &MECHANISM),
+    ("[lagrangian] potential", &MECHANISM),
+    ("[lagrangian] dissipation", &MECHANISM),
+    ("[lagrangian] forces", &MECHANISM),
+    ("[units]", &MECHANISM),
+    ("[primary] mass", &[Simulate]),
+    ("[primary] stiffness", &[Simulate]),
+    ("[primary] damping", &[Simulate]),
+    ("[primary] displacement", &[Simulate]),
+    ("[primary] speed", &[Simulate]),
+    ("[primary] force", &[Simulate]),
+    ("[primary] frequency", &[Simulate]),
     ("[pendulum] amplitude", &[Impact, Simulate, Materials]),
     ("[pendulum] barrier", &[Impact, Simulate, Materials]),
     ("[pendulum] side", &[Impact]),
@@ -81,9 +102,9 @@ pub const KEYS: [(&str, &[Reader]); 48] = [
     ("[barrier] modulus", &[Impact, Simulate, Materials]),
     ("[barrier] poisson", &[Impact]),
     ("[barrier] yield", &[Impact]),
-    ("[run] duration", &[Simulate, Materials]),
-    ("[run] integrator_tolerance", &[Impact, Simulate, Materials]),
-    ("[run] step_limit", &[Impact, Simulate, Materials]),
+    ("[run] duration", &[Simulate, Materials, Trajectory]),
+    ("[run] integrator_tolerance", &[Impact, Simulate, Materials, Trajectory]),
+    ("[run] step_limit", &[Impact, Simulate, Materials, Trajectory]),
     ("[[material]]", &[Materials]),
 ];
 
@@ -92,7 +113,7 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
     let mut keys = Vec::new();
     for (name, value) in file {
         match value {
-            toml::Value::Table(_) if name == "values" => keys.push("[values]".to_owned()),
+            toml::Value::Table(_) if name == "values" || name == "units" => keys.push(format!("[{name}]")),
             toml::Value::Array(_) if name == "material" => keys.push("[[material]]".to_owned()),
             toml::Value::Table(section) => keys.extend(section.keys().map(|key| format!("[{name}] {key}"))),
             _ => keys.push(name.clone()),
@@ -135,12 +156,13 @@ impl Problem {
     /// [`UnreadKey`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
-        if matches!(reader, Derive | Compare) && self.equation.is_none() && described {
+        if matches!(reader, Derive | Compare) && self.equation.is_none() && self.lagrangian.is_none() && described {
             return Err(UnreadKey::NoEquation(reader));
         }
         for (key, readers) in KEYS {
             if self.gives(key) && !readers.contains(&reader) {
-                let names: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
+                let mut names: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
+                names.dedup();
                 return Err(UnreadKey::Key {
                     key: key.to_owned(),
                     reader,
@@ -176,6 +198,8 @@ mod tests {
             ("sphere", "[sphere] "),
             ("barrier", "[barrier] "),
             ("run", "[run] "),
+            ("lagrangian", "[lagrangian] "),
+            ("primary", "[primary] "),
         ] {
             let text = match section {
                 "" => "nonsense = 1".to_owned(),

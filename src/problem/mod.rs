@@ -7,7 +7,10 @@
 //! - [`Problem::formula`], what `derive` and `compare` read;
 //! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
 //! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept;
-//! - barriers of several materials, [`Problem::materials`].
+//! - barriers of several materials, [`Problem::materials`];
+//! - the motion of an equation of one's own, [`Problem::course`];
+//! - a mechanism by its energies, [`Problem::mechanism`]: of one with a single coordinate the equation is derived at once, and every
+//!   command that reads an equation reads that.
 
 mod design;
 mod document;
@@ -15,8 +18,11 @@ mod formula;
 mod impact;
 mod keys;
 mod materials;
+mod mechanism;
 mod mistakes;
+mod primary;
 mod simulate;
+mod trajectory;
 
 use std::str::FromStr;
 
@@ -27,15 +33,18 @@ use crate::values::ValueError;
 
 pub use design::DesignError;
 pub use document::{
-    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, MaterialSection, NoBarrier,
-    Order, Pendulum, Problem, Run, SphereSection,
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, LagrangianSection,
+    MaterialSection, NoBarrier, Order, Pendulum, PrimarySection, Problem, Run, SphereSection,
 };
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
 pub use keys::{KEYS, Reader, UnreadKey};
 pub use materials::MaterialsFileError;
+pub use mechanism::MechanismFileError;
 pub(crate) use mistakes::in_words;
+pub use primary::{PrimaryFileError, PrimaryProblem};
 pub use simulate::{Simulate, SimulateError};
+pub use trajectory::TrajectoryFileError;
 
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
@@ -75,6 +84,9 @@ pub enum ProblemError {
     /// Bodies that are none.
     #[error(transparent)]
     Bodies(#[from] DesignError),
+    /// Energies that give no equation of motion.
+    #[error(transparent)]
+    Mechanism(#[from] MechanismFileError),
     /// An unknown rule.
     #[error("[contact]: {0}")]
     Rule(#[from] UnknownRule),
@@ -85,6 +97,7 @@ impl ProblemError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Toml { help, .. } => help.clone(),
+            Self::Mechanism(error) => error.help(),
             _ => None,
         }
     }
@@ -100,7 +113,7 @@ impl FromStr for Problem {
         let text = text.trim_start_matches('\u{feff}');
         let problem: Self = toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))?;
         let given = toml::from_str(text).map_or_else(|_| Vec::new(), |file| keys::given(&file));
-        Ok(Self { given, ..problem })
+        Self { given, ..problem }.with_derived_equation()
     }
 }
 

@@ -10,7 +10,10 @@ mod friction;
 mod impact;
 mod impact_comparison;
 mod materials;
+mod mechanism;
+mod primary;
 mod solution;
+mod trajectory;
 
 pub use audit::audit;
 #[cfg(feature = "json")]
@@ -20,7 +23,12 @@ pub use friction::friction;
 pub use impact::impact;
 pub use impact_comparison::impact_comparison;
 pub use materials::{material_sentences, materials};
+pub use mechanism::mechanism;
+pub use primary::{PrimaryReport, primary, primary_sweep};
 pub use solution::solution;
+pub use trajectory::{TrajectoryReport, trajectory};
+
+use std::borrow::Cow;
 
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
@@ -82,7 +90,7 @@ pub enum Block<'a> {
         right: &'a Expr,
     },
     /// A line of a derivation.
-    Line(&'a Line),
+    Line(Cow<'a, Line>),
     /// What a system of equations is solved for.
     Unknowns(&'a [Symbol]),
     /// The amplitude of a limit cycle.

@@ -1,5 +1,7 @@
 //! A derived formula, and the verdict where it was judged.
 
+use std::borrow::Cow;
+
 use super::{Block, Document};
 use crate::decimal::decimal;
 use crate::expr::Expr;
@@ -59,7 +61,7 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
             left: if form.squared { &omega * &omega } else { omega },
             right: &form.value,
         }],
-        Shown::Quadrature(lines) => lines.iter().map(Block::Line).collect(),
+        Shown::Quadrature(lines) => lines.iter().map(|line| Block::Line(Cow::Borrowed(line))).collect(),
         Shown::System(system) => {
             let equations = system.equations.iter();
             let equations = equations.map(|right| Block::Equality {

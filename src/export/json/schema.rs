@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use super::{
     AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
-    JsonError, MaterialsDocument, SimulationDocument, SolutionDocument, SweepDocument, unexpected,
+    JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, PrimaryDocument, PrimarySweepDocument,
+    SimulationDocument, SolutionDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -23,10 +24,18 @@ pub enum Kind {
     ImpactComparison,
     /// `simulate`.
     Simulation,
+    /// `simulate` of an equation or a mechanism.
+    Motion,
+    /// `simulate` of a main mass.
+    Primary,
+    /// `simulate --sweep` of a main mass.
+    PrimarySweep,
     /// `simulate --sweep`.
     Sweep,
     /// `friction`.
     Friction,
+    /// `lagrange`.
+    Lagrangian,
     /// `materials`.
     Materials,
     /// `audit`, `paper`.
@@ -37,14 +46,18 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 14] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
         Self::ImpactComparison,
         Self::Simulation,
+        Self::Motion,
+        Self::Primary,
+        Self::PrimarySweep,
         Self::Sweep,
         Self::Friction,
+        Self::Lagrangian,
         Self::Materials,
         Self::Audit,
         Self::Catalog,
@@ -58,8 +71,12 @@ impl Kind {
             Self::Impact => "lindstedt/impact/1",
             Self::ImpactComparison => "lindstedt/impact-comparison/1",
             Self::Simulation => "lindstedt/simulation/1",
+            Self::Motion => "lindstedt/motion/1",
+            Self::Primary => "lindstedt/primary/1",
+            Self::PrimarySweep => "lindstedt/primary-sweep/1",
             Self::Sweep => "lindstedt/sweep/1",
             Self::Friction => "lindstedt/friction/1",
+            Self::Lagrangian => "lindstedt/lagrangian/1",
             Self::Materials => "lindstedt/materials/1",
             Self::Audit => "lindstedt/audit/1",
             Self::Catalog => "lindstedt/catalog/1",
@@ -93,8 +110,12 @@ impl Kind {
             Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
             Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
             Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
+            Self::Motion => generator.into_root_schema_for::<MotionDocument>(),
+            Self::Primary => generator.into_root_schema_for::<PrimaryDocument>(),
+            Self::PrimarySweep => generator.into_root_schema_for::<PrimarySweepDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
+            Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),

@@ -1,0 +1,66 @@
+//! `lindstedt lagrange [FILE]`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use lindstedt::export::{json, latex, text};
+use lindstedt::mechanics::{MechanismQuestion, study};
+use lindstedt::problem::{Problem, Reader};
+
+use super::derive::exact_values;
+use super::files::width;
+use super::problem::from_file;
+use super::{Common, Failure, Format, Outcome, json_text, no_table, whole};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
+    pub file: Option<PathBuf>,
+    /// A value of a parameter (1.5, 3/2, pi/3): with all of them the modes get numbers; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let common = &arguments.common;
+    if common.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "--tolerance belongs to a verdict, and a derivation of equations has none: leave it out".to_owned(),
+        ));
+    }
+    if common.plot.is_some() {
+        return Err(Failure::Usage(
+            "--plot: equations of motion have no picture; `lindstedt simulate` draws the motion of the file".to_owned(),
+        ));
+    }
+    let (mut question, problem) = match &arguments.file {
+        None => (MechanismQuestion::of_paper(), Problem::default()),
+        Some(path) => {
+            let problem = from_file(path)?;
+            problem
+                .check_keys(Reader::Lagrange)
+                .map_err(|error| Failure::refused(&error, None))?;
+            let question = problem
+                .mechanism()
+                .map_err(|error| Failure::refused(&error, error.help()))?;
+            (question, problem)
+        }
+    };
+    question.values = exact_values(&arguments.at, &problem)?.unwrap_or_default().numbers();
+    let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
+    let text = match common.format {
+        Format::Text => text::mechanism(&study, width(common.output.as_deref())),
+        Format::Latex => latex::mechanism(&study),
+        Format::Json => json_text(&json::lagrangian(&study))?,
+        Format::Csv => no_table()?,
+    };
+    Ok(Outcome {
+        result: whole(text),
+        picture: None,
+        note: None,
+        verdict: None,
+        partial: false,
+    })
+}

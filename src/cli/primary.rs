@@ -1,0 +1,148 @@
+//! `lindstedt simulate FILE` of a file with a main mass, `[primary]`.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lindstedt::Interrupt;
+use lindstedt::export::{json, primary, text};
+use lindstedt::impact::Units;
+use lindstedt::impact::primary::{PrimaryRow, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary};
+use lindstedt::impact::sweep::Axis;
+use lindstedt::problem::Problem;
+use lindstedt::report::{self, PrimaryReport};
+use lindstedt::verify::Verdict;
+
+use super::files::width;
+use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
+
+/// What is asked of a main mass.
+pub(super) struct Asked<'a> {
+    /// Times at which the states are wanted.
+    pub samples: &'a [f64],
+    /// The frequencies of the force, in rad/s.
+    pub sweep: &'a [Axis],
+    /// No progress bar.
+    pub quiet: bool,
+    pub common: &'a Common,
+}
+
+/// Without `--tolerance`: the energy that may go astray, relative to the largest.
+const ENERGY_TOLERANCE: f64 = 1e-6;
+
+pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
+    if asked.common.format == Format::Latex {
+        return Err(Failure::Usage(
+            "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv".to_owned(),
+        ));
+    }
+    match asked.sweep {
+        [] => one(problem, asked),
+        [axis] if axis.name() == "frequency" => many(problem, asked, axis),
+        [axis, ..] => Err(Failure::Usage(format!(
+            "a main mass is swept over the frequency of its force alone, not over `{}`: --sweep frequency=5:20:61, in rad/s",
+            axis.name()
+        ))),
+    }
+}
+
+fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
+    let (common, file) = (asked.common, problem.primary_case(false));
+    let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
+    let settings = PrimarySettings {
+        interrupt: Interrupt::by(&STOP),
+        ..file.settings
+    };
+    if let Some(late) = asked.samples.iter().find(|sample| **sample > settings.duration) {
+        return Err(Failure::Refused(format!(
+            "--sample {late} lies beyond the duration {}\n  help: raise `duration` in [run]",
+            settings.duration
+        )));
+    }
+    let motion = simulate_primary(file.case, &settings).map_err(|error| Failure::refused(&error, None))?;
+    let report = PrimaryReport {
+        motion: &motion,
+        units: &file.units,
+        samples: asked.samples,
+    };
+    let text = match common.format {
+        Format::Csv => primary::csv(&report),
+        Format::Json => json_text(&json::primary(&report))?,
+        Format::Text | Format::Latex => text::document(&report::primary(&report), width(common.output.as_deref())),
+    };
+    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&report)));
+    let kept = motion.energy.residual <= common.tolerance.unwrap_or(ENERGY_TOLERANCE);
+    Ok(Outcome {
+        result: whole(text),
+        picture,
+        note: (!motion.is_complete())
+            .then(|| format!("warning: stopped early, what there is is kept: {}", motion.stop)),
+        verdict: Some(Verdict::of(kept && motion.is_complete())),
+        partial: !motion.is_complete(),
+    })
+}
+
+fn many(problem: &Problem, asked: &Asked, axis: &Axis) -> Result<Outcome, Failure> {
+    if !asked.samples.is_empty() {
+        return Err(Failure::Usage(
+            "a sweep reports one line a motion: leave out --sample".to_owned(),
+        ));
+    }
+    let common = asked.common;
+    let file = problem
+        .primary_case(true)
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let frequencies: Vec<f64> = axis.values().iter().map(|value| value * file.units.time()).collect();
+    let settings = PrimarySettings {
+        interrupt: Interrupt::by(&STOP),
+        ..file.settings
+    };
+    let bar = match asked.quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(frequencies.len() as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} frequencies, {eta} left") {
+        bar.set_style(style);
+    }
+    let progress = |done: usize| bar.inc(done as u64);
+    let rows =
+        sweep_primary(file.case, &frequencies, &settings, progress).map_err(|error| Failure::refused(&error, None))?;
+    bar.finish_and_clear();
+    let text = match common.format {
+        Format::Csv => primary::sweep_csv(&rows),
+        Format::Json => json_text(&json::primary_sweep(&rows, &file.units))?,
+        Format::Text | Format::Latex => text::document(
+            &report::primary_sweep(&rows, &file.units),
+            width(common.output.as_deref()),
+        ),
+    };
+    let picture = common
+        .plot
+        .as_ref()
+        .map(|path| (path.clone(), sweep_picture(&rows, &file.units)));
+    let broken = rows.iter().filter(|row| row.stop != PrimaryStop::Duration).count();
+    Ok(Outcome {
+        result: whole(text),
+        picture,
+        note: (broken > 0).then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),
+        verdict: Some(Verdict::of(broken == 0)),
+        partial: broken > 0,
+    })
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &PrimaryReport) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(not(feature = "plot"))]
+fn sweep_picture(_: &[PrimaryRow], _: &Units) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(report: &PrimaryReport) -> Result<String, Failure> {
+    primary::picture(report).map_err(|error| Failure::refused(&error, None))
+}
+
+#[cfg(feature = "plot")]
+fn sweep_picture(rows: &[PrimaryRow], units: &Units) -> Result<String, Failure> {
+    primary::sweep_picture(rows, units).map_err(|error| Failure::refused(&error, None))
+}

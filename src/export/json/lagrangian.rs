@@ -1,0 +1,204 @@
+//! Kind `lagrangian`: equations of motion from energies.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Kind;
+use super::number::Map;
+use crate::mechanics::{Group, MechanismStudy, Mode, Place, RestStudy};
+
+/// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless groups on which its motion depends.
+/// Formulas are text of the grammar; `q'` is the velocity of `q`. Numbers are in the units of the values that were given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct LagrangianDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Lagrangian.schema()))]
+    pub schema: String,
+    /// The generalised coordinates, in the order of the equations.
+    pub coordinates: Vec<String>,
+    /// T, the kinetic energy.
+    pub kinetic: String,
+    /// V, the potential energy.
+    pub potential: String,
+    /// D, Rayleigh's dissipation function; `0` where there is none.
+    pub dissipation: String,
+    /// The generalised force on each coordinate that has one.
+    pub forces: Map<String>,
+    /// The equations of motion, each `... = 0`.
+    pub equations: Vec<String>,
+    /// What each was divided by.
+    pub divisors: Vec<String>,
+    /// The accelerations, solved for.
+    pub accelerations: Map<String>,
+    /// Whether every term was checked for its unit: only where units were given.
+    pub units_checked: bool,
+    /// The parameters that give the units of the dimensionless form; null without units or where there is none.
+    pub units: Option<Vec<String>>,
+    /// The unit of time in them; null likewise.
+    pub time_unit: Option<String>,
+    /// The number of parameters of the equations; null likewise.
+    pub parameter_count: Option<usize>,
+    /// The rank of the matrix of their dimensions; null likewise.
+    pub rank: Option<usize>,
+    /// The dimensionless numbers on which the motion depends; null likewise.
+    pub groups: Option<Vec<GroupDocument>>,
+    /// The equations in these units and groups; null likewise.
+    pub dimensionless: Option<Vec<String>>,
+    /// Why there are no groups; null where there are, and without units.
+    pub no_groups: Option<String>,
+    /// The values that were given.
+    pub values: Map<f64>,
+    /// Places of rest that were found; others are not ruled out. Contacts and terms in the time are left out.
+    pub equilibria: Vec<EquilibriumDocument>,
+    /// The modes at each of them, in the same order; an empty list where not every parameter has a value.
+    pub modes: Vec<Vec<ModeDocument>>,
+    /// The paper's equations beside these; empty for any other mechanism.
+    pub findings: Vec<FindingDocument>,
+}
+
+/// A dimensionless number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "Group")]
+pub struct GroupDocument {
+    /// Its name in `dimensionless`.
+    pub name: String,
+    /// What it is in the parameters.
+    pub definition: String,
+    /// The unit of the definition, counted from those of the parameters: `1`.
+    pub dimension: String,
+    /// What it does.
+    pub meaning: String,
+}
+
+/// A place of rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "Equilibrium")]
+pub struct EquilibriumDocument {
+    /// The place of each coordinate; null for one that may be anywhere.
+    pub places: Map<Option<String>>,
+    /// What lies between -1 and 1 where the place exists; null where it always does.
+    pub cosine: Option<String>,
+    /// omega^2 of small swings about it, negative where it is unstable; null for several coordinates.
+    pub frequency_squared: Option<String>,
+}
+
+/// A mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "Mode")]
+pub struct ModeDocument {
+    /// Angular frequency; 0 where it does not swing.
+    pub frequency: f64,
+    /// The exponent of growth, negative for decay, per unit of time.
+    pub growth: f64,
+    /// The coordinates in proportion, the largest 1; null where damping makes them move out of step.
+    pub shape: Option<Vec<f64>>,
+}
+
+/// An equation of the paper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "Finding")]
+pub struct FindingDocument {
+    /// Its number: `(1)`.
+    pub equation: String,
+    /// What is printed.
+    pub printed: String,
+    /// Whether it follows as it is printed; null where it is put in and not derived.
+    pub agrees: Option<bool>,
+    /// What was found, in words.
+    pub words: String,
+}
+
+/// The document of kind `lagrangian`.
+///
+/// ```
+/// use lindstedt::mechanics::{MechanismQuestion, study};
+///
+/// let study = study(MechanismQuestion::of_paper())?;
+/// let document = lindstedt::export::json::lagrangian(&study);
+/// assert_eq!(document.groups.map(|groups| groups.len()), Some(7));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
+    let mechanism = &study.question.mechanism;
+    let coordinates = &mechanism.coordinates;
+    let groups = study.groups.as_ref().and_then(|groups| groups.as_ref().ok());
+    let zero = |left: &crate::expr::Expr| format!("{left} = 0");
+    let names = coordinates.iter().map(ToString::to_string);
+    let accelerations = study.equations.accelerations().unwrap_or_default();
+    let equilibrium = |rest: &RestStudy| {
+        let place = |place: &Place| match place {
+            Place::At(place) => Some(place.to_string()),
+            Place::Anywhere => None,
+        };
+        let places = rest.rest.places.iter().map(place);
+        EquilibriumDocument {
+            places: coordinates.iter().map(ToString::to_string).zip(places).collect(),
+            cosine: rest.rest.condition.as_ref().map(ToString::to_string),
+            frequency_squared: rest.modes.square().ok().flatten().map(|square| square.to_string()),
+        }
+    };
+    let modes = |rest: &RestStudy| {
+        let known = rest.numbers.as_ref().and_then(|numbers| numbers.as_ref().ok());
+        let mode = |mode: &Mode| ModeDocument {
+            frequency: mode.frequency,
+            growth: mode.growth,
+            shape: mode.shape.clone(),
+        };
+        known.map(|modes| modes.iter().map(mode).collect()).unwrap_or_default()
+    };
+    LagrangianDocument {
+        schema: Kind::Lagrangian.schema().to_owned(),
+        coordinates: names.clone().collect(),
+        kinetic: mechanism.kinetic.to_string(),
+        potential: mechanism.potential.to_string(),
+        dissipation: mechanism.dissipation.to_string(),
+        forces: mechanism
+            .forces
+            .iter()
+            .map(|(on, force)| (on.to_string(), force.to_string()))
+            .collect(),
+        equations: study.equations.left.iter().map(zero).collect(),
+        divisors: study.equations.divisors.iter().map(ToString::to_string).collect(),
+        accelerations: names.zip(accelerations.iter().map(ToString::to_string)).collect(),
+        units_checked: study.question.units.is_some(),
+        units: groups.map(|groups| groups.units.iter().map(ToString::to_string).collect()),
+        time_unit: groups.map(|groups| groups.time.to_string()),
+        parameter_count: groups.map(|groups| groups.parameters),
+        rank: groups.map(|groups| groups.rank),
+        groups: groups.map(|groups| groups.groups.iter().map(group).collect()),
+        dimensionless: groups.map(|groups| groups.left.iter().map(zero).collect()),
+        no_groups: study
+            .groups
+            .as_ref()
+            .and_then(|groups| groups.as_ref().err())
+            .map(ToString::to_string),
+        values: study
+            .question
+            .values
+            .iter()
+            .map(|(name, value)| (name.to_string(), *value))
+            .collect(),
+        equilibria: study.rests.iter().map(equilibrium).collect(),
+        modes: study.rests.iter().map(modes).collect(),
+        findings: study.findings.iter().map(finding).collect(),
+    }
+}
+
+fn group(group: &Group) -> GroupDocument {
+    GroupDocument {
+        name: group.name.to_string(),
+        definition: group.definition.to_string(),
+        dimension: group.dimension.to_string(),
+        meaning: group.meaning.clone(),
+    }
+}
+
+fn finding(finding: &crate::mechanics::paper::Finding) -> FindingDocument {
+    FindingDocument {
+        equation: finding.equation.to_owned(),
+        printed: finding.printed.clone(),
+        agrees: finding.agrees,
+        words: finding.words.clone(),
+    }
+}

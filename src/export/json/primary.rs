@@ -1,0 +1,316 @@
+//! Kinds `primary` and `primary-sweep`: a main mass that carries the pendulum and its barriers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Kind;
+use crate::impact::Units;
+use crate::impact::primary::{Alone, PrimaryImpact, PrimaryRow};
+use crate::report::PrimaryReport;
+
+/// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega, omega^2 = g/L, displacements of the
+/// main mass are over L, energies in units of m g L, angles in radians.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrimaryDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Primary.schema()))]
+    pub schema: String,
+    /// The numbers of both bodies.
+    pub parameters: PrimaryParameters,
+    /// One unit of time, in seconds.
+    pub time_unit: f64,
+    /// One unit of displacement of the main mass, L, in metres.
+    pub length_unit: f64,
+    /// The states at the times asked for.
+    pub samples: Vec<PrimarySample>,
+    /// The state at the end.
+    pub final_state: PrimarySample,
+    /// Every impact on a barrier.
+    pub impacts: Vec<PrimaryImpactDocument>,
+    /// What became of the energy.
+    pub energy: PrimaryEnergyDocument,
+    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never does, and where a force drives it.
+    pub rest_time: Option<f64>,
+    /// Why there is none; null where there is one.
+    pub rest_reason: Option<String>,
+    /// The largest displacement of the main mass in the last quarter of the run.
+    pub long_run: f64,
+    /// The same main mass without its damper, in closed form.
+    pub without: AloneDocument,
+    /// The same with the damper locked, in closed form.
+    pub locked: AloneDocument,
+    /// Why the run ended.
+    pub stopped: String,
+    /// Whether it was followed as long as asked.
+    pub complete: bool,
+}
+
+/// The numbers of main mass and pendulum, dimensionless.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrimaryParameters {
+    /// R = M/m.
+    pub mass: f64,
+    /// kappa = k L/(m g).
+    pub stiffness: f64,
+    /// delta = (c/m) sqrt(L/g).
+    pub damping: f64,
+    /// f = F/(m g).
+    pub force: f64,
+    /// eta = Omega sqrt(L/g).
+    pub frequency: f64,
+    /// The viscous damping ratio of the pendulum.
+    pub zeta: f64,
+    /// Its dry friction.
+    pub alpha: f64,
+    /// The stiffness of the contact.
+    pub gamma: f64,
+    /// The damping of the contact.
+    pub mu: f64,
+    /// The place of the left barrier, in radians; null where there is none.
+    pub left: Option<f64>,
+    /// The place of the right barrier, likewise.
+    pub right: Option<f64>,
+    /// The start: angle, its velocity, displacement of the main mass, its velocity.
+    pub start: [f64; 4],
+}
+
+/// Both bodies at a time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrimarySample {
+    /// The time.
+    pub t: f64,
+    /// The angle of the pendulum.
+    pub x: f64,
+    /// Its velocity.
+    pub velocity: f64,
+    /// The displacement of the main mass.
+    pub y: f64,
+    /// Its velocity.
+    pub speed: f64,
+}
+
+/// An impact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "PrimaryImpact")]
+pub struct PrimaryImpactDocument {
+    /// The barrier: `left` or `right`.
+    pub side: String,
+    /// When it is touched.
+    pub entry_time: f64,
+    /// When it is left; null where the run ends before.
+    pub exit_time: Option<f64>,
+    /// The speed of the pendulum towards the barrier at the touch.
+    pub speed_in: f64,
+    /// Its speed away from it at the release; null where the run ends before.
+    pub speed_out: Option<f64>,
+    /// The greatest depth, in radians.
+    pub penetration: f64,
+    /// The energy that the contact took.
+    pub energy_lost: f64,
+}
+
+/// The account of the energy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrimaryEnergyDocument {
+    /// At the start.
+    pub start: f64,
+    /// At the end.
+    pub end: f64,
+    /// Taken by the viscous damping of the pendulum.
+    pub viscous: f64,
+    /// Taken by its dry friction.
+    pub friction: f64,
+    /// Taken by the contacts.
+    pub contact: f64,
+    /// Taken by the dashpot of the main mass.
+    pub dashpot: f64,
+    /// Put in by the force.
+    pub force: f64,
+    /// What is not accounted for, over the largest energy.
+    pub residual: f64,
+}
+
+/// A main mass alone, in closed form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "Alone")]
+pub struct AloneDocument {
+    /// Its mass, in units of the mass of the pendulum.
+    pub mass: f64,
+    /// Its angular frequency, damped; 0 where it creeps.
+    pub frequency: f64,
+    /// When its envelope has fallen to a tenth; null where it never does, creeps, or a force drives it.
+    pub rest_time: Option<f64>,
+    /// Its amplitude in the long run; null where no force drives it.
+    pub amplitude: Option<f64>,
+}
+
+/// The main mass at many frequencies of its force. Units as in kind `primary`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrimarySweepDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::PrimarySweep.schema()))]
+    pub schema: String,
+    /// One unit of time, in seconds.
+    pub time_unit: f64,
+    /// One unit of displacement of the main mass, L, in metres.
+    pub length_unit: f64,
+    /// A row for every frequency.
+    pub rows: Vec<PrimarySweepRow>,
+}
+
+/// The main mass at one frequency.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct PrimarySweepRow {
+    /// eta, the frequency of the force over omega.
+    pub frequency: f64,
+    /// The largest displacement in the last quarter of the run, with its damper.
+    pub amplitude: f64,
+    /// The amplitude in the long run with the damper locked; null at an undamped resonance.
+    pub locked: Option<f64>,
+    /// The same without the damper.
+    pub without: Option<f64>,
+    /// The number of impacts in the last quarter of the run.
+    pub impacts: usize,
+    /// Whether the run was followed as long as asked.
+    pub complete: bool,
+}
+
+/// The document of kind `primary`.
+///
+/// ```
+/// use lindstedt::impact::primary::simulate_primary;
+/// use lindstedt::problem::Problem;
+/// use lindstedt::report::PrimaryReport;
+///
+/// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
+/// let asked = file.primary_case(false)?;
+/// let motion = simulate_primary(asked.case, &asked.settings)?;
+/// let document = lindstedt::export::json::primary(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[] });
+/// assert!(document.complete && document.energy.residual < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
+    let motion = report.motion;
+    let case = &motion.case;
+    let (own, model, energy) = (&case.primary, &case.model, &motion.energy);
+    let sample = |t: f64| {
+        let state = motion.at(t)?;
+        Some(PrimarySample {
+            t,
+            x: state.x,
+            velocity: state.velocity,
+            y: state.y,
+            speed: state.speed,
+        })
+    };
+    let [x, velocity, y, speed] = case.start;
+    let start = PrimarySample {
+        t: 0.0,
+        x,
+        velocity,
+        y,
+        speed,
+    };
+    let others = own.others();
+    let driven = own.force != 0.0;
+    let rest = motion.rest_time();
+    PrimaryDocument {
+        schema: Kind::Primary.schema().to_owned(),
+        parameters: PrimaryParameters {
+            mass: own.mass,
+            stiffness: own.stiffness,
+            damping: own.damping,
+            force: own.force,
+            frequency: own.frequency,
+            zeta: model.zeta,
+            alpha: model.alpha,
+            gamma: model.gamma,
+            mu: model.mu,
+            left: model.left,
+            right: model.right,
+            start: case.start,
+        },
+        time_unit: report.units.time(),
+        length_unit: report.units.length,
+        samples: report.samples.iter().filter_map(|t| sample(*t)).collect(),
+        final_state: sample(motion.end).unwrap_or(start),
+        impacts: motion.impacts.iter().map(impact).collect(),
+        energy: PrimaryEnergyDocument {
+            start: energy.start,
+            end: energy.end,
+            viscous: energy.viscous,
+            friction: energy.friction,
+            contact: energy.contact,
+            dashpot: energy.dashpot,
+            force: energy.force,
+            residual: energy.residual,
+        },
+        rest_time: rest.as_ref().ok().copied().filter(|_| !driven),
+        rest_reason: match (driven, rest) {
+            (true, _) => Some("a force drives it".to_owned()),
+            (false, Err(reason)) => Some(reason.to_string()),
+            (false, Ok(_)) => None,
+        },
+        long_run: motion.largest_since(0.75 * motion.end),
+        without: alone(&others.without),
+        locked: alone(&others.locked),
+        stopped: motion.stop.to_string(),
+        complete: motion.is_complete(),
+    }
+}
+
+fn impact(impact: &PrimaryImpact) -> PrimaryImpactDocument {
+    PrimaryImpactDocument {
+        side: impact.side.name().to_owned(),
+        entry_time: impact.entry,
+        exit_time: impact.exit,
+        speed_in: impact.speed_in,
+        speed_out: impact.speed_out,
+        penetration: impact.penetration,
+        energy_lost: impact.energy_lost,
+    }
+}
+
+fn alone(alone: &Alone) -> AloneDocument {
+    AloneDocument {
+        mass: alone.mass,
+        frequency: alone.frequency,
+        rest_time: alone.rest_time,
+        amplitude: alone.amplitude,
+    }
+}
+
+/// The document of kind `primary-sweep`.
+///
+/// ```
+/// use lindstedt::impact::primary::sweep_primary;
+/// use lindstedt::problem::Problem;
+///
+/// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\nforce = 0.01\ndamping = 0.5\n[run]\nduration = 20".parse()?;
+/// let asked = file.primary_case(true)?;
+/// let rows = sweep_primary(asked.case, &[0.8, 1.0], &asked.settings, |_| ())?;
+/// assert_eq!(lindstedt::export::json::primary_sweep(&rows, &asked.units).rows.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn primary_sweep(rows: &[PrimaryRow], units: &Units) -> PrimarySweepDocument {
+    let row = |row: &PrimaryRow| PrimarySweepRow {
+        frequency: row.frequency,
+        amplitude: row.amplitude,
+        locked: row.others.locked.amplitude,
+        without: row.others.without.amplitude,
+        impacts: row.impacts,
+        complete: row.stop == crate::impact::primary::PrimaryStop::Duration,
+    };
+    PrimarySweepDocument {
+        schema: Kind::PrimarySweep.schema().to_owned(),
+        time_unit: units.time(),
+        length_unit: units.length,
+        rows: rows.iter().map(row).collect(),
+    }
+}

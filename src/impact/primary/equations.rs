@@ -1,0 +1,190 @@
+//! The equations of every phase, from the energies.
+//!
+//! ```text
+//! flight:   x' = v, y' = u, (v', u') = M^-1 h
+//! contact:  w' = sigma v/2, v' = w a, u' = w b, y' = w u, t' = w in s, dt = w ds; the force is (gamma + mu sigma v) w^3
+//! held:     y' = u, u' = b with v = v' = 0
+//! ```
+//!
+//! Beside the states run the energies that damping takes and the force gives: each its own rate.
+
+use std::collections::BTreeMap;
+
+use super::super::model::{Friction, STEEPNESS, Side};
+use super::{PrimaryCase, PrimaryError};
+use crate::expr::{Expr, parse_expression};
+use crate::mechanics::{MechanicsError, Mechanism};
+use crate::symbol::Symbol;
+use crate::system::System;
+
+/// The energies that run beside the states: viscous, friction, contact, dashpot, force.
+pub(super) const ACCOUNTS: usize = 5;
+
+/// The equations of one case.
+pub(super) struct Equations {
+    /// The accelerations x'', y'' with `P` for the torque of a contact and `G` for that of friction.
+    accelerations: [Expr; 2],
+    /// y'' of the main mass with the pendulum held.
+    held: Expr,
+    numbers: BTreeMap<Symbol, f64>,
+    case: PrimaryCase,
+}
+
+/// An expression of this file.
+fn own(text: &str) -> Expr {
+    parse_expression(text).unwrap_or_else(|_| Expr::zero())
+}
+
+impl Equations {
+    pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
+        let mut mechanism = Mechanism::parse(
+            &["x", "y"],
+            "R*y'^2/2 + ((y' + x'*cos(x))^2 + (x'*sin(x))^2)/2",
+            "kappa*y^2/2 + 1 - cos(x)",
+        )?;
+        mechanism.dissipation = own("delta*y'^2/2 + zeta*x'^2");
+        mechanism.forces = [
+            (Symbol::new("x"), own("P + G")),
+            (Symbol::new("y"), own("f*sin(eta*t)")),
+        ]
+        .into();
+        let equations = mechanism.equations()?;
+        let accelerations = equations.accelerations()?;
+        let [x, y] = accelerations.as_slice() else {
+            return Err(MechanicsError::CoordinateCount(accelerations.len()).into());
+        };
+        // Held, the second equation alone says how the main mass moves.
+        let at_rest: BTreeMap<Symbol, Expr> = [(Symbol::new("x'"), Expr::zero())].into();
+        let (mass, rest) = (
+            &equations.mass[1][1],
+            equations.rest[1]
+                .substitute_all(&at_rest)
+                .map_err(MechanicsError::from)?,
+        );
+        let held = Expr::divide(&-rest, mass).map_err(MechanicsError::from)?;
+        let (primary, model) = (case.primary, case.model);
+        let numbers = [
+            ("R", primary.mass),
+            ("kappa", primary.stiffness),
+            ("delta", primary.damping),
+            ("f", primary.force),
+            ("eta", primary.frequency),
+            ("zeta", model.zeta),
+            ("alpha", model.alpha),
+            ("gamma", model.gamma),
+            ("mu", model.mu),
+        ];
+        Ok(Self {
+            accelerations: [x.clone(), y.clone()],
+            held,
+            numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
+            case,
+        })
+    }
+
+    /// The torque of dry friction in this direction, and what it takes per time.
+    fn friction(&self, direction: f64) -> [Expr; 2] {
+        let torque = match self.case.model.friction {
+            _ if self.case.model.alpha == 0.0 => Expr::zero(),
+            Friction::Exact => own("alpha") * Expr::from(direction as i64),
+            Friction::Arctangent => own(&format!("alpha*2/pi*atan({STEEPNESS}*x')")),
+        };
+        let power = &torque * &own("x'");
+        [-torque, power]
+    }
+
+    /// What the accounts grow by: viscous, friction, contact, dashpot, force.
+    fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
+        [
+            own("2*zeta*x'^2"),
+            friction,
+            contact,
+            own("delta*y'^2"),
+            own("f*sin(eta*t)*y'"),
+        ]
+    }
+
+    fn put(&self, expression: &Expr, values: &[(&str, Expr)]) -> Result<Expr, PrimaryError> {
+        let values: BTreeMap<Symbol, Expr> = values
+            .iter()
+            .map(|(name, value)| (Symbol::new(name), value.clone()))
+            .collect();
+        Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
+    }
+
+    fn system(&self, states: &[&str], time: &str, right: Vec<Expr>) -> Result<System, PrimaryError> {
+        let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
+        let states: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).chain(accounts).collect();
+        Ok(System::new(&states, Symbol::new(time), &right, &self.numbers)?)
+    }
+
+    /// Away from the barriers, moving in this direction where dry friction asks for one.
+    pub(super) fn flight(&self, direction: f64) -> Result<System, PrimaryError> {
+        let [torque, power] = self.friction(direction);
+        let mut right = vec![own("x'")];
+        let put = |acceleration: &Expr| self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())]);
+        let [x, y] = [put(&self.accelerations[0])?, put(&self.accelerations[1])?];
+        right.extend([x, own("y'"), y]);
+        right.extend(self.accounts(power, Expr::zero()));
+        self.system(&["x", "x'", "y", "y'"], "t", right)
+    }
+
+    /// In a barrier, in s; it pushes as Hertz and Hunt and Crossley say.
+    pub(super) fn contact(&self, side: Side, place: f64, direction: f64) -> Result<System, PrimaryError> {
+        let sign = Expr::from(side.sign() as i64);
+        let [torque, power] = self.friction(direction);
+        let force = own("w^3") * (own("gamma") + &sign * &own("mu*x'"));
+        let x = own("place") + &sign * &own("w^2");
+        let slow = |rate: Expr| own("w") * rate;
+        let put = |expression: &Expr| {
+            self.put(
+                expression,
+                &[("P", -(&sign * &force)), ("G", torque.clone()), ("x", x.clone())],
+            )
+        };
+        let mut right = vec![&sign * &own("x'/2")];
+        right.push(slow(put(&self.accelerations[0])?));
+        right.push(slow(own("y'")));
+        right.push(slow(put(&self.accelerations[1])?));
+        right.push(own("w"));
+        right.extend(self.accounts(power, own("mu*x'^2*w^3")).into_iter().map(slow));
+        let mut at_place = self.clone_numbers();
+        at_place.insert(Symbol::new("place"), place);
+        let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
+        let states = ["w", "x'", "y", "y'", "t"].map(Symbol::new);
+        let states: Vec<Symbol> = states.into_iter().chain(accounts).collect();
+        Ok(System::new(&states, Symbol::new("s"), &right, &at_place)?)
+    }
+
+    fn clone_numbers(&self) -> BTreeMap<Symbol, f64> {
+        self.numbers.clone()
+    }
+
+    /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction must hold.
+    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(System, Expr), PrimaryError> {
+        let mut numbers = self.clone_numbers();
+        numbers.insert(Symbol::new("x"), x);
+        numbers.insert(Symbol::new("P"), contact);
+        let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
+        let states: Vec<Symbol> = ["y", "y'"].map(Symbol::new).into_iter().chain(accounts).collect();
+        let still = [("x'", Expr::zero())];
+        let mut right = vec![own("y'"), self.held.clone()];
+        for account in self.accounts(Expr::zero(), Expr::zero()) {
+            right.push(self.put(&account, &still)?);
+        }
+        let system = System::new(&states, Symbol::new("t"), &right, &numbers)?;
+        // x'' + y'' cos x + sin x = P + G with x'' = 0.
+        let torque = own("P") - own("sin(x)") - own("cos(x)") * self.held.clone();
+        Ok((system, torque))
+    }
+
+    /// The torque that friction must hold, as a number.
+    pub(super) fn torque(&self, t: f64, x: f64, contact: f64, [y, speed]: [f64; 2]) -> f64 {
+        let mut values = self.clone_numbers();
+        for (name, value) in [("t", t), ("x", x), ("P", contact), ("y", y), ("y'", speed)] {
+            values.insert(Symbol::new(name), value);
+        }
+        let torque = own("P") - own("sin(x)") - own("cos(x)") * self.held.clone();
+        torque.evaluate(&values).unwrap_or(f64::NAN)
+    }
+}

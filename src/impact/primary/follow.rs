@@ -1,0 +1,439 @@
+//! From phase to phase: flight, contact, held by friction.
+//!
+//! A flight ends at a touch, or where friction changes its direction; a contact ends where w is zero again, or where the barrier
+//! would have to pull and lets go; what is held ends where the torque on it is more than friction can bear. Every phase begins with the
+//! states that the last one left, exactly.
+
+use super::super::model::Side;
+use super::equations::{ACCOUNTS, Equations};
+use super::path::{Piece, PrimaryPath, PrimaryState};
+use super::{PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings, PrimaryStop};
+use crate::expr::{Expr, parse_expression};
+use crate::system::{End, Event, Options, Path};
+
+/// Both bodies from their start until the duration is over.
+///
+/// # Errors
+/// [`PrimaryError`]; a motion that ends early says so by [`PrimaryMotion::stop`].
+///
+/// ```
+/// use lindstedt::impact::Model;
+/// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
+///
+/// // A main mass a million times the pendulum hardly notices it.
+/// let primary = Primary { mass: 1e6, stiffness: 1e6, damping: 0.0, force: 0.0, frequency: 0.0 };
+/// let model = Model { left: None, right: None, ..Model::default() };
+/// let case = PrimaryCase { primary, model, start: [0.0, 0.0, 0.1, 0.0] };
+/// let motion = simulate_primary(case, &PrimarySettings { duration: 10.0, ..PrimarySettings::default() })?;
+/// assert!((motion.at(10.0).ok_or("a state")?.y - 0.1 * 10.0_f64.cos()).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryMotion, PrimaryError> {
+    case.check()?;
+    if !(settings.duration > 0.0 && settings.duration.is_finite()) {
+        return Err(PrimaryError::Duration(settings.duration));
+    }
+    let mut run = Run::new(case, settings)?;
+    let stop = loop {
+        if run.t >= settings.duration {
+            break PrimaryStop::Duration;
+        }
+        if settings.interrupt.is_requested() {
+            break PrimaryStop::Interrupted;
+        }
+        if run.phases >= settings.phase_limit {
+            break PrimaryStop::PhaseLimit;
+        }
+        run.phases += 1;
+        let before = run.t;
+        let reason = match run.regime {
+            Regime::Free(direction) => run.fly(direction)?,
+            Regime::Contact(side, direction) => run.touch(side, direction)?,
+            Regime::LetGo(side, direction) => run.let_go(side, direction)?,
+            Regime::Held => run.hold()?,
+        };
+        run.settle();
+        match reason {
+            End::Interrupted => break PrimaryStop::Interrupted,
+            End::Reached | End::Event(_) => {}
+            End::StepLimit | End::Singular | End::Sticks => break PrimaryStop::Singular,
+        }
+        // Phases without length lead nowhere.
+        run.idle = if run.t > before { 0 } else { run.idle + 1 };
+        if run.idle > IDLE {
+            break PrimaryStop::Singular;
+        }
+    };
+    Ok(run.finish(stop))
+}
+
+/// So many phases without length in a row are one too many.
+const IDLE: usize = 8;
+
+/// What the pendulum is doing; the direction is that of dry friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Regime {
+    Free(f64),
+    Contact(Side, f64),
+    /// In a barrier that would have to pull.
+    LetGo(Side, f64),
+    Held,
+}
+
+/// A motion in the making.
+struct Run<'a> {
+    case: PrimaryCase,
+    settings: &'a PrimarySettings,
+    equations: Equations,
+    regime: Regime,
+    t: f64,
+    state: PrimaryState,
+    accounts: [f64; ACCOUNTS],
+    phases: usize,
+    idle: usize,
+    path: PrimaryPath,
+    impacts: Vec<PrimaryImpact>,
+    /// What the contacts had taken when the open impact began.
+    taken: f64,
+    turns: Vec<(f64, f64)>,
+    start_energy: f64,
+    largest: f64,
+    astray: f64,
+}
+
+fn own(text: &str) -> Expr {
+    parse_expression(text).unwrap_or_else(|_| Expr::zero())
+}
+
+fn offset(name: &str, place: f64) -> Expr {
+    match crate::exact::rational::from_f64(place) {
+        Some(place) => own(name) - Expr::number(place),
+        None => own(name),
+    }
+}
+
+impl<'a> Run<'a> {
+    fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
+        let [x, velocity, y, speed] = case.start;
+        let state = PrimaryState { x, velocity, y, speed };
+        let energy = case.energy(state);
+        let mut run = Self {
+            case,
+            settings,
+            equations: Equations::new(case)?,
+            regime: Regime::Free(0.0),
+            t: 0.0,
+            state,
+            accounts: [0.0; ACCOUNTS],
+            phases: 0,
+            idle: 0,
+            path: PrimaryPath::default(),
+            impacts: Vec::new(),
+            taken: 0.0,
+            turns: Vec::new(),
+            start_energy: energy,
+            largest: energy.abs(),
+            astray: 0.0,
+        };
+        run.regime = match run.direction(0.0) {
+            Some(direction) => Regime::Free(direction),
+            None => Regime::Held,
+        };
+        Ok(run)
+    }
+
+    /// The direction of dry friction: that of the motion, or of the torque on what is at rest; nothing where friction holds it. A
+    /// contact pushes with `contact`.
+    fn direction(&self, contact: f64) -> Option<f64> {
+        if !self.case.sticks() {
+            return Some(0.0);
+        }
+        if self.state.velocity != 0.0 {
+            return Some(self.state.velocity.signum());
+        }
+        let PrimaryState { x, y, speed, .. } = self.state;
+        let torque = self.equations.torque(self.t, x, contact, [y, speed]);
+        (torque.abs() > self.case.model.alpha).then(|| torque.signum())
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            tolerance: self.settings.tolerance,
+            interrupt: self.settings.interrupt,
+            ..Options::default()
+        }
+    }
+
+    /// A barrier's place.
+    fn place(&self, side: Side) -> f64 {
+        self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
+    }
+
+    /// The states with their accounts.
+    fn with_accounts(&self, states: &[f64]) -> Vec<f64> {
+        states.iter().chain(&self.accounts).copied().collect()
+    }
+
+    fn fly(&mut self, direction: f64) -> Result<End, PrimaryError> {
+        let system = self.equations.flight(direction)?;
+        let mut events = vec![Event::record(own("y'"))];
+        let mut sides = Vec::new();
+        for side in [Side::Left, Side::Right] {
+            if let Some(place) = self.case.model.barrier(side) {
+                sides.push(side);
+                events.push(Event::stop(offset("x", place)));
+            }
+        }
+        if self.case.sticks() {
+            events.push(Event::stop(own("x'")));
+        }
+        let PrimaryState { x, velocity, y, speed } = self.state;
+        let start = self.with_accounts(&[x, velocity, y, speed]);
+        let path = system.solve(self.t, &start, self.settings.duration, &events, &self.options())?;
+        self.turns_of(&path, |state| state[2], |time| time);
+        let reason = path.reason();
+        let end = path.end();
+        let last = path.at(end).unwrap_or(start);
+        self.state = PrimaryState {
+            x: last[0],
+            velocity: last[1],
+            y: last[2],
+            speed: last[3],
+        };
+        self.accounts.copy_from_slice(&last[4..]);
+        self.path.push(self.t, end, Piece::Flight(path));
+        self.t = end;
+        if let End::Event(event) = reason {
+            match sides.get(event.wrapping_sub(1)) {
+                Some(side) => self.enter(*side, direction),
+                None => self.turn_back(0.0),
+            }
+        }
+        Ok(reason)
+    }
+
+    /// At rest for a moment: on in the other direction, or held.
+    fn turn_back(&mut self, contact: f64) {
+        self.state.velocity = 0.0;
+        self.regime = match self.direction(contact) {
+            Some(direction) => Regime::Free(direction),
+            None => Regime::Held,
+        };
+    }
+
+    fn enter(&mut self, side: Side, direction: f64) {
+        self.state.x = self.place(side);
+        self.taken = self.accounts[2];
+        self.impacts.push(PrimaryImpact {
+            side,
+            entry: self.t,
+            exit: None,
+            speed_in: side.sign() * self.state.velocity,
+            speed_out: None,
+            penetration: 0.0,
+            energy_lost: 0.0,
+        });
+        self.regime = Regime::Contact(side, direction);
+    }
+
+    fn leave(&mut self, side: Side, direction: f64) {
+        self.state.x = self.place(side);
+        let (t, taken, velocity) = (self.t, self.taken, self.state.velocity);
+        if let Some(impact) = self.impacts.last_mut() {
+            impact.exit = Some(t);
+            impact.speed_out = Some(-side.sign() * velocity);
+            impact.energy_lost = self.accounts[2] - taken;
+        }
+        self.regime = Regime::Free(direction);
+    }
+
+    fn touch(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
+        let place = self.place(side);
+        let system = self.equations.contact(side, place, direction)?;
+        let depth = (side.sign() * (self.state.x - place)).max(0.0);
+        // From a touch without speed the variable w would never leave its zero.
+        let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
+        let mut events = vec![
+            Event::record(own("y'")),
+            Event::stop(own("w")),
+            Event::stop(offset("t", self.settings.duration)),
+        ];
+        events.push(match self.case.sticks() {
+            true => Event::stop(own("x'")),
+            false => Event::record(own("x'")),
+        });
+        let pulls = self.case.model.mu > 0.0;
+        if pulls {
+            let sign = Expr::from(side.sign() as i64);
+            events.push(Event::stop(own("gamma") + sign * own("mu*x'")));
+        }
+        let PrimaryState { velocity, y, speed, .. } = self.state;
+        let start = self.with_accounts(&[w, velocity, y, speed, self.t]);
+        let path = system.solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
+        self.turns_of(&path, |state| state[2], |_| f64::NAN);
+        let deepest = path.occurrences().iter().filter(|met| met.event == 3);
+        let deepest = deepest
+            .filter_map(|met| path.at(met.time))
+            .map(|state| state[0] * state[0])
+            .fold(depth, f64::max);
+        let reason = path.reason();
+        let last = path.at(path.end()).unwrap_or(start);
+        let w = last[0].max(0.0);
+        self.state = PrimaryState {
+            x: place + side.sign() * w * w,
+            velocity: last[1],
+            y: last[2],
+            speed: last[3],
+        };
+        self.accounts.copy_from_slice(&last[5..]);
+        let end = last[4].min(self.settings.duration);
+        if let Some(impact) = self.impacts.last_mut() {
+            impact.penetration = impact.penetration.max(deepest).max(w * w);
+        }
+        self.path.push(self.t, end, Piece::Contact { path, side, place });
+        self.t = end;
+        match reason {
+            End::Event(1) => self.leave(side, direction),
+            End::Event(2) => self.t = self.settings.duration,
+            End::Event(3) => {
+                let push = -side.sign() * self.case.model.contact(w * w, 0.0);
+                self.turn_back(push);
+                if let Regime::Free(direction) = self.regime {
+                    self.regime = Regime::Contact(side, direction);
+                }
+            }
+            End::Event(4) => self.regime = Regime::LetGo(side, direction),
+            _ => {}
+        }
+        Ok(reason)
+    }
+
+    /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until it is out, or slow enough to be
+    /// pushed again.
+    fn let_go(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
+        let place = self.place(side);
+        let system = self.equations.flight(direction)?;
+        let sign = Expr::from(side.sign() as i64);
+        let events = [
+            Event::record(own("y'")),
+            Event::stop(offset("x", place)),
+            Event::stop(own("gamma") + sign * own("mu*x'")),
+        ];
+        let PrimaryState { x, velocity, y, speed } = self.state;
+        let start = self.with_accounts(&[x, velocity, y, speed]);
+        let path = system.solve(self.t, &start, self.settings.duration, &events, &self.options())?;
+        self.turns_of(&path, |state| state[2], |time| time);
+        let (reason, end) = (path.reason(), path.end());
+        let last = path.at(end).unwrap_or(start);
+        self.state = PrimaryState {
+            x: last[0],
+            velocity: last[1],
+            y: last[2],
+            speed: last[3],
+        };
+        self.accounts.copy_from_slice(&last[4..]);
+        // What the barrier stores on this way it does not give back.
+        let stored = |x: f64| {
+            let depth = (side.sign() * (x - place)).max(0.0);
+            self.case.model.elastic_energy(depth)
+        };
+        self.accounts[2] += stored(x) - stored(last[0]);
+        self.path.push(self.t, end, Piece::Flight(path));
+        self.t = end;
+        match reason {
+            End::Event(1) => self.leave(side, direction),
+            End::Event(2) => self.regime = Regime::Contact(side, direction),
+            _ => {}
+        }
+        Ok(reason)
+    }
+
+    fn hold(&mut self) -> Result<End, PrimaryError> {
+        let PrimaryState { x, y, speed, .. } = self.state;
+        let inside = self.case.model.depth(x);
+        let contact = inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
+        let (system, torque) = self.equations.held(x, contact)?;
+        let alpha = own("alpha");
+        let events = [
+            Event::record(own("y'")),
+            Event::stop(&torque - &alpha),
+            Event::stop(&torque + &alpha),
+        ];
+        let start = self.with_accounts(&[y, speed]);
+        let path = system.solve(self.t, &start, self.settings.duration, &events, &self.options())?;
+        self.turns_of(&path, |state| state[0], |time| time);
+        let (reason, end) = (path.reason(), path.end());
+        let last = path.at(end).unwrap_or(start);
+        self.state = PrimaryState {
+            x,
+            velocity: 0.0,
+            y: last[0],
+            speed: last[1],
+        };
+        self.accounts.copy_from_slice(&last[2..]);
+        self.path.push(self.t, end, Piece::Held { path, x });
+        self.t = end;
+        if let End::Event(event) = reason {
+            let direction = if event == 1 { 1.0 } else { -1.0 };
+            self.regime = match inside {
+                Some((side, _)) => Regime::Contact(side, direction),
+                None => Regime::Free(direction),
+            };
+        }
+        Ok(reason)
+    }
+
+    /// The turning points of the main mass in this piece.
+    fn turns_of(&mut self, path: &Path, y: impl Fn(&[f64]) -> f64, time: impl Fn(f64) -> f64) {
+        for met in path.occurrences().iter().filter(|met| met.event == 0) {
+            if let Some(state) = path.at(met.time) {
+                let t = time(met.time);
+                // In a contact the time is a state of its own.
+                let t = if t.is_nan() {
+                    state.get(4).copied().unwrap_or(self.t)
+                } else {
+                    t
+                };
+                self.turns.push((t, y(&state)));
+            }
+        }
+    }
+
+    /// The account at the end of a phase.
+    fn settle(&mut self) {
+        let energy = self.case.energy(self.state);
+        let [viscous, friction, contact, dashpot, force] = self.accounts;
+        let astray = energy - self.start_energy + viscous + friction + contact + dashpot - force;
+        self.largest = self.largest.max(energy.abs()).max(force.abs());
+        self.astray = self.astray.max(astray.abs());
+    }
+
+    fn finish(self, stop: PrimaryStop) -> PrimaryMotion {
+        let [viscous, friction, contact, dashpot, force] = self.accounts;
+        PrimaryMotion {
+            case: self.case,
+            end: self.t,
+            stop,
+            impacts: self.impacts,
+            turns: self.turns,
+            energy: PrimaryEnergy {
+                start: self.start_energy,
+                end: self.case.energy(self.state),
+                viscous,
+                friction,
+                contact,
+                dashpot,
+                force,
+                residual: if self.largest > 0.0 {
+                    self.astray / self.largest
+                } else {
+                    0.0
+                },
+            },
+            path: self.path,
+        }
+    }
+}
+
+/// In s, which is longer than the time by one over the root of the depth: no contact lasts so long.
+const LONGEST_CONTACT: f64 = 1e12;

@@ -1,0 +1,132 @@
+//! The main mass without its damper, and with the damper locked: linear, in closed form.
+//!
+//! ```text
+//! N y'' + delta y' + kappa y = f sin(eta t)        N = R without the damper, R + 1 with the pendulum locked
+//! rest = ln(10) 2 N/delta,  underdamped            |y| = f / sqrt((kappa - N eta^2)^2 + (delta eta)^2) in the long run
+//! ```
+
+use super::super::simulation::REST_FRACTION;
+use super::{Primary, PrimaryMotion};
+use crate::impact::NoRest;
+
+/// A main mass alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alone {
+    /// N, the mass in units of m.
+    pub mass: f64,
+    /// Its angular frequency over omega, damped; 0 where it creeps.
+    pub frequency: f64,
+    /// When its envelope has fallen to a tenth, released from rest and not driven; nothing where it never does, or creeps.
+    pub rest_time: Option<f64>,
+    /// The amplitude of the driven motion in the long run; nothing where it is not driven.
+    pub amplitude: Option<f64>,
+}
+
+/// The main mass without its damper and with the damper locked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Others {
+    /// Without.
+    pub without: Alone,
+    /// Locked.
+    pub locked: Alone,
+}
+
+impl Primary {
+    /// The two linear cases beside the damper.
+    pub fn others(&self) -> Others {
+        Others {
+            without: self.alone(self.mass),
+            locked: self.alone(self.mass + 1.0),
+        }
+    }
+
+    fn alone(&self, mass: f64) -> Alone {
+        let decay = 0.5 * self.damping / mass;
+        let square = self.stiffness / mass - decay * decay;
+        let driven = self.force != 0.0;
+        let reactance = self.stiffness - mass * self.frequency * self.frequency;
+        let amplitude = self.force.abs() / reactance.hypot(self.damping * self.frequency);
+        Alone {
+            mass,
+            frequency: square.max(0.0).sqrt(),
+            rest_time: (!driven && decay > 0.0 && square > 0.0).then(|| -REST_FRACTION.ln() / decay),
+            amplitude: driven.then_some(amplitude).filter(|amplitude| amplitude.is_finite()),
+        }
+    }
+
+    /// The envelope of the mass alone from this start, not driven; nothing where it creeps.
+    pub fn alone_envelope(&self, mass: f64, [y, speed]: [f64; 2], t: f64) -> Option<f64> {
+        let decay = 0.5 * self.damping / mass;
+        let square = self.stiffness / mass - decay * decay;
+        let height = || y.hypot((speed + decay * y) / square.sqrt());
+        (square > 0.0).then(|| height() * (-decay * t).exp())
+    }
+
+    /// The displacement of the mass alone from this start, not driven.
+    pub fn alone_at(&self, mass: f64, [y, speed]: [f64; 2], t: f64) -> f64 {
+        let decay = 0.5 * self.damping / mass;
+        let square = self.stiffness / mass - decay * decay;
+        let slope = speed + decay * y;
+        let wave = match square {
+            square if square > 0.0 => {
+                let omega = square.sqrt();
+                y * (omega * t).cos() + slope * (omega * t).sin() / omega
+            }
+            square if square < 0.0 => {
+                // Both exponentials together, for the growing one alone may be too large.
+                let rate = (-square).sqrt();
+                let [slow, fast] = [((rate - decay) * t).exp(), ((-rate - decay) * t).exp()];
+                return 0.5 * ((y + slope / rate) * slow + (y - slope / rate) * fast);
+            }
+            _ => y + slope * t,
+        };
+        wave * (-decay * t).exp()
+    }
+}
+
+impl PrimaryMotion {
+    /// When the envelope of the main mass has fallen to a tenth of its first swing, for good: the larger of every two successive
+    /// turning points, joined by straight lines of log|y|.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn rest_time(&self) -> Result<f64, NoRest> {
+        let [.., y, speed] = self.case.start;
+        let first = match (speed == 0.0, self.turns.first()) {
+            (true, _) => y.abs(),
+            (false, Some((_, turn))) => turn.abs().max(y.abs()),
+            (false, None) => y.abs(),
+        };
+        if first == 0.0 {
+            return Err(NoRest::NoAmplitude);
+        }
+        let level = REST_FRACTION * first;
+        let mut envelope = vec![(0.0, first)];
+        let turns: Vec<(f64, f64)> = self
+            .turns
+            .iter()
+            .filter(|(t, _)| *t > 0.0)
+            .map(|(t, y)| (*t, y.abs()))
+            .collect();
+        for pair in turns.windows(2) {
+            let larger = if pair[1].1 > pair[0].1 { pair[1] } else { pair[0] };
+            if envelope.last() != Some(&larger) {
+                envelope.push(larger);
+            }
+        }
+        let Some(index) = envelope.iter().rposition(|(_, height)| *height > level) else {
+            return Err(NoRest::StaysAbove);
+        };
+        let above = envelope[index];
+        let Some(below) = envelope.get(index + 1) else {
+            return Err(if self.is_complete() {
+                NoRest::StaysAbove
+            } else {
+                NoRest::BrokeOff
+            });
+        };
+        let height = |point: (f64, f64)| point.1.max(1e-12 * level).ln();
+        let share = (level.ln() - height(above)) / (height(*below) - height(above));
+        Ok(above.0 + share * (below.0 - above.0))
+    }
+}

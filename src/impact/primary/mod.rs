@@ -1,0 +1,284 @@
+//! The main mass: a mass on spring and dashpot that carries the pendulum and its barriers, which is what an impact damper damps.
+//!
+//! ```text
+//! T = R y'^2/2 + ((y' + x' cos x)^2 + (x' sin x)^2)/2        V = kappa y^2/2 + 1 - cos x
+//! D = delta y'^2/2 + zeta x'^2                               Q_y = f sin(eta t)
+//! Q_x = -F(x - x_r, x') + F(x_l - x, -x') - alpha sgn(x')    F(d, d') = max(0, gamma + mu d') d^(3/2) for d > 0, else 0
+//! ```
+//!
+//! x is the angle of the pendulum, y the displacement of the main mass over L, t is in units of 1/omega, omega^2 = g/L, energy in
+//! units of m g L; R = M/m, kappa = k L/(m g), delta = (c/m) sqrt(L/g), f = F/(m g), eta = Omega/omega. The equations are derived
+//! from these energies by [`mechanics`](crate::mechanics). The barriers move with the main mass, so the force between them and the
+//! sphere is inside: it changes neither the momentum of both nor, undamped, their energy.
+//!
+//! In: a [`PrimaryCase`]. Out: a [`PrimaryMotion`], event by event: both states at any time, the impacts, where the energy went, and
+//! when the main mass comes to rest, beside the same main mass without damper and with the damper locked, which are linear and known in
+//! closed form. A contact is followed in w with x = x_c + w^2 and dt = w ds, in which it is analytic through the touch.
+//!
+//! (S. F. Masri, *J. Acoust. Soc. Am.* 45 (1969) 1111, for impact dampers of this kind.)
+
+mod equations;
+mod follow;
+mod linear;
+mod path;
+mod sweep;
+
+use thiserror::Error;
+
+use super::model::{Friction, Model, Side};
+use crate::interrupt::Interrupt;
+use crate::mechanics::MechanicsError;
+use crate::system::SystemError;
+
+pub use follow::simulate_primary;
+pub use linear::{Alone, Others};
+pub use path::PrimaryState;
+pub use sweep::{PrimaryRow, sweep_primary};
+
+use path::PrimaryPath;
+
+/// The main mass, all dimensionless.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Primary {
+    /// R = M/m, positive.
+    pub mass: f64,
+    /// kappa = k L/(m g), positive.
+    pub stiffness: f64,
+    /// delta = (c/m) sqrt(L/g), not negative.
+    pub damping: f64,
+    /// f = F/(m g), the amplitude of the force on it.
+    pub force: f64,
+    /// eta = Omega/omega of that force, not negative.
+    pub frequency: f64,
+}
+
+/// A main mass with its pendulum, and where both begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimaryCase {
+    /// The main mass.
+    pub primary: Primary,
+    /// The pendulum and its barriers; its own excitation must be none.
+    pub model: Model,
+    /// Angle, its velocity, displacement of the main mass, its velocity.
+    pub start: [f64; 4],
+}
+
+/// How closely and how long to follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimarySettings {
+    /// How long, in units of 1/omega.
+    pub duration: f64,
+    /// Relative error of a step.
+    pub tolerance: f64,
+    /// Phases, flights and contacts together, after which it ends.
+    pub phase_limit: usize,
+    /// Who may ask it to end.
+    pub interrupt: Interrupt,
+}
+
+impl Default for PrimarySettings {
+    /// 200 units of time, to 1e-15, at most 100 000 phases.
+    fn default() -> Self {
+        Self {
+            duration: 200.0,
+            tolerance: 1e-15,
+            phase_limit: 100_000,
+            interrupt: Interrupt::default(),
+        }
+    }
+}
+
+/// An impact on a barrier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimaryImpact {
+    /// Which barrier.
+    pub side: Side,
+    /// When it is touched.
+    pub entry: f64,
+    /// When it is left; nothing where the motion ends in contact.
+    pub exit: Option<f64>,
+    /// The speed of the pendulum towards the barrier at the touch.
+    pub speed_in: f64,
+    /// Its speed away from it at the release.
+    pub speed_out: Option<f64>,
+    /// The greatest depth, rad.
+    pub penetration: f64,
+    /// The energy that the contact took.
+    pub energy_lost: f64,
+}
+
+/// What became of the energy, in units of m g L.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PrimaryEnergy {
+    /// At the start.
+    pub start: f64,
+    /// At the end.
+    pub end: f64,
+    /// Taken by the viscous damping of the pendulum.
+    pub viscous: f64,
+    /// Taken by its dry friction.
+    pub friction: f64,
+    /// Taken by the contacts.
+    pub contact: f64,
+    /// Taken by the dashpot of the main mass.
+    pub dashpot: f64,
+    /// Put in by the force.
+    pub force: f64,
+    /// What is not accounted for at any phase end, over the largest energy.
+    pub residual: f64,
+}
+
+/// Why a motion ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum PrimaryStop {
+    /// At the time asked for.
+    #[error("at the end of the duration")]
+    Duration,
+    /// After as many phases as were allowed.
+    #[error("after as many flights and contacts as were allowed")]
+    PhaseLimit,
+    /// A step that could not be made.
+    #[error("where no next step could be made")]
+    Singular,
+    /// Somebody asked for it.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Two bodies in motion.
+#[derive(Clone, Debug)]
+pub struct PrimaryMotion {
+    /// What was followed.
+    pub case: PrimaryCase,
+    /// When it ended.
+    pub end: f64,
+    /// Why.
+    pub stop: PrimaryStop,
+    /// Every impact.
+    pub impacts: Vec<PrimaryImpact>,
+    /// Turning points of the main mass: time and displacement.
+    pub turns: Vec<(f64, f64)>,
+    /// What became of the energy.
+    pub energy: PrimaryEnergy,
+    path: PrimaryPath,
+}
+
+/// Why there is nothing to follow.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PrimaryError {
+    /// A number of the main mass that it cannot have.
+    #[error("the {name} of the main mass must be {wanted}, not {value}")]
+    Number {
+        /// Which.
+        name: &'static str,
+        /// What it may be.
+        wanted: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The numbers of the pendulum.
+    #[error(transparent)]
+    Model(#[from] super::model::ModelError),
+    /// A pivot that is driven beside the main mass.
+    #[error("the pivot moves with the main mass: drive that by a force, and leave out the excitation beta")]
+    Driven,
+    /// A start inside a barrier.
+    #[error("the pendulum starts inside of a barrier")]
+    Inside,
+    /// The equations.
+    #[error(transparent)]
+    Mechanics(#[from] MechanicsError),
+    /// A phase that cannot begin.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// No time to follow it.
+    #[error("the duration must be a positive number, not {0}")]
+    Duration(f64),
+}
+
+impl PrimaryCase {
+    fn check(&self) -> Result<(), PrimaryError> {
+        let positive = "a positive number";
+        let not_negative = "a number, 0 or more";
+        let primary = &self.primary;
+        for (name, value, wanted, least) in [
+            ("mass", primary.mass, positive, f64::MIN_POSITIVE),
+            ("stiffness", primary.stiffness, positive, f64::MIN_POSITIVE),
+            ("damping", primary.damping, not_negative, 0.0),
+            ("frequency of the force", primary.frequency, not_negative, 0.0),
+            ("force", primary.force, "a number", f64::MIN),
+            ("displacement", self.start[2], "a number", f64::MIN),
+            ("speed", self.start[3], "a number", f64::MIN),
+        ] {
+            if !(value >= least && value.is_finite()) {
+                return Err(PrimaryError::Number { name, wanted, value });
+            }
+        }
+        let [x, velocity, ..] = self.start;
+        self.model.check(super::model::Start { x, velocity })?;
+        if self.model.beta != 0.0 {
+            return Err(PrimaryError::Driven);
+        }
+        if self.model.depth(x).is_some() {
+            return Err(PrimaryError::Inside);
+        }
+        Ok(())
+    }
+
+    /// The energy of both bodies, swing and spring and barrier, in units of m g L.
+    pub fn energy(&self, state: PrimaryState) -> f64 {
+        let PrimaryState { x, velocity, y, speed } = state;
+        let along = speed + velocity * x.cos();
+        let across = velocity * x.sin();
+        let kinetic = 0.5 * (self.primary.mass * speed * speed + along * along + across * across);
+        let half = (0.5 * x).sin();
+        let depth = self.model.depth(x).map_or(0.0, |(_, depth)| depth);
+        kinetic + 0.5 * self.primary.stiffness * y * y + 2.0 * half * half + self.model.elastic_energy(depth)
+    }
+
+    /// Whether its dry friction is Coulomb's.
+    fn sticks(&self) -> bool {
+        self.model.alpha > 0.0 && self.model.friction == Friction::Exact
+    }
+}
+
+impl PrimaryMotion {
+    /// Both states at a time; nothing outside of the motion.
+    ///
+    /// ```
+    /// use lindstedt::impact::Model;
+    /// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
+    ///
+    /// let primary = Primary { mass: 10.0, stiffness: 10.0, damping: 0.0, force: 0.0, frequency: 0.0 };
+    /// let model = Model { gamma: 1e5, ..Model::default() };
+    /// let case = PrimaryCase { primary, model, start: [0.0, 0.0, 0.5, 0.0] };
+    /// let settings = PrimarySettings { duration: 20.0, ..PrimarySettings::default() };
+    /// let motion = simulate_primary(case, &settings)?;
+    /// assert!(motion.energy.residual < 1e-9 && !motion.impacts.is_empty());
+    /// let state = motion.at(20.0).ok_or("a state")?;
+    /// assert!((case.energy(state) / motion.energy.start - 1.0).abs() < 1e-9); // nothing damps
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn at(&self, time: f64) -> Option<PrimaryState> {
+        self.path.at(time)
+    }
+
+    /// Whether it was followed as long as asked.
+    pub fn is_complete(&self) -> bool {
+        self.stop == PrimaryStop::Duration
+    }
+
+    /// The times at which the phases begin, where a curve has its corners.
+    pub fn phase_starts(&self) -> impl Iterator<Item = f64> {
+        self.path.starts()
+    }
+
+    /// The largest |y| from this time on, by its turning points and the end.
+    pub fn largest_since(&self, time: f64) -> f64 {
+        let turns = self.turns.iter().filter(|(at, _)| *at >= time).map(|(_, y)| y.abs());
+        let end = self.at(self.end).map_or(0.0, |state| state.y.abs());
+        turns.fold(end, f64::max)
+    }
+}

@@ -1,0 +1,111 @@
+//! The states of both bodies at any time: flights in the time itself, contacts in the time s in which they are analytic.
+
+use super::super::model::Side;
+use crate::system::Path;
+
+/// Angle and velocity of the pendulum, displacement and speed of the main mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimaryState {
+    /// x, rad.
+    pub x: f64,
+    /// x', in units of omega.
+    pub velocity: f64,
+    /// y, over L.
+    pub y: f64,
+    /// y', over L omega.
+    pub speed: f64,
+}
+
+/// What the states of a piece are.
+#[derive(Clone, Debug)]
+pub(super) enum Piece {
+    /// (x, x', y, y') in t.
+    Flight(Path),
+    /// (w, x', y, y', t) in s: x = place + side w^2.
+    Contact { path: Path, side: Side, place: f64 },
+    /// (y, y') in t: friction holds the pendulum here.
+    Held { path: Path, x: f64 },
+}
+
+impl Piece {
+    /// The state at a time within the piece.
+    fn at(&self, time: f64) -> Option<PrimaryState> {
+        match self {
+            Self::Flight(path) => {
+                let state = path.at(time.min(path.end()))?;
+                Some(PrimaryState {
+                    x: state[0],
+                    velocity: state[1],
+                    y: state[2],
+                    speed: state[3],
+                })
+            }
+            Self::Contact { path, side, place } => {
+                let state = path.at(own_time(path, time)?)?;
+                Some(PrimaryState {
+                    x: place + side.sign() * state[0] * state[0],
+                    velocity: state[1],
+                    y: state[2],
+                    speed: state[3],
+                })
+            }
+            Self::Held { path, x } => {
+                let state = path.at(time.min(path.end()))?;
+                Some(PrimaryState {
+                    x: *x,
+                    velocity: 0.0,
+                    y: state[0],
+                    speed: state[1],
+                })
+            }
+        }
+    }
+}
+
+/// s at this t: the last of its states grows with it.
+fn own_time(path: &Path, time: f64) -> Option<f64> {
+    let clock = |s: f64| path.at(s).map(|state| state[4]);
+    let (mut low, mut high) = (0.0, path.end());
+    if time >= clock(high)? {
+        return Some(high);
+    }
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if clock(middle)? < time {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    Some(low)
+}
+
+/// All pieces, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PrimaryPath {
+    /// Each with the time at which it begins.
+    pieces: Vec<(f64, Piece)>,
+    end: f64,
+}
+
+impl PrimaryPath {
+    pub(super) fn push(&mut self, start: f64, end: f64, piece: Piece) {
+        self.pieces.push((start, piece));
+        self.end = end;
+    }
+
+    pub(super) fn at(&self, time: f64) -> Option<PrimaryState> {
+        if !(0.0..=self.end).contains(&time) {
+            return None;
+        }
+        let after = self.pieces.partition_point(|(start, _)| *start <= time);
+        self.pieces.get(after.checked_sub(1)?)?.1.at(time)
+    }
+
+    pub(super) fn starts(&self) -> impl Iterator<Item = f64> {
+        self.pieces.iter().map(|(start, _)| *start)
+    }
+}

@@ -1,0 +1,446 @@
+//! Units of mechanics: what a quantity is measured in, and whether the terms of an energy can be added.
+//!
+//! ```text
+//! [quantity] = kg^a m^b s^c        kg^a m^b s^c + kg^a m^b s^c, never anything else;   sin(1), H(any), sgn(any)
+//! ```
+//!
+//! In: units as text, `"N*s/m^(3/2)"`, for every parameter and coordinate. Out: the [`Dimension`] of an expression, or the term
+//! that does not belong where it stands. Angles have none: a radian is 1.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use num_traits::{One, Zero};
+use thiserror::Error;
+
+use super::{Equations, Mechanism};
+use crate::exact::Rational;
+use crate::expr::{Expr, ExprError, Function, Node, ParseError, parse_expression};
+use crate::symbol::Symbol;
+
+/// Exponents of kilogram, metre and second.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Dimension([Rational; 3]);
+
+/// The base units, in the order of the exponents.
+const BASE: [&str; 3] = ["kg", "m", "s"];
+
+/// Units that have names, by their exponents of kilogram, metre and second. Multiples such as millimetres would need factors
+/// that no check of dimensions could see: they are none of them.
+const NAMED: [(&str, [i64; 3]); 12] = [
+    ("1", [0, 0, 0]),
+    ("rad", [0, 0, 0]),
+    ("kg", [1, 0, 0]),
+    ("m", [0, 1, 0]),
+    ("s", [0, 0, 1]),
+    ("Hz", [0, 0, -1]),
+    ("N", [1, 1, -2]),
+    ("Pa", [1, -1, -2]),
+    ("J", [1, 2, -2]),
+    ("W", [1, 2, -3]),
+    ("kg_m2", [1, 2, 0]),
+    ("N_m", [1, 2, -2]),
+];
+
+/// Why a unit or a term cannot be taken.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum UnitError {
+    /// A unit that cannot be read.
+    #[error("the unit of `{name}`: {error}")]
+    Parse {
+        /// Whose.
+        name: String,
+        /// What is wrong with it.
+        error: Box<ParseError>,
+    },
+    /// A word that is no unit.
+    #[error("the unit of `{name}`: `{unit}` is no unit that is known here")]
+    Unknown {
+        /// Whose.
+        name: String,
+        /// The word.
+        unit: String,
+    },
+    /// A unit that is no product of powers.
+    #[error("the unit of `{name}`: `{unit}` is no product of powers of units")]
+    NoProduct {
+        /// Whose.
+        name: String,
+        /// The text.
+        unit: String,
+    },
+    /// A parameter or a coordinate without a unit.
+    #[error("`{0}` has no unit")]
+    Missing(Symbol),
+    /// A unit for a name that does not occur.
+    #[error("there is a unit for `{0}`, which does not occur")]
+    Unused(Symbol),
+    /// A term that is not measured in what the others are.
+    #[error("in the {part} the term `{term}` has the unit {found}, where {expected} belongs")]
+    Term {
+        /// Where it stands.
+        part: String,
+        /// The term.
+        term: Expr,
+        /// What it is measured in.
+        found: String,
+        /// What it should be measured in.
+        expected: String,
+    },
+    /// Something of a unit inside a function that takes a number.
+    #[error("in the {part} the function in `{term}` takes a number, not {found}")]
+    Argument {
+        /// Where it stands.
+        part: String,
+        /// The function and its argument.
+        term: Expr,
+        /// What the argument is measured in.
+        found: String,
+    },
+    /// An exponent that is no number, on something of a unit; or an exponent of a unit.
+    #[error("in the {part} the power `{term}` has no unit: its base is measured in {found}")]
+    Power {
+        /// Where it stands.
+        part: String,
+        /// The power.
+        term: Expr,
+        /// What the base is measured in.
+        found: String,
+    },
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+}
+
+impl UnitError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Missing(name) => Some(format!(
+                "give it in [units]: {name} = \"kg\", or \"1\" for a number or an angle; or leave [units] out"
+            )),
+            Self::Unknown { .. } | Self::NoProduct { .. } | Self::Parse { .. } => Some(
+                "products and powers of kg, m, s, N, Pa, J, W, Hz, rad and 1, such as \"N*s/m^(5/2)\"; no multiples such as mm".to_owned(),
+            ),
+            _ => None,
+        }
+    }
+}
+
+impl Dimension {
+    /// That of a number.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// From whole exponents of kilogram, metre and second.
+    pub fn of(exponents: [i64; 3]) -> Self {
+        Self(exponents.map(|exponent| Rational::from_integer(exponent.into())))
+    }
+
+    /// Whether it is that of a number.
+    pub fn is_none(&self) -> bool {
+        self.0.iter().all(Zero::is_zero)
+    }
+
+    /// Of a product.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
+        let mut product = self.clone();
+        product
+            .0
+            .iter_mut()
+            .zip(&other.0)
+            .for_each(|(exponent, other)| *exponent += other);
+        product
+    }
+
+    /// Of a power.
+    #[must_use]
+    pub fn power(&self, exponent: &Rational) -> Self {
+        let mut power = self.clone();
+        power.0.iter_mut().for_each(|own| *own *= exponent);
+        power
+    }
+
+    /// The exponents of kilogram, metre and second.
+    pub fn exponents(&self) -> &[Rational; 3] {
+        &self.0
+    }
+}
+
+impl fmt::Display for Dimension {
+    /// `kg m^2/s^2`; `1` for a number.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let write = |sign: bool| -> Vec<String> {
+            let units = BASE.iter().zip(&self.0);
+            let units = units.filter(|(_, exponent)| !exponent.is_zero() && (**exponent > Rational::zero()) == sign);
+            let unit = |(name, exponent): (&&str, &Rational)| {
+                let exponent = if sign { exponent.clone() } else { -exponent.clone() };
+                match (exponent.is_one(), exponent.is_integer()) {
+                    (true, _) => (*name).to_owned(),
+                    (false, true) => format!("{name}^{exponent}"),
+                    (false, false) => format!("{name}^({exponent})"),
+                }
+            };
+            units.map(unit).collect()
+        };
+        let (above, below) = (write(true), write(false));
+        formatter.write_str(&if above.is_empty() {
+            "1".to_owned()
+        } else {
+            above.join(" ")
+        })?;
+        match below.as_slice() {
+            [] => Ok(()),
+            [only] => write!(formatter, "/{only}"),
+            several => write!(formatter, "/({})", several.join(" ")),
+        }
+    }
+}
+
+impl FromStr for Dimension {
+    type Err = UnitError;
+
+    /// `"N*s/m^(3/2)"`, or with spaces for products as it prints.
+    fn from_str(text: &str) -> Result<Self, UnitError> {
+        let name = || text.to_owned();
+        let typed: Vec<&str> = text.split_whitespace().collect();
+        let with_signs = typed
+            .join("*")
+            .replace("*/*", "/")
+            .replace("*/", "/")
+            .replace("/*", "/");
+        let expression = parse_expression(&with_signs).map_err(|error| UnitError::Parse {
+            name: name(),
+            error: Box::new(error),
+        })?;
+        let mut units = BTreeMap::new();
+        for symbol in expression.symbols() {
+            let Some((_, exponents)) = NAMED.iter().find(|(named, _)| *named == symbol.name()) else {
+                return Err(UnitError::Unknown {
+                    name: name(),
+                    unit: symbol.name().to_owned(),
+                });
+            };
+            units.insert(symbol, Self::of(*exponents));
+        }
+        let no_product = UnitError::NoProduct {
+            name: name(),
+            unit: text.to_owned(),
+        };
+        let (number, _) = expression.factors();
+        match expression.node() {
+            Node::Sum(_) | Node::Function(..) => Err(no_product),
+            _ if !number.is_one() => Err(no_product),
+            _ => dimension(&expression, &units, "unit").map_err(|_| no_product),
+        }
+    }
+}
+
+/// What an expression is measured in, when every symbol in it has its unit.
+///
+/// # Errors
+/// [`UnitError`] names the term; `part` is where it stands.
+pub fn dimension(expression: &Expr, units: &BTreeMap<Symbol, Dimension>, part: &str) -> Result<Dimension, UnitError> {
+    let part = || part.to_owned();
+    expression.fold(|expr, below: &[Dimension]| match expr.node() {
+        Node::Number(_) | Node::Pi => Ok(Dimension::none()),
+        Node::Symbol(name) => units.get(name).cloned().ok_or(UnitError::Missing(*name)),
+        Node::Sum(terms) => odd_one_out(terms, below, &part()),
+        Node::Product(..) => Ok(below
+            .iter()
+            .fold(Dimension::none(), |product, factor| product.times(factor))),
+        Node::Power(_, exponent) => match (below, exponent.as_number()) {
+            ([base, _], Some(number)) => Ok(base.power(number)),
+            ([base, exponent], None) if base.is_none() && exponent.is_none() => Ok(Dimension::none()),
+            _ => Err(UnitError::Power {
+                part: part(),
+                term: expr.clone(),
+                found: below.first().cloned().unwrap_or_default().to_string(),
+            }),
+        },
+        Node::Function(Function::Absolute, _) => Ok(below.first().cloned().unwrap_or_default()),
+        Node::Function(Function::Sign | Function::Step, _) => Ok(Dimension::none()),
+        Node::Function(Function::Maximum | Function::Minimum, arguments) => odd_one_out(arguments, below, &part()),
+        Node::Function(..) => match below.iter().find(|argument| !argument.is_none()) {
+            None => Ok(Dimension::none()),
+            Some(found) => Err(UnitError::Argument {
+                part: part(),
+                term: expr.clone(),
+                found: found.to_string(),
+            }),
+        },
+    })
+}
+
+/// What all terms are measured in; the one that most others disagree with is named.
+fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimension, UnitError> {
+    let votes = |dimension: &Dimension| found.iter().filter(|other| *other == dimension).count();
+    let expected = found
+        .iter()
+        .rev()
+        .max_by_key(|dimension| votes(dimension))
+        .cloned()
+        .unwrap_or_default();
+    match terms.iter().zip(found).find(|(_, found)| **found != expected) {
+        None => Ok(expected),
+        Some((term, found)) => Err(UnitError::Term {
+            part: part.to_owned(),
+            term: term.clone(),
+            found: found.to_string(),
+            expected: expected.to_string(),
+        }),
+    }
+}
+
+/// Refuses the terms of a sum, written out, that are not measured in `expected`: the first of them.
+///
+/// # Errors
+/// [`UnitError`] names it.
+pub fn check(
+    expression: &Expr,
+    expected: &Dimension,
+    units: &BTreeMap<Symbol, Dimension>,
+    part: &str,
+) -> Result<(), UnitError> {
+    let written_out = expression.expand()?;
+    for term in written_out.terms().iter().filter(|term| !term.is_zero()) {
+        let found = dimension(term, units, part)?;
+        if found != *expected {
+            return Err(UnitError::Term {
+                part: part.to_owned(),
+                term: term.clone(),
+                found: found.to_string(),
+                expected: expected.to_string(),
+            });
+        }
+    }
+    Ok(())
+}
+
+impl Mechanism {
+    /// The units of parameters and coordinates with those that follow: of velocities, accelerations and time.
+    pub fn all_units(&self, units: &BTreeMap<Symbol, Dimension>) -> BTreeMap<Symbol, Dimension> {
+        let per_second = Dimension::of([0, 0, -1]);
+        let mut all = units.clone();
+        all.insert(Symbol::new("t"), Dimension::of([0, 0, 1]));
+        for coordinate in &self.coordinates {
+            let Some(own) = units.get(coordinate) else { continue };
+            let velocity = own.times(&per_second);
+            all.insert(coordinate.derivative().derivative(), velocity.times(&per_second));
+            all.insert(coordinate.derivative(), velocity);
+        }
+        all
+    }
+
+    /// Checks every term of the energies, the dissipation and the forces.
+    ///
+    /// # Errors
+    /// A name without a unit, or the first term that is measured in something else than its part.
+    ///
+    /// ```
+    /// use lindstedt::mechanics::{Dimension, Mechanism};
+    ///
+    /// let slip = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "m*g*(1 - cos(x))")?;
+    /// let units = [("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("x", "rad")];
+    /// let units = units.map(|(name, unit)| (name.into(), unit.parse::<Dimension>().expect("a unit")));
+    /// let refused = slip.check_units(&units.into()).unwrap_err();
+    /// assert_eq!(refused.to_string(), "in the potential energy the term `g*m` has the unit kg m/s^2, where kg m^2/s^2 belongs");
+    /// # Ok::<(), lindstedt::mechanics::MechanicsError>(())
+    /// ```
+    pub fn check_units(&self, units: &BTreeMap<Symbol, Dimension>) -> Result<(), UnitError> {
+        let parameters = self.parameters();
+        let mut needed = self.coordinates.iter().chain(&parameters);
+        if let Some(missing) = needed.find(|name| !units.contains_key(name)) {
+            return Err(UnitError::Missing(*missing));
+        }
+        let known = |name: &&Symbol| !self.coordinates.contains(name) && !parameters.contains(name);
+        if let Some(unused) = units.keys().find(known) {
+            return Err(UnitError::Unused(*unused));
+        }
+        let all = self.all_units(units);
+        let energy = Dimension::of([1, 2, -2]);
+        let power = Dimension::of([1, 2, -3]);
+        check(&self.kinetic, &energy, &all, "kinetic energy")?;
+        check(&self.potential, &energy, &all, "potential energy")?;
+        check(&self.dissipation, &power, &all, "dissipation")?;
+        let minus_one = -Rational::one();
+        for (on, force) in &self.forces {
+            let Some(own) = units.get(on) else { continue };
+            check(
+                force,
+                &energy.times(&own.power(&minus_one)),
+                &all,
+                &format!("force on {on}"),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Equations {
+    /// Checks every term of the printed equations against the others of its equation.
+    ///
+    /// # Errors
+    /// The first term that is measured in something else; with energies that passed, an error of ours.
+    pub fn check_units(&self, all_units: &BTreeMap<Symbol, Dimension>) -> Result<(), UnitError> {
+        for left in &self.left {
+            let written_out = left.expand()?;
+            let Some(first) = written_out.terms().first() else {
+                continue;
+            };
+            let expected = dimension(first, all_units, "equation of motion")?;
+            check(&written_out, &expected, all_units, "equation of motion")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_read_and_print() {
+        for (typed, printed) in [
+            ("kg", "kg"),
+            ("N", "kg m/s^2"),
+            ("N*s/m^(5/2)", "kg/(m^(3/2) s)"),
+            ("kg m^2/s^2", "kg m^2/s^2"),
+            ("1", "1"),
+            ("rad/s", "1/s"),
+            ("Pa*m^2", "kg m/s^2"),
+            ("1/s", "1/s"),
+        ] {
+            let dimension: Dimension = typed.parse().unwrap();
+            assert_eq!(dimension.to_string(), printed, "{typed}");
+            assert_eq!(dimension.to_string().parse::<Dimension>().unwrap(), dimension);
+        }
+        for wrong in ["mm", "kg + m", "3*kg", "sin(kg)", "kg^m", "", "kg*"] {
+            assert!(wrong.parse::<Dimension>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_term_of_another_unit_is_named() {
+        let units: BTreeMap<Symbol, Dimension> = [("L", "m"), ("g", "m/s^2"), ("m", "kg"), ("v", "m/s")]
+            .map(|(name, unit)| (Symbol::new(name), unit.parse().unwrap()))
+            .into();
+        let of = |text: &str| dimension(&text.parse().unwrap(), &units, "sum").map(|found| found.to_string());
+        assert_eq!(of("m*v^2/2 + m*g*L").unwrap(), "kg m^2/s^2");
+        assert_eq!(of("sqrt(g/L)").unwrap(), "1/s");
+        assert_eq!(of("max(L, v^2/g)").unwrap(), "m");
+        assert_eq!(of("H(L)*abs(v)").unwrap(), "m/s");
+        let message = of("m*g*L + m*v^2 + m*v").unwrap_err().to_string();
+        assert!(
+            message.contains("`m*v` has the unit kg m/s, where kg m^2/s^2 belongs"),
+            "{message}"
+        );
+        let message = of("sin(L)").unwrap_err().to_string();
+        assert!(message.contains("takes a number, not m"), "{message}");
+        assert!(of("2^L").is_err() && of("q").is_err());
+    }
+}

@@ -1,0 +1,219 @@
+//! Where a mechanism can rest: `dV/dq_i - Q_i = 0` with every velocity zero.
+//!
+//! Exactly, in three steps, and never more than is known: angles are tried at 0 and pi; what then enters linearly is solved for; of
+//! a single angle whose force is `sin(q)*(a + b*cos(q))` the places `cos(q) = -a/b` beside them. Terms in the time and contacts
+//! (those with `H`) are left out: the places are those of the undriven mechanism away from its barriers.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Equations, MechanicsError, trigonometry::simplified};
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::symbol::Symbol;
+
+/// Where a coordinate rests.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// Here.
+    At(Expr),
+    /// Anywhere: nothing pulls on it.
+    Anywhere,
+}
+
+/// A state of rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest {
+    /// The place of each coordinate.
+    pub places: Vec<Place>,
+    /// Under which condition it exists, in the parameters: `-1 <= this <= 1`; always where there is none.
+    pub condition: Option<Expr>,
+}
+
+impl Rest {
+    /// The coordinates with their places; one that may be anywhere is put at 0.
+    pub fn values(&self, coordinates: &[Symbol]) -> BTreeMap<Symbol, Expr> {
+        let place = |place: &Place| match place {
+            Place::At(place) => place.clone(),
+            Place::Anywhere => Expr::zero(),
+        };
+        coordinates.iter().copied().zip(self.places.iter().map(place)).collect()
+    }
+}
+
+/// The states of rest that are found, an upright or folded pendulum among them; others are not ruled out.
+///
+/// # Errors
+/// Forces too long to be written out.
+///
+/// ```
+/// use lindstedt::mechanics::{Mechanism, Place, equilibria};
+///
+/// let spring = Mechanism::parse(&["r", "x"], "m*(r'^2 + r^2*x'^2)/2", "k*(r - L)^2/2 - m*g*r*cos(x)")?;
+/// let found = equilibria(&spring.equations()?)?;
+/// assert_eq!(found[0].places[0], Place::At("L + g*m/k".parse()?));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
+    let coordinates = &equations.coordinates;
+    let forces = equations.forces_at_rest()?;
+    let angles: Vec<Symbol> = coordinates
+        .iter()
+        .copied()
+        .filter(|name| is_angle(*name, &forces))
+        .collect();
+    let mut found: Vec<Rest> = Vec::new();
+    let mut add = |rest: Rest| {
+        if !found.contains(&rest) {
+            found.push(rest);
+        }
+    };
+    for choice in 0..1_usize << angles.len() {
+        let upright = |index: usize| match choice >> index & 1 {
+            0 => Expr::zero(),
+            _ => Expr::pi(),
+        };
+        let chosen: BTreeMap<Symbol, Expr> = angles
+            .iter()
+            .enumerate()
+            .map(|(index, name)| (*name, upright(index)))
+            .collect();
+        if let Some(places) = linear_places(coordinates, &forces, chosen)? {
+            add(Rest {
+                places,
+                condition: None,
+            });
+        }
+    }
+    if let ([angle], [force]) = (coordinates.as_slice(), forces.as_slice())
+        && let Some(cosine) = tilted(*angle, force)?
+    {
+        let place = Expr::function(Function::Acos, vec![cosine.clone()])?;
+        for place in [place.clone(), -place] {
+            add(Rest {
+                places: vec![Place::At(place)],
+                condition: Some(cosine.clone()),
+            });
+        }
+    }
+    Ok(found)
+}
+
+impl Equations {
+    /// What pulls at rest, equation by equation: no velocities, no terms in the time, no contacts.
+    pub(super) fn forces_at_rest(&self) -> Result<Vec<Expr>, ExprError> {
+        let still: BTreeMap<Symbol, Expr> = self
+            .coordinates
+            .iter()
+            .map(|name| (name.derivative(), Expr::zero()))
+            .collect();
+        let force = |rest: &Expr| {
+            let kept = undriven(rest)?;
+            simplified(&kept.substitute_all(&still)?)
+        };
+        self.rest.iter().map(force).collect()
+    }
+}
+
+/// The terms that neither contain the time nor belong to a contact.
+pub(super) fn undriven(expression: &Expr) -> Result<Expr, ExprError> {
+    let written_out = expression.expand()?;
+    let kept = written_out.terms().iter();
+    let kept = kept.filter(|term| !term.contains(Symbol::new("t")) && !term.contains_function(Function::Step));
+    Ok(kept.cloned().sum())
+}
+
+/// Whether a coordinate occurs inside sines and cosines alone, and there.
+fn is_angle(name: Symbol, forces: &[Expr]) -> bool {
+    let outside = |force: &Expr| {
+        let without = force.fold(|expr, children: &[Expr]| match expr.node() {
+            Node::Function(Function::Sin | Function::Cos, _) => Ok(Expr::symbol("_wave")),
+            _ => expr.with_children(children),
+        });
+        without.map_or(true, |without: Expr| without.contains(name))
+    };
+    forces.iter().any(|force| force.contains(name)) && !forces.iter().any(outside)
+}
+
+/// The places of all coordinates, with the angles where they were put; nothing where the others do not follow linearly, or a force
+/// is left over.
+fn linear_places(
+    coordinates: &[Symbol],
+    forces: &[Expr],
+    chosen: BTreeMap<Symbol, Expr>,
+) -> Result<Option<Vec<Place>>, ExprError> {
+    let mut places: BTreeMap<Symbol, Expr> = chosen;
+    let mut open: Vec<Expr> = Vec::new();
+    for force in forces {
+        // A force without a value there: it is no place to rest.
+        match force.substitute_all(&places) {
+            Ok(force) => open.push(simplified(&force)?),
+            Err(_) => return Ok(None),
+        }
+    }
+    let mut free: BTreeSet<Symbol> = BTreeSet::new();
+    for name in coordinates
+        .iter()
+        .filter(|name| !places.contains_key(name))
+        .copied()
+        .collect::<Vec<_>>()
+    {
+        let Some(row) = open.iter().position(|force| force.contains(name)) else {
+            free.insert(name);
+            continue;
+        };
+        let slope = simplified(&open[row].differentiate(name)?)?;
+        if slope.contains(name) {
+            return Ok(None);
+        }
+        let (Ok(without), false) = (open[row].substitute(name, &Expr::zero()), slope.is_zero()) else {
+            return Ok(None);
+        };
+        let value = -Expr::divide(&without, &slope)?.expand()?;
+        for place in places.values_mut() {
+            *place = place.substitute(name, &value)?.expand()?;
+        }
+        for force in &mut open {
+            match force.substitute(name, &value) {
+                Ok(left) => *force = simplified(&left)?,
+                Err(_) => return Ok(None),
+            }
+        }
+        places.insert(name, value);
+    }
+    if open.iter().any(|force| !force.is_zero()) {
+        return Ok(None);
+    }
+    let place = |name: &Symbol| match free.contains(name) {
+        true => Place::Anywhere,
+        false => Place::At(places.get(name).cloned().unwrap_or_else(Expr::zero)),
+    };
+    Ok(Some(coordinates.iter().map(place).collect()))
+}
+
+/// The cosine of the angle at which `sin(q)*(a + b*cos(q))` vanishes beside 0 and pi.
+fn tilted(angle: Symbol, force: &Expr) -> Result<Option<Expr>, ExprError> {
+    let (sine, cosine) = (Expr::from(angle).sin()?, Expr::from(angle).cos()?);
+    let mark = Symbol::new("_cosine");
+    let marked: BTreeMap<Symbol, Expr> = [(angle, Expr::symbol("_angle"))].into();
+    let mut terms = Vec::new();
+    for term in force.terms() {
+        let rest = Expr::divide(term, &sine)?;
+        let rest = rest.fold(|expr, children: &[Expr]| match *expr == cosine {
+            true => Ok(Expr::from(mark)),
+            false => expr.with_children(children),
+        })?;
+        if rest.substitute_all(&marked)? != rest {
+            return Ok(None);
+        }
+        terms.push(rest);
+    }
+    let factor = Expr::sum(terms);
+    let slope = factor.differentiate(mark)?;
+    if slope.is_zero() || slope.contains(mark) {
+        return Ok(None);
+    }
+    let without = factor.substitute(mark, &Expr::zero())?;
+    if without.is_zero() {
+        return Ok(None);
+    }
+    Ok(Some(-Expr::divide(&without, &slope)?))
+}

@@ -1,0 +1,480 @@
+//! Dimensionless groups: on how many numbers a motion depends, and on which.
+//!
+//! ```text
+//! n parameters of r independent dimensions leave n - r numbers       (Buckingham 1914)
+//! Pi_p = p / (b_1^e_1 ... b_r^e_r)     b: as many parameters as give the units, first of inertia, then of stiffness
+//! ```
+//!
+//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) The equations in the units b are those with every b = 1; then a product of powers
+//! that always stands together is one group: an equation often depends on fewer numbers than the theorem allows. A group has the
+//! name of what it stands before: `zeta` (twice) a velocity, `alpha` its sign, `beta` an excitation, `eta` its frequency, `gamma`
+//! and `mu` a contact and its damping; any other is `Pi1`, `Pi2`, ...
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use num_traits::{One, Signed, Zero};
+use thiserror::Error;
+
+use super::{Dimension, Equations, Mechanism};
+use crate::exact::Rational;
+use crate::expr::{Expr, ExprError, Function, Node, fresh};
+use crate::symbol::Symbol;
+
+/// The dimensionless form of equations of motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Groups {
+    /// The number of parameters of the equations.
+    pub parameters: usize,
+    /// The rank of the matrix of their dimensions.
+    pub rank: usize,
+    /// The parameters that give the units, one for each rank.
+    pub units: Vec<Symbol>,
+    /// The unit of time in them.
+    pub time: Expr,
+    /// The unit of each coordinate in them; 1 for an angle.
+    pub lengths: Vec<Expr>,
+    /// The numbers on which the motion depends.
+    pub groups: Vec<Group>,
+    /// The left sides in these units and groups; each equation is zero.
+    pub left: Vec<Expr>,
+}
+
+/// A number on which a motion depends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name in the dimensionless equations.
+    pub name: Symbol,
+    /// What it is in the parameters.
+    pub definition: Expr,
+    /// What it does.
+    pub meaning: String,
+    /// The dimension of the definition, counted from the units of the parameters; that of a number.
+    pub dimension: Dimension,
+}
+
+/// Why there are no groups.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NoGroups {
+    /// Nothing among the parameters has the dimension of a time.
+    #[error("no product of powers of {0} is a time: the motion has no time of its own")]
+    NoTime(String),
+    /// Nothing among the parameters has the dimension of a coordinate.
+    #[error(
+        "no product of powers of {parameters} has the unit of the coordinate `{coordinate}`: it has no size of its own"
+    )]
+    NoLength {
+        /// The coordinate.
+        coordinate: Symbol,
+        /// The parameters.
+        parameters: String,
+    },
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+}
+
+impl Groups {
+    /// Those of a mechanism whose units have passed their check.
+    ///
+    /// # Errors
+    /// [`NoGroups`].
+    ///
+    /// ```
+    /// use lindstedt::mechanics::{Dimension, Groups, Mechanism};
+    ///
+    /// let mut pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?;
+    /// pendulum.dissipation = "c*x'^2/2".parse()?;
+    /// let units = [("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("c", "N*m*s"), ("x", "rad")];
+    /// let units = units.map(|(name, unit)| (name.into(), unit.parse::<Dimension>().expect("a unit"))).into();
+    /// let groups = Groups::of(&pendulum, &pendulum.equations()?, &units)?;
+    /// assert_eq!(groups.left[0].to_string(), "x'' + 2*zeta*x' + sin(x)");
+    /// assert_eq!(groups.groups[0].definition.to_string(), "c/(2*sqrt(g)*L^(3/2)*m)");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(
+        mechanism: &Mechanism,
+        equations: &Equations,
+        units: &BTreeMap<Symbol, Dimension>,
+    ) -> Result<Self, NoGroups> {
+        let parameters = equations.parameters();
+        let dimension_of = |name: Symbol| units.get(&name).cloned().unwrap_or_default();
+        let basis = Basis::of(&preferred(mechanism, equations, &parameters), dimension_of);
+        let time = basis.express(&Dimension::of([0, 0, 1]))?;
+        let names = || names(&parameters);
+        let time = time.ok_or_else(|| NoGroups::NoTime(names()))?;
+        let mut lengths = Vec::new();
+        for coordinate in &equations.coordinates {
+            let length = basis.express(&dimension_of(*coordinate))?;
+            lengths.push(length.ok_or_else(|| NoGroups::NoLength {
+                coordinate: *coordinate,
+                parameters: names(),
+            })?);
+        }
+        let mut scaling = Scaling {
+            basis: &basis,
+            left: Vec::new(),
+            groups: Vec::new(),
+            taken: mechanism
+                .coordinates
+                .iter()
+                .copied()
+                .chain([Symbol::new("t")])
+                .collect(),
+        };
+        let ones: BTreeMap<Symbol, Expr> = basis.members.iter().map(|(name, _)| (*name, Expr::one())).collect();
+        for left in &equations.left {
+            scaling
+                .left
+                .push(positive_factors_out(&left.expand()?.substitute_all(&ones)?, equations)?.expand()?);
+        }
+        // A parameter without a unit is a group already.
+        let plain = |name: &&Symbol| dimension_of(**name).is_none();
+        scaling.taken.extend(parameters.iter().filter(plain));
+        for name in parameters.iter().filter(plain) {
+            scaling.groups.push((*name, Expr::from(*name), "as given".to_owned()));
+        }
+        scaling.collect(equations)?;
+        let mut groups = Vec::new();
+        let mut earlier: BTreeMap<Symbol, Expr> = BTreeMap::new();
+        for (name, scaled, meaning) in &scaling.groups {
+            let scaled = &scaled.substitute_all(&earlier)?;
+            earlier.insert(*name, scaled.clone());
+            let definition = basis.in_parameters(scaled, dimension_of)?;
+            groups.push(Group {
+                name: *name,
+                dimension: super::dimension::dimension(&definition, units, "group").unwrap_or_default(),
+                definition,
+                meaning: meaning.clone(),
+            });
+        }
+        Ok(Self {
+            parameters: parameters.len(),
+            rank: basis.members.len(),
+            units: basis.members.iter().map(|(name, _)| *name).collect(),
+            time,
+            lengths,
+            groups,
+            left: scaling.left,
+        })
+    }
+}
+
+fn names(parameters: &[Symbol]) -> String {
+    let names: Vec<&str> = parameters.iter().map(|name| name.name()).collect();
+    names.join(", ")
+}
+
+/// The parameters in the order in which they are taken for units: those of inertia, of stiffness, all others.
+fn preferred(mechanism: &Mechanism, equations: &Equations, parameters: &[Symbol]) -> Vec<Symbol> {
+    let inertia: BTreeSet<Symbol> = equations.mass.iter().flatten().flat_map(Expr::symbols).collect();
+    let stiffness = mechanism.potential.symbols();
+    let place = |name: &Symbol| match (inertia.contains(name), stiffness.contains(name)) {
+        (true, _) => 0,
+        (false, true) => 1,
+        (false, false) => 2,
+    };
+    let mut ordered = parameters.to_vec();
+    ordered.sort_by_key(place);
+    ordered
+}
+
+/// Positive parameters taken out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also where `l` is common to the terms of a sum. What has
+/// a unit is positive.
+fn positive_factors_out(expression: &Expr, equations: &Equations) -> Result<Expr, ExprError> {
+    expression.fold(|expr, children: &[Expr]| {
+        let whole = expr.with_children(children)?;
+        let Node::Power(base, exponent) = whole.node() else {
+            return Ok(whole);
+        };
+        if exponent.as_number().is_none_or(Rational::is_integer) {
+            return Ok(whole);
+        }
+        let common = equations.common(&base.terms().iter().collect::<Vec<_>>())?;
+        let left = Expr::divide(base, &common)?.expand()?;
+        let outside = common.factors().1.iter().map(|factor| {
+            let (base, own) = factor.base_and_exponent();
+            Expr::power(&base, &(&own * exponent))
+        });
+        let outside: Expr = outside.collect::<Result<Vec<_>, _>>()?.into_iter().product();
+        Ok(outside * Expr::power(&left, exponent)?)
+    })
+}
+
+/// Parameters of independent dimensions.
+struct Basis {
+    members: Vec<(Symbol, Dimension)>,
+}
+
+impl Basis {
+    /// The first parameters that are independent.
+    fn of(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
+        let mut basis = Self { members: Vec::new() };
+        for name in ordered {
+            let dimension = dimension_of(*name);
+            if basis.exponents(&dimension).is_none() {
+                basis.members.push((*name, dimension));
+            }
+        }
+        basis
+    }
+
+    /// The powers of the members whose product has this dimension; nothing where there is none.
+    fn exponents(&self, dimension: &Dimension) -> Option<Vec<Rational>> {
+        let width = self.members.len();
+        // A row for each base unit, a column for each member, and the right side: eliminated exactly.
+        let mut rows: Vec<Vec<Rational>> = (0..3)
+            .map(|unit| {
+                let members = self.members.iter().map(|(_, own)| own.exponents()[unit].clone());
+                members.chain([dimension.exponents()[unit].clone()]).collect()
+            })
+            .collect();
+        let mut done = 0;
+        let mut pivots = Vec::new();
+        for column in 0..width {
+            let Some(found) = (done..3).find(|row| !rows[*row][column].is_zero()) else {
+                continue;
+            };
+            rows.swap(done, found);
+            let pivot = rows[done].clone();
+            for (index, row) in rows.iter_mut().enumerate() {
+                if index != done && !row[column].is_zero() {
+                    let factor = &row[column] / &pivot[column];
+                    for (entry, of_pivot) in row.iter_mut().zip(&pivot) {
+                        *entry -= &factor * of_pivot;
+                    }
+                }
+            }
+            pivots.push(column);
+            done += 1;
+        }
+        if rows[done..].iter().any(|row| !row[width].is_zero()) {
+            return None;
+        }
+        let mut exponents = vec![Rational::zero(); width];
+        for (row, column) in pivots.into_iter().enumerate() {
+            exponents[column] = &rows[row][width] / &rows[row][column];
+        }
+        Some(exponents)
+    }
+
+    /// The product of powers of the members with this dimension.
+    fn express(&self, dimension: &Dimension) -> Result<Option<Expr>, ExprError> {
+        let Some(exponents) = self.exponents(dimension) else {
+            return Ok(None);
+        };
+        let power = |((name, _), exponent): (&(Symbol, Dimension), &Rational)| match exponent.is_zero() {
+            true => Ok(Expr::one()),
+            false => Expr::power(&Expr::from(*name), &Expr::number(exponent.clone())),
+        };
+        let factors: Result<Vec<Expr>, ExprError> = self.members.iter().zip(&exponents).map(power).collect();
+        factors.map(|factors| Some(Expr::product(factors)))
+    }
+
+    /// What is written in scaled parameters, in the parameters themselves.
+    fn in_parameters(&self, scaled: &Expr, dimension_of: impl Fn(Symbol) -> Dimension) -> Result<Expr, ExprError> {
+        let mut values = BTreeMap::new();
+        for name in scaled.symbols() {
+            if let Some(unit) = self.express(&dimension_of(name))? {
+                values.insert(name, Expr::divide(&Expr::from(name), &unit)?);
+            }
+        }
+        // Roots of products are products of roots where everything is positive, as units are.
+        let (number, factors) = scaled.factors();
+        let mut product = vec![Expr::number(number)];
+        for factor in factors {
+            let (base, exponent) = factor.base_and_exponent();
+            let base = base.substitute_all(&values)?;
+            let (number, inner) = base.factors();
+            product.push(Expr::power(&Expr::number(number), &exponent)?);
+            for part in inner {
+                let (part, own) = part.base_and_exponent();
+                product.push(Expr::power(&part, &(&own * &exponent))?);
+            }
+        }
+        Ok(Expr::product(product))
+    }
+}
+
+/// Equations in units of the basis, and the groups found in them so far.
+struct Scaling<'a> {
+    basis: &'a Basis,
+    left: Vec<Expr>,
+    /// Name, definition in scaled parameters, meaning.
+    groups: Vec<(Symbol, Expr, String)>,
+    taken: Vec<Symbol>,
+}
+
+impl Scaling<'_> {
+    /// Names what stands before the terms, in the order in which they print: first the frequencies.
+    fn collect(&mut self, equations: &Equations) -> Result<(), ExprError> {
+        let mut counted = 0;
+        while let Some((product, role)) = self.next(equations) {
+            let (wanted, factor, meaning) = match role {
+                Role::Frequency => (
+                    "eta",
+                    Rational::one(),
+                    "frequency of the excitation over that of the unit of time",
+                ),
+                Role::Viscous => ("zeta", Rational::new(1.into(), 2.into()), "viscous damping ratio"),
+                Role::Dry => ("alpha", Rational::one(), "dry friction"),
+                Role::Excitation => ("beta", Rational::one(), "excitation"),
+                Role::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
+                Role::ContactDamping => ("mu", Rational::one(), "damping of the contact"),
+                Role::Other => {
+                    counted += 1;
+                    ("Pi", Rational::one(), "ratio")
+                }
+            };
+            let own = match role {
+                Role::Other => Symbol::new(&format!("{wanted}{counted}")),
+                _ => Symbol::new(wanted),
+            };
+            let taken: Vec<Symbol> = self.taken.iter().copied().chain(self.symbols()).collect();
+            // A parameter that is replaced by the group leaves its name to it.
+            let name = match product.symbols().len() == 1 && product.as_symbol() == Some(own) {
+                true => own,
+                false => fresh(own.name(), &taken),
+            };
+            let definition = match role {
+                Role::Other => Expr::product(product.factors().1.iter().cloned()),
+                _ => Expr::number(factor.clone()) * &product,
+            };
+            self.replace(&definition, name)?;
+            self.groups.push((name, definition, meaning.to_owned()));
+            self.taken.push(name);
+        }
+        Ok(())
+    }
+
+    fn symbols(&self) -> BTreeSet<Symbol> {
+        self.left.iter().flat_map(Expr::symbols).collect()
+    }
+
+    /// Whether a name is a parameter that no group has replaced yet.
+    fn is_open(&self, name: Symbol, equations: &Equations) -> bool {
+        equations.is_parameter(name)
+            && !self.taken.contains(&name)
+            && !self.basis.members.iter().any(|(own, _)| *own == name)
+    }
+
+    /// The next product of parameters that stands before something, with its number, and what it stands before.
+    fn next(&self, equations: &Equations) -> Option<(Expr, Role)> {
+        let open = |expression: &Expr| {
+            expression
+                .symbols()
+                .into_iter()
+                .any(|name| self.is_open(name, equations))
+        };
+        let constant = |expression: &Expr| {
+            expression
+                .symbols()
+                .into_iter()
+                .all(|name| equations.is_parameter(name))
+        };
+        for node in self.left.iter().flat_map(Expr::unique_nodes) {
+            let Node::Function(_, arguments) = node.node() else {
+                continue;
+            };
+            for term in arguments.iter().flat_map(Expr::terms) {
+                let (number, factors) = term.factors();
+                let (before, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| constant(factor));
+                let is_time = rest
+                    .iter()
+                    .all(|factor| factor.as_symbol().is_some_and(|name| name.name() == "t"));
+                let product = Expr::product(
+                    [Expr::number(number.abs())]
+                        .into_iter()
+                        .chain(before.into_iter().cloned()),
+                );
+                if !rest.is_empty() && is_time && open(&product) {
+                    return Some((product, Role::Frequency));
+                }
+            }
+        }
+        for term in self.left.iter().flat_map(Expr::terms) {
+            let (number, factors) = term.factors();
+            let (before, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| constant(factor));
+            let product = Expr::product(
+                [Expr::number(number.abs())]
+                    .into_iter()
+                    .chain(before.into_iter().cloned()),
+            );
+            if open(&product) {
+                return Some((product, Role::of(&Expr::product(rest.into_iter().cloned()))));
+            }
+        }
+        // What stands inside of something else, such as the place of a barrier, one by one.
+        let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
+        Some((Expr::from(name), Role::Other))
+    }
+
+    /// Puts the name in the place of its definition, by way of one of the parameters in it.
+    fn replace(&mut self, definition: &Expr, name: Symbol) -> Result<(), ExprError> {
+        let (number, factors) = definition.factors();
+        let parameter = |factor: &Expr| {
+            let (base, exponent) = factor.base_and_exponent();
+            Some((
+                base.as_symbol().filter(|name| !self.taken.contains(name))?,
+                exponent.as_number()?.clone(),
+            ))
+        };
+        let parameters: Vec<(Symbol, Rational)> = factors.iter().filter_map(parameter).collect();
+        // One that occurs nowhere else is gone then, one that stands alone in its power is replaced without a root.
+        let occurrences = |name: Symbol| {
+            let terms = self.left.iter().flat_map(Expr::terms);
+            terms.filter(|term| term.contains(name)).count()
+        };
+        let simplest = parameters
+            .iter()
+            .min_by_key(|(name, exponent)| (occurrences(*name), !exponent.abs().is_one(), exponent.is_negative()));
+        let Some((replaced, exponent)) = simplest.cloned() else {
+            return Ok(());
+        };
+        let others = factors
+            .iter()
+            .filter(|factor| factor.base_and_exponent().0.as_symbol() != Some(replaced));
+        let others = Expr::product([Expr::number(number)].into_iter().chain(others.cloned()));
+        let value = Expr::divide(&Expr::from(name), &others)?;
+        let inverse = Rational::one() / exponent;
+        let (number, inner) = value.factors();
+        let mut product = vec![Expr::power(&Expr::number(number), &Expr::number(inverse.clone()))?];
+        for part in inner {
+            let (part, own) = part.base_and_exponent();
+            product.push(Expr::power(&part, &(&own * &Expr::number(inverse.clone())))?);
+        }
+        let value = Expr::product(product);
+        for left in &mut self.left {
+            *left = left.substitute(replaced, &value)?.expand()?;
+        }
+        Ok(())
+    }
+}
+
+/// What a group does, by what it stands before.
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    Frequency,
+    Viscous,
+    Dry,
+    Excitation,
+    Contact,
+    ContactDamping,
+    Other,
+}
+
+impl Role {
+    fn of(before: &Expr) -> Self {
+        let has = |function: Function| before.contains_function(function);
+        let velocity = before.symbols().into_iter().any(|name| name.primes() == 1);
+        let time = before.symbols().into_iter().any(|name| name.name() == "t");
+        match before.as_symbol() {
+            Some(name) if name.primes() == 1 => Self::Viscous,
+            _ if time => Self::Excitation,
+            _ if has(Function::Step) && velocity => Self::ContactDamping,
+            _ if has(Function::Step) => Self::Contact,
+            _ if has(Function::Sign) => Self::Dry,
+            _ => Self::Other,
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Lagrange's equations, and the form in which people print them.
+//!
+//! ```text
+//! sum_j M_ij q_j'' + h_i = 0      M_ij = d2T/dq_i'dq_j'
+//! h_i = sum_j d2T/dq_i'dq_j q_j' + d2T/dq_i'dt - dT/dq_i + dV/dq_i + dD/dq_i' - Q_i
+//! ```
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use num_traits::{One, Zero};
+
+use super::trigonometry::simplified;
+use super::{MechanicsError, Mechanism, linear};
+use crate::exact::Rational;
+use crate::expr::{Expr, ExprError};
+use crate::symbol::Symbol;
+
+/// Equations of motion, one for each coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equations {
+    /// The coordinates.
+    pub coordinates: Vec<Symbol>,
+    /// M, the mass matrix.
+    pub mass: Vec<Vec<Expr>>,
+    /// h, what stands beside the accelerations on the left side.
+    pub rest: Vec<Expr>,
+    /// The left sides as people print them: the factor that all terms have in common is divided out; `x'' + ...` where the inertia
+    /// is a number or a product of parameters.
+    pub left: Vec<Expr>,
+    /// What each was divided by; parameters are taken not to vanish.
+    pub divisors: Vec<Expr>,
+}
+
+impl fmt::Display for Equations {
+    /// A line each.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines: Vec<String> = self.left.iter().map(|left| format!("{left} = 0")).collect();
+        formatter.write_str(&lines.join("\n"))
+    }
+}
+
+/// The equations of a mechanism that has been checked.
+pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsError> {
+    let coordinates = &mechanism.coordinates;
+    let mut mass = Vec::new();
+    let mut rest = Vec::new();
+    for coordinate in coordinates {
+        let velocity = coordinate.derivative();
+        let momentum = mechanism.kinetic.differentiate(velocity)?;
+        let row: Result<Vec<Expr>, ExprError> = coordinates
+            .iter()
+            .map(|other| simplified(&momentum.differentiate(other.derivative())?))
+            .collect();
+        mass.push(row?);
+        let mut terms = vec![
+            momentum.differentiate(Symbol::new("t"))?,
+            -mechanism.kinetic.differentiate(*coordinate)?,
+            mechanism.potential.differentiate(*coordinate)?,
+            mechanism.dissipation.differentiate(velocity)?,
+        ];
+        for other in coordinates {
+            terms.push(momentum.differentiate(*other)? * Expr::from(other.derivative()));
+        }
+        terms.extend(mechanism.forces.get(coordinate).map(|force| -force));
+        rest.push(simplified(&Expr::sum(terms))?);
+    }
+    let singular = || MechanicsError::Singular(mechanism.kinetic.clone());
+    // Whether every acceleration follows.
+    linear::solution(&mass, &rest, singular)?;
+    let mut equations = Equations {
+        coordinates: coordinates.clone(),
+        mass,
+        rest,
+        left: Vec::new(),
+        divisors: Vec::new(),
+    };
+    for index in 0..coordinates.len() {
+        let (left, divisor) = equations.printed(index)?;
+        equations.left.push(left);
+        equations.divisors.push(divisor);
+    }
+    Ok(equations)
+}
+
+impl Equations {
+    /// The accelerations, solved for: quotients in coordinates, velocities, time and parameters, not written out.
+    ///
+    /// # Errors
+    /// A mass matrix that is singular.
+    pub fn accelerations(&self) -> Result<Vec<Expr>, MechanicsError> {
+        let right: Vec<Expr> = self.rest.iter().map(|rest| -rest).collect();
+        linear::solution(&self.mass, &right, || {
+            MechanicsError::Singular(self.mass.iter().flatten().cloned().sum())
+        })
+    }
+
+    /// The names that are neither coordinates, their derivatives nor time, in alphabetical order.
+    pub fn parameters(&self) -> Vec<Symbol> {
+        let names: BTreeSet<Symbol> = self.left.iter().flat_map(Expr::symbols).collect();
+        names.into_iter().filter(|name| self.is_parameter(*name)).collect()
+    }
+
+    /// Whether a name is neither a coordinate, a derivative of one nor time.
+    pub(super) fn is_parameter(&self, name: Symbol) -> bool {
+        !self.coordinates.contains(&name.coordinate()) && name.name() != "t"
+    }
+
+    /// One equation as people print it, and what it was divided by.
+    fn printed(&self, index: usize) -> Result<(Expr, Expr), ExprError> {
+        let inertia = &self.mass[index];
+        let accelerations = self
+            .coordinates
+            .iter()
+            .map(|name| Expr::from(name.derivative().derivative()));
+        let rest = self.rest[index].terms().iter().filter(|term| !term.is_zero());
+        let terms: Vec<&Expr> = inertia
+            .iter()
+            .flat_map(Expr::terms)
+            .filter(|term| !term.is_zero())
+            .chain(rest)
+            .collect();
+        let own = inertia[index].expand()?;
+        let divisor = match own.terms().len() == 1 && self.is_constant(&own) && self.coordinates.len() == 1 {
+            true => own,
+            false => self.common(&terms)?,
+        };
+        let mut left = Vec::new();
+        for (entry, acceleration) in inertia.iter().zip(accelerations) {
+            let coefficient = Expr::divide(entry, &divisor)?.expand()?;
+            left.push(self.factored(&coefficient)? * acceleration);
+        }
+        left.push(Expr::divide(&self.rest[index], &divisor)?.expand()?);
+        Ok((Expr::sum(left), divisor))
+    }
+
+    fn is_constant(&self, expression: &Expr) -> bool {
+        expression.symbols().into_iter().all(|name| self.is_parameter(name))
+    }
+
+    /// The product of powers of parameters that all terms have in common.
+    pub(super) fn common(&self, terms: &[&Expr]) -> Result<Expr, ExprError> {
+        let powers: Vec<BTreeMap<Symbol, Rational>> = terms.iter().map(|term| self.powers(term)).collect();
+        let names: BTreeSet<Symbol> = powers.iter().flat_map(|powers| powers.keys().copied()).collect();
+        let mut factors = Vec::new();
+        for name in names {
+            let of = |powers: &BTreeMap<Symbol, Rational>| powers.get(&name).cloned().unwrap_or_else(Rational::zero);
+            let least = powers.iter().map(of).min().unwrap_or_else(Rational::zero);
+            let most = powers.iter().map(of).max().unwrap_or_else(Rational::zero);
+            // A power that all have, or that all have in the denominator.
+            let shared = if most < Rational::zero() { most } else { least };
+            if !shared.is_zero() {
+                factors.push(Expr::power(&Expr::from(name), &Expr::number(shared))?);
+            }
+        }
+        Ok(Expr::product(factors))
+    }
+
+    /// The powers of the parameters among the factors of a term.
+    fn powers(&self, term: &Expr) -> BTreeMap<Symbol, Rational> {
+        let (_, factors) = term.factors();
+        let power = |factor: &Expr| {
+            let (base, exponent) = factor.base_and_exponent();
+            let name = base.as_symbol().filter(|name| self.is_parameter(*name))?;
+            Some((name, exponent.as_number()?.clone()))
+        };
+        factors.iter().filter_map(power).collect()
+    }
+
+    /// A sum with the factor in front that its terms have in common.
+    fn factored(&self, sum: &Expr) -> Result<Expr, ExprError> {
+        let terms: Vec<&Expr> = sum.terms().iter().collect();
+        if terms.len() < 2 {
+            return Ok(sum.clone());
+        }
+        let common = self.common(&terms)?;
+        match common.as_number().is_some_and(One::is_one) {
+            true => Ok(sum.clone()),
+            false => Ok(&common * &Expr::divide(sum, &common)?.expand()?),
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Matrices of expressions: elimination without a choice of pivots, for mass matrices are positive definite.
+
+use super::MechanicsError;
+use crate::expr::{Expr, ExprError};
+
+/// x of `matrix x = right`, each entry a quotient in which common parts are shared: O(n^3) of them, none written out.
+///
+/// # Errors
+/// A pivot that vanishes: the caller's error.
+pub(super) fn solution(
+    matrix: &[Vec<Expr>],
+    right: &[Expr],
+    singular: impl Fn() -> MechanicsError,
+) -> Result<Vec<Expr>, MechanicsError> {
+    let size = right.len();
+    let mut rows: Vec<Vec<Expr>> = matrix.to_vec();
+    let mut right = right.to_vec();
+    for pivot in 0..size {
+        if super::trigonometry::simplified(&rows[pivot][pivot]).is_ok_and(|pivot| pivot.is_zero()) {
+            return Err(singular());
+        }
+        let (above, below) = rows.split_at_mut(pivot + 1);
+        let (above_right, below_right) = right.split_at_mut(pivot + 1);
+        for (row, value) in below.iter_mut().zip(below_right) {
+            if row[pivot].is_zero() {
+                continue;
+            }
+            let factor = Expr::divide(&row[pivot], &above[pivot][pivot])?;
+            for (entry, of_pivot) in row.iter_mut().zip(&above[pivot]).skip(pivot) {
+                *entry = &*entry - &(&factor * of_pivot);
+            }
+            *value = &*value - &(&factor * &above_right[pivot]);
+        }
+    }
+    let mut found = vec![Expr::zero(); size];
+    for row in (0..size).rev() {
+        let known: Expr = (row + 1..size).map(|column| &rows[row][column] * &found[column]).sum();
+        found[row] = Expr::divide(&(&right[row] - &known), &rows[row][row]).map_err(|_: ExprError| singular())?;
+    }
+    Ok(found)
+}

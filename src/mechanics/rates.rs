@@ -1,0 +1,42 @@
+//! The same equations of first order, ready to be followed.
+
+use super::{Equations, MechanicsError};
+use crate::expr::Expr;
+use crate::symbol::Symbol;
+
+/// Coordinates and velocities with their rates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rates {
+    /// The coordinates, then a name for the velocity of each: `x`, `x'`.
+    pub states: Vec<Symbol>,
+    /// The rate of each: the velocities, then the accelerations.
+    pub right: Vec<Expr>,
+}
+
+impl Equations {
+    /// The equations of first order, for [`System`](crate::system::System).
+    ///
+    /// # Errors
+    /// A mass matrix that is singular.
+    ///
+    /// ```
+    /// use lindstedt::mechanics::Mechanism;
+    /// use lindstedt::system::{Options, System};
+    ///
+    /// let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?;
+    /// let rates = pendulum.equations()?.rates()?;
+    /// let numbers = [("g".into(), 9.81), ("L".into(), 0.5), ("m".into(), 2.0)].into();
+    /// let system = System::new(&rates.states, "t".into(), &rates.right, &numbers)?;
+    /// let path = system.solve(0.0, &[0.1, 0.0], 1.0, &[], &Options::default())?;
+    /// assert!(path.at(1.0).is_some_and(|state| (state[0] + 0.0283).abs() < 1e-4));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn rates(&self) -> Result<Rates, MechanicsError> {
+        let velocities: Vec<Symbol> = self.coordinates.iter().map(|name| name.derivative()).collect();
+        let right = velocities.iter().copied().map(Expr::from);
+        Ok(Rates {
+            right: right.chain(self.accelerations()?).collect(),
+            states: self.coordinates.iter().chain(&velocities).copied().collect(),
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! One mechanism from its energies to its groups, in one go: what `lindstedt lagrange` reports.
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+
+use super::paper::{self, Finding, PaperError};
+use super::{
+    Dimension, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes, Rest, UnitError,
+    equilibria,
+};
+use crate::symbol::Symbol;
+
+/// What is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MechanismQuestion {
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// The unit of every coordinate and parameter; without them nothing is checked and there are no groups.
+    pub units: Option<BTreeMap<Symbol, Dimension>>,
+    /// Numbers for parameters: with all of them the modes have numbers.
+    pub values: BTreeMap<Symbol, f64>,
+    /// Whether it is the paper's, whose printed equations are then held against it.
+    pub is_the_papers: bool,
+}
+
+/// Everything that follows from the energies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MechanismStudy {
+    /// What was asked.
+    pub question: MechanismQuestion,
+    /// The equations of motion.
+    pub equations: Equations,
+    /// Places of rest, and how it swings there.
+    pub rests: Vec<RestStudy>,
+    /// The dimensionless form; nothing without units.
+    pub groups: Option<Result<Groups, NoGroups>>,
+    /// The paper's equations beside these.
+    pub findings: Vec<Finding>,
+}
+
+/// A place of rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RestStudy {
+    /// Where.
+    pub rest: Rest,
+    /// The linear equations there.
+    pub modes: Modes,
+    /// Their numbers; nothing where not every parameter has a value, or the place does not exist for these values.
+    pub numbers: Option<Result<Vec<Mode>, NoModes>>,
+}
+
+/// Why there is no study.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// No equations of motion.
+    #[error(transparent)]
+    Mechanics(#[from] MechanicsError),
+    /// A term of a wrong unit.
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    /// The paper's equations.
+    #[error(transparent)]
+    Paper(#[from] PaperError),
+    /// A value for a name that does not occur.
+    #[error("there is a value for `{0}`, which is no parameter of the mechanism")]
+    UnknownValue(Symbol),
+}
+
+impl StudyError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Unit(error) => error.help(),
+            _ => None,
+        }
+    }
+}
+
+impl MechanismQuestion {
+    /// The paper's pendulum and barrier.
+    pub fn of_paper() -> Self {
+        Self {
+            mechanism: paper::pendulum(),
+            units: Some(paper::units()),
+            values: BTreeMap::new(),
+            is_the_papers: true,
+        }
+    }
+}
+
+/// Derives, checks and linearises.
+///
+/// # Errors
+/// [`StudyError`] names the term or the name.
+///
+/// ```
+/// use lindstedt::mechanics::{MechanismQuestion, study};
+///
+/// let study = study(MechanismQuestion::of_paper())?;
+/// let groups = study.groups.ok_or("no units")??;
+/// let names: Vec<&str> = groups.groups.iter().map(|group| group.name.name()).collect();
+/// assert_eq!(names, ["xc", "eta", "zeta", "alpha", "beta", "gamma", "mu"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> {
+    let mechanism = &question.mechanism;
+    let equations = mechanism.equations()?;
+    let parameters = mechanism.parameters();
+    if let Some(unknown) = question.values.keys().find(|name| !parameters.contains(name)) {
+        return Err(StudyError::UnknownValue(*unknown));
+    }
+    if let Some(units) = &question.units {
+        mechanism.check_units(units)?;
+        equations.check_units(&mechanism.all_units(units))?;
+    }
+    let mut rests = Vec::new();
+    for rest in equilibria(&equations)? {
+        let modes = Modes::at(&equations, &rest)?;
+        // A place that needs a cosine beyond 1 is none for these values.
+        let exists = rest.condition.as_ref().is_none_or(|cosine| {
+            let value = cosine.evaluate(&question.values);
+            value.is_ok_and(|value| value.abs() <= 1.0)
+        });
+        let needed = modes.parameters();
+        let known = !question.values.is_empty() && needed.iter().all(|name| question.values.contains_key(name));
+        let numbers = (known && exists).then(|| modes.numbers(&question.values));
+        rests.push(RestStudy { rest, modes, numbers });
+    }
+    let groups = question
+        .units
+        .as_ref()
+        .map(|units| Groups::of(mechanism, &equations, units));
+    let findings = match question.is_the_papers {
+        true => paper::findings()?,
+        false => Vec::new(),
+    };
+    Ok(MechanismStudy {
+        equations,
+        rests,
+        groups,
+        findings,
+        question,
+    })
+}

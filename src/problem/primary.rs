@@ -1,0 +1,174 @@
+//! What `simulate` reads of a file with a main mass, `[primary]`.
+
+use thiserror::Error;
+
+use super::document::{Pendulum, PrimarySection};
+use super::simulate::{Simulate, SimulateError};
+use super::{Problem, ProblemError};
+use crate::impact::hertz::Design;
+use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings};
+use crate::impact::{Start, Units};
+
+/// A main mass with its pendulum, and how to follow them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimaryProblem {
+    /// Both bodies and where they begin.
+    pub case: PrimaryCase,
+    /// How long and how closely.
+    pub settings: PrimarySettings,
+    /// What a number is in SI units.
+    pub units: Units,
+}
+
+/// Why a file describes no main mass.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PrimaryFileError {
+    /// The pendulum and its barrier.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// A key that must be there.
+    #[error("[primary] needs `{0}`: the mass of the main mass in kg and the stiffness of its spring in N/m")]
+    Missing(&'static str),
+    /// A force without its frequency, or the other way round.
+    #[error("`[primary] {key}` changes nothing without `[primary] {other}`: give that too, or leave it out")]
+    Alone {
+        /// The key.
+        key: &'static str,
+        /// The other one.
+        other: &'static str,
+    },
+    /// Nothing moves.
+    #[error("nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start")]
+    AtRest,
+    /// An excitation of the pivot.
+    #[error("[excitation] moves the pivot, which a main mass carries: give [primary] force and frequency instead")]
+    Driven,
+}
+
+impl PrimaryFileError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Simulate(error) => error.help(),
+            Self::Missing(_) => {
+                Some("[primary] mass = 0.5, stiffness = 72, damping = 0.05, displacement = 0.02".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
+
+/// How long both are followed where the file does not say, in units of 1/omega.
+const USUAL_DURATION: f64 = 300.0;
+
+impl Problem {
+    /// The main mass of the file with its pendulum, in the units of equation (7). The pendulum hangs at rest unless the file says
+    /// otherwise; a `sweep` gives the frequency of the force.
+    ///
+    /// # Errors
+    /// [`PrimaryFileError`] names the key.
+    ///
+    /// ```
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02".parse()?;
+    /// let asked = file.primary_case(false)?;
+    /// assert!((asked.case.primary.mass - 50.0).abs() < 1e-12); // fifty times the 11.2 g of the paper's sphere
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn primary_case(&self, swept: bool) -> Result<PrimaryProblem, PrimaryFileError> {
+        let section = self.primary.unwrap_or_default();
+        if self.given.iter().any(|key| key.starts_with("[excitation]")) {
+            return Err(PrimaryFileError::Driven);
+        }
+        // Without a word of the start it hangs at rest.
+        let starts = ["amplitude", "start", "speed"].map(|key| format!("[pendulum] {key}"));
+        let hanging = Self {
+            pendulum: Pendulum {
+                start: Some(0.0),
+                ..self.pendulum
+            },
+            ..self.clone()
+        };
+        let file = if starts.iter().any(|key| self.gives(key)) {
+            self
+        } else {
+            &hanging
+        };
+        let asked = Simulate::try_from(file)?;
+        let (model, Start { x, velocity }) = asked.case.motion().map_err(SimulateError::from)?;
+        let design = self.design().map_err(ProblemError::from).map_err(SimulateError::from)?;
+        let units = asked.units.unwrap_or(in_si(&design));
+        let primary = section.primary(&units, swept)?;
+        let start = [
+            x,
+            velocity,
+            section.displacement.unwrap_or(0.0) / units.length,
+            section.speed.unwrap_or(0.0) / units.speed(),
+        ];
+        if primary.force == 0.0 && start.iter().all(|value| *value == 0.0) {
+            return Err(PrimaryFileError::AtRest);
+        }
+        let usual = PrimarySettings::default();
+        let given = |key: &str| self.gives(&format!("[run] {key}"));
+        Ok(PrimaryProblem {
+            case: PrimaryCase { primary, model, start },
+            settings: PrimarySettings {
+                duration: if given("duration") {
+                    self.run.duration
+                } else {
+                    USUAL_DURATION
+                },
+                tolerance: if given("integrator_tolerance") {
+                    self.run.integrator_tolerance
+                } else {
+                    usual.tolerance
+                },
+                phase_limit: if given("step_limit") {
+                    usize::try_from(self.run.step_limit).unwrap_or(usize::MAX)
+                } else {
+                    usual.phase_limit
+                },
+                interrupt: usual.interrupt,
+            },
+            units,
+        })
+    }
+}
+
+/// The units of a design alone, where gamma is given beside it.
+fn in_si(design: &Design) -> Units {
+    Units {
+        mass: design.mass,
+        length: design.length,
+        gravity: design.gravity,
+        radius: None,
+        modulus: None,
+        sphere_yield: None,
+        barrier_yield: None,
+    }
+}
+
+impl PrimarySection {
+    /// R = M/m, kappa = k L/(m g), delta = (c/m) sqrt(L/g), f = F/(m g), eta = Omega sqrt(L/g).
+    fn primary(&self, units: &Units, swept: bool) -> Result<Primary, PrimaryFileError> {
+        let mass = self.mass.ok_or(PrimaryFileError::Missing("mass"))?;
+        let stiffness = self.stiffness.ok_or(PrimaryFileError::Missing("stiffness"))?;
+        let alone = |key, other| Err(PrimaryFileError::Alone { key, other });
+        match (self.force, self.frequency) {
+            (Some(_), None) if !swept => return alone("force", "frequency"),
+            (None, Some(_)) => return alone("frequency", "force"),
+            (None, None) if swept => return alone("frequency", "force"),
+            _ => {}
+        }
+        let time = units.time();
+        Ok(Primary {
+            mass: mass / units.mass,
+            stiffness: stiffness * units.length / units.force(),
+            damping: self.damping.unwrap_or(0.0) / units.mass * time,
+            force: self.force.unwrap_or(0.0) / units.force(),
+            frequency: self.frequency.unwrap_or(0.0) * time,
+        })
+    }
+}

@@ -1,0 +1,239 @@
+//! A mechanism: its energies, its equations of motion, where it rests, how it swings there, and on how many numbers it depends.
+
+use std::borrow::Cow;
+
+use super::{Block, Document};
+use crate::decimal::decimal;
+use crate::derivation::Line;
+use crate::expr::Expr;
+use crate::mechanics::paper::Finding;
+use crate::mechanics::{Groups, MechanismStudy, Mode, NoGroups, Place, RestStudy};
+use crate::symbol::Symbol;
+
+/// The document of a study of a mechanism.
+///
+/// ```
+/// use lindstedt::mechanics::{MechanismQuestion, study};
+///
+/// let study = study(MechanismQuestion::of_paper())?;
+/// let document = lindstedt::report::mechanism(&study);
+/// assert!(lindstedt::export::text::document(&document, 120).contains("with the square"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn mechanism(study: &MechanismStudy) -> Document<'_> {
+    let mut sections = vec![energies(study), equations(study), places(study)];
+    sections.push(match &study.groups {
+        None => vec![Block::Note(
+            "without [units] no term is checked, and there are no dimensionless groups".to_owned(),
+        )],
+        Some(Err(error)) => vec![checked(), Block::Note(no_groups(error))],
+        Some(Ok(groups)) => dimensionless(groups, &study.equations.coordinates),
+    });
+    if !study.findings.is_empty() {
+        sections.push(findings(study));
+    }
+    Document { sections }
+}
+
+fn equation<'a>(left: Expr, right: Expr) -> Block<'a> {
+    Block::Line(Cow::Owned(Line::equation(left, right)))
+}
+
+fn energies(study: &MechanismStudy) -> Vec<Block<'_>> {
+    let mechanism = &study.question.mechanism;
+    let mut blocks = vec![Block::Heading("Energies and forces".to_owned())];
+    let named = [
+        ("T", &mechanism.kinetic),
+        ("V", &mechanism.potential),
+        ("D", &mechanism.dissipation),
+    ];
+    for (name, energy) in named
+        .into_iter()
+        .filter(|(name, energy)| *name != "D" || !energy.is_zero())
+    {
+        blocks.push(equation(Expr::symbol(name), energy.clone()));
+    }
+    for (on, force) in &mechanism.forces {
+        blocks.push(equation(Expr::symbol(&format!("Q_{on}")), force.clone()));
+    }
+    blocks
+}
+
+fn equations(study: &MechanismStudy) -> Vec<Block<'_>> {
+    let equations = &study.equations;
+    let several = if equations.left.len() > 1 { "s" } else { "" };
+    let mut blocks = vec![Block::Heading(format!("Equation{several} of motion, by Lagrange"))];
+    for left in &equations.left {
+        blocks.push(equation(left.clone(), Expr::zero()));
+    }
+    let divided: Vec<String> = equations
+        .divisors
+        .iter()
+        .filter(|divisor| !divisor.is_one())
+        .map(ToString::to_string)
+        .collect();
+    if !divided.is_empty() {
+        blocks.push(Block::Note(format!("divided by {}", divided.join(" and "))));
+    }
+    blocks
+}
+
+fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
+    let coordinates = &study.equations.coordinates;
+    let mut blocks = vec![Block::Heading(match study.rests.is_empty() {
+        true => "No place of rest was found".to_owned(),
+        false => "Places of rest, and small swings about them; others are not ruled out".to_owned(),
+    })];
+    for rest in &study.rests {
+        blocks.push(Block::Note(place(rest, coordinates)));
+        if let Ok(Some(square)) = rest.modes.square() {
+            let square = square_in_words(&square);
+            blocks.push(Block::Note(format!("  {square}")));
+        }
+        match &rest.numbers {
+            Some(Ok(modes)) => blocks.extend(
+                modes
+                    .iter()
+                    .map(|mode| Block::Note(format!("  {}", mode_in_words(mode, coordinates)))),
+            ),
+            Some(Err(error)) => blocks.push(Block::Note(format!("  {error}"))),
+            None => {}
+        }
+    }
+    let missing: std::collections::BTreeSet<Symbol> = study
+        .rests
+        .iter()
+        .flat_map(|rest| rest.modes.parameters())
+        .filter(|name| !study.question.values.contains_key(name))
+        .collect();
+    let missing: Vec<&str> = missing.iter().map(|name| name.name()).collect();
+    if !study.question.values.is_empty() {
+        let values = study.question.values.iter();
+        let values: Vec<String> = values
+            .map(|(name, value)| format!("{name} = {}", decimal(*value)))
+            .collect();
+        let wanting = match missing.is_empty() {
+            true => String::new(),
+            false => format!("; numbers need a value for {} too", missing.join(", ")),
+        };
+        blocks.push(Block::Note(format!("at {}{wanting}", values.join(", "))));
+    }
+    let has_numbers = study.rests.iter().any(|rest| rest.numbers.is_some());
+    if coordinates.len() > 1 && !study.rests.is_empty() && !has_numbers && study.question.values.is_empty() {
+        blocks.push(Block::Note(
+            "with values for every parameter come the frequencies and shapes of the modes".to_owned(),
+        ));
+    }
+    blocks
+}
+
+fn square_in_words(square: &Expr) -> String {
+    format!("omega^2 = {square}")
+}
+
+fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
+    let place = |(name, place): (&Symbol, &Place)| match place {
+        Place::At(value) => format!("{name} = {value}"),
+        Place::Anywhere => format!("any {name}"),
+    };
+    let places: Vec<String> = coordinates.iter().zip(&rest.rest.places).map(place).collect();
+    let condition = rest.rest.condition.as_ref();
+    let condition = condition.map_or(String::new(), |cosine| format!(", where |{cosine}| < 1"));
+    format!("{}{condition}", places.join(", "))
+}
+
+fn mode_in_words(mode: &Mode, coordinates: &[Symbol]) -> String {
+    let shape = mode.shape.as_ref().filter(|shape| shape.len() > 1).map(|shape| {
+        let parts: Vec<String> = coordinates.iter().map(|name| name.name().to_owned()).collect();
+        let numbers: Vec<String> = shape.iter().map(|part| decimal(*part)).collect();
+        format!(", {} = {}", parts.join(" : "), numbers.join(" : "))
+    });
+    let shape = shape.unwrap_or_default();
+    match (mode.frequency > 0.0, mode.growth) {
+        (true, 0.0) => format!("swings with omega = {}{shape}", decimal(mode.frequency)),
+        (true, growth) => format!(
+            "swings with omega = {} and {} like exp({} t){shape}",
+            decimal(mode.frequency),
+            if growth > 0.0 { "grows" } else { "decays" },
+            decimal(growth)
+        ),
+        (false, 0.0) => format!("moves freely{shape}"),
+        (false, growth) if growth > 0.0 => format!("unstable: leaves like exp({} t){shape}", decimal(growth)),
+        (false, growth) => format!("creeps back like exp({} t){shape}", decimal(growth)),
+    }
+}
+
+fn checked<'a>() -> Block<'a> {
+    Block::Heading(
+        "Every term has the unit of its place: energies J, dissipation W, forces J over their coordinate".to_owned(),
+    )
+}
+
+fn no_groups(error: &NoGroups) -> String {
+    format!("no dimensionless groups: {error}")
+}
+
+fn dimensionless<'a>(groups: &'a Groups, coordinates: &[Symbol]) -> Vec<Block<'a>> {
+    let names: Vec<&str> = groups.units.iter().map(|name| name.name()).collect();
+    let most = groups.parameters - groups.rank;
+    let found = groups.groups.len();
+    let mut blocks = vec![
+        checked(),
+        Block::Sentence(format!(
+            "{} parameters of {} independent dimension{}: {}. Units: {}.",
+            groups.parameters,
+            groups.rank,
+            if groups.rank == 1 { "" } else { "s" },
+            match (most, found) {
+                (0, _) => "no number is left, all such motions are one".to_owned(),
+                (1, _) => "the motion depends on one number".to_owned(),
+                (most, found) if most == found => format!("the motion depends on {found} numbers"),
+                (most, found) => format!("at most {most} numbers are left, and the motion depends on {found}"),
+            },
+            names.join(", ")
+        )),
+    ];
+    if let Ok(square) = Expr::divide(&Expr::one(), &groups.time).and_then(|rate| rate.integer_power(2)) {
+        blocks.push(Block::Note(format!("time in units of 1/omega, omega^2 = {square}")));
+    }
+    for (coordinate, length) in coordinates
+        .iter()
+        .zip(&groups.lengths)
+        .filter(|(_, length)| !length.is_one())
+    {
+        blocks.push(Block::Note(format!("{coordinate} in units of {length}")));
+    }
+    for group in &groups.groups {
+        let line = match group.definition.as_symbol() == Some(group.name) {
+            true => Line::words(format!("{}, a number as it is given", group.name)),
+            false => Line::equation(group.name, group.definition.clone()).because(group.meaning.clone()),
+        };
+        blocks.push(Block::Line(Cow::Owned(line)));
+    }
+    for left in &groups.left {
+        blocks.push(equation(left.clone(), Expr::zero()));
+    }
+    blocks
+}
+
+fn findings(study: &MechanismStudy) -> Vec<Block<'_>> {
+    let entry = |finding: &Finding| {
+        let verdict = match finding.agrees {
+            Some(true) => "follows",
+            Some(false) => "does not follow as printed",
+            None => "is put in",
+        };
+        (finding.equation.to_owned(), format!("{verdict}: {}", finding.words))
+    };
+    let printed = study
+        .findings
+        .iter()
+        .map(|finding| Block::Detail(format!("{} {}", finding.equation, finding.printed)));
+    let mut blocks = vec![Block::Heading("The paper's equations, as printed".to_owned())];
+    blocks.extend(printed);
+    blocks.push(Block::Entries {
+        heading: "What becomes of them",
+        entries: study.findings.iter().map(entry).collect(),
+    });
+    blocks
+}

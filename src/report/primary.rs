@@ -1,0 +1,279 @@
+//! The main mass with its damper: what it is, what happened, where the energy went, and what the damper is worth.
+
+use super::{Block, Document, Heading};
+use crate::decimal::{decimal, significant};
+use crate::impact::Units;
+use crate::impact::primary::{Alone, PrimaryMotion, PrimaryRow};
+use crate::symbol::Symbol;
+
+/// The most impacts that are listed.
+const MOST_IMPACTS: usize = 12;
+
+/// A motion of main mass and pendulum to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct PrimaryReport<'a> {
+    /// The motion.
+    pub motion: &'a PrimaryMotion,
+    /// What a number is in SI units.
+    pub units: &'a Units,
+    /// The times at which states are asked for, in units of 1/omega.
+    pub samples: &'a [f64],
+}
+
+/// The document of a motion.
+///
+/// ```
+/// use lindstedt::impact::primary::simulate_primary;
+/// use lindstedt::problem::Problem;
+/// use lindstedt::report::PrimaryReport;
+///
+/// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
+/// let asked = file.primary_case(false)?;
+/// let motion = simulate_primary(asked.case, &asked.settings)?;
+/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[] };
+/// let text = lindstedt::export::text::document(&lindstedt::report::primary(&report), 120);
+/// assert!(text.contains("damper locked"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn primary<'a>(report: &PrimaryReport<'a>) -> Document<'a> {
+    let mut sections = vec![
+        vec![
+            Block::Heading("Main mass on spring and dashpot, with the pendulum and its barriers".to_owned()),
+            Block::QuestionAsTyped("(R + 1)*y'' + x''*cos(x) - x'^2*sin(x) + delta*y' + kappa*y = f*sin(eta*t)"),
+            Block::QuestionAsTyped(
+                "x'' + y''*cos(x) + sin(x) + 2*zeta*x' + alpha*sgn(x') + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0",
+            ),
+            Block::Note(
+                "x: angle, rad; y: displacement of the main mass over L; t in units of 1/omega, omega^2 = g/L"
+                    .to_owned(),
+            ),
+        ],
+        values(report),
+        impacts(report),
+        energy(report),
+        rest_times(report),
+    ];
+    if !report.samples.is_empty() {
+        sections.push(samples(report));
+    }
+    Document { sections }
+}
+
+fn values<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
+    let case = &report.motion.case;
+    let (primary, model) = (&case.primary, &case.model);
+    let named = [
+        ("R", primary.mass, "M/m"),
+        ("kappa", primary.stiffness, "k L/(m g)"),
+        ("delta", primary.damping, "(c/m) sqrt(L/g)"),
+        ("f", primary.force, "F/(m g)"),
+        ("eta", primary.frequency, "Omega sqrt(L/g)"),
+        ("gamma", model.gamma, "stiffness of the contact"),
+        ("mu", model.mu, "damping of the contact"),
+        ("zeta", model.zeta, "damping of the pendulum"),
+        ("alpha", model.alpha, "dry friction of the pendulum"),
+    ];
+    let value = |(name, value, source): (&str, f64, &'static str)| Block::Value {
+        name: Symbol::new(name),
+        value,
+        source: Some(source),
+    };
+    let always = ["R", "kappa", "gamma"];
+    let given = named
+        .into_iter()
+        .filter(|(name, value, _)| *value != 0.0 || always.contains(name));
+    let mut blocks: Vec<Block> = given.map(value).collect();
+    let places = [model.left, model.right].into_iter().flatten().map(decimal);
+    let places: Vec<String> = places.collect();
+    if !places.is_empty() {
+        blocks.push(Block::Note(format!(
+            "barriers that move with the main mass, at x = {}",
+            places.join(" and ")
+        )));
+    }
+    blocks.push(Block::Note(format!(
+        "one unit of time is {} s, one of y {} m",
+        decimal(report.units.time()),
+        decimal(report.units.length)
+    )));
+    blocks
+}
+
+fn headings<const N: usize>(texts: [&'static str; N]) -> Vec<Heading> {
+    texts.map(|text| Heading { text, latex: text }).into()
+}
+
+fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
+    let impacts = &report.motion.impacts;
+    let count = impacts.len();
+    let mut blocks = vec![Block::Heading(match count {
+        0 => "No impact".to_owned(),
+        1 => "One impact".to_owned(),
+        _ if count > MOST_IMPACTS => format!("{count} impacts, the first {MOST_IMPACTS} of them"),
+        _ => format!("{count} impacts"),
+    })];
+    let or_none = |value: Option<f64>| value.map_or_else(String::new, decimal);
+    let row = |impact: &crate::impact::primary::PrimaryImpact| {
+        vec![
+            decimal(impact.entry),
+            or_none(impact.exit.map(|exit| exit - impact.entry)),
+            impact.side.name().to_owned(),
+            decimal(impact.speed_in),
+            or_none(impact.speed_out),
+            decimal(impact.penetration),
+            decimal(impact.energy_lost),
+        ]
+    };
+    if count > 0 {
+        blocks.push(Block::Table {
+            head: headings([
+                "touch",
+                "duration",
+                "side",
+                "speed in",
+                "speed out",
+                "depth",
+                "energy lost",
+            ]),
+            rows: impacts.iter().take(MOST_IMPACTS).map(row).collect(),
+        });
+    }
+    blocks
+}
+
+fn energy<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
+    let energy = &report.motion.energy;
+    let mut facts = vec![
+        ("at the start", decimal(energy.start)),
+        ("at the end", decimal(energy.end)),
+    ];
+    for (name, value) in [
+        ("damping of the pendulum", energy.viscous),
+        ("dry friction", energy.friction),
+        ("contacts", energy.contact),
+        ("dashpot of the main mass", energy.dashpot),
+        ("put in by the force", energy.force),
+    ] {
+        if value != 0.0 {
+            facts.push((name, decimal(value)));
+        }
+    }
+    facts.push((
+        "unaccounted for",
+        format!("{} of the largest", significant(energy.residual, 2)),
+    ));
+    vec![
+        Block::Heading("Energy, in units of m g L".to_owned()),
+        Block::Facts(facts),
+    ]
+}
+
+fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
+    let motion = report.motion;
+    let others = motion.case.primary.others();
+    let seconds = |time: f64| decimal(time * report.units.time());
+    let driven = motion.case.primary.force != 0.0;
+    let alone = |name: &str, alone: &Alone| {
+        let words = match (alone.rest_time, alone.amplitude) {
+            (Some(time), _) => [decimal(time), seconds(time)],
+            (None, Some(amplitude)) => [decimal(amplitude), decimal(amplitude * report.units.length)],
+            (None, None) => ["none".to_owned(), String::new()],
+        };
+        let [first, second] = words;
+        vec![name.to_owned(), first, second]
+    };
+    let own = match (driven, motion.rest_time()) {
+        (true, _) => {
+            let amplitude = motion.largest_since(0.75 * motion.end);
+            [
+                "with its damper".to_owned(),
+                decimal(amplitude),
+                decimal(amplitude * report.units.length),
+            ]
+        }
+        (false, Ok(time)) => ["with its damper".to_owned(), decimal(time), seconds(time)],
+        (false, Err(_)) => ["with its damper".to_owned(), "none".to_owned(), String::new()],
+    };
+    let (heading, head) = match driven {
+        true => (
+            "Amplitude of the main mass in the long run; with its damper the largest |y| in the last quarter of the run",
+            ["main mass", "over L", "m"],
+        ),
+        false => (
+            "When the main mass has come to rest: its envelope is down to 10 %",
+            ["main mass", "1/omega", "s"],
+        ),
+    };
+    let mut blocks = vec![
+        Block::Heading(heading.to_owned()),
+        Block::Table {
+            head: headings(head),
+            rows: vec![
+                own.into(),
+                alone("damper locked", &others.locked),
+                alone("without", &others.without),
+            ],
+        },
+    ];
+    if let (false, Err(reason)) = (driven, motion.rest_time()) {
+        blocks.push(Block::Note(format!("with its damper: {reason}")));
+    }
+    if !driven && motion.case.primary.damping == 0.0 {
+        blocks.push(Block::Note(
+            "without a dashpot a main mass alone never comes to rest".to_owned(),
+        ));
+    }
+    blocks
+}
+
+fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
+    let row = |time: &f64| {
+        let state = report.motion.at(*time)?;
+        Some(
+            [*time, state.x, state.velocity, state.y, state.speed]
+                .map(decimal)
+                .into(),
+        )
+    };
+    vec![Block::Table {
+        head: headings(["t", "x", "x'", "y", "y'"]),
+        rows: report.samples.iter().filter_map(row).collect(),
+    }]
+}
+
+/// The document of a sweep over the frequency of the force.
+///
+/// ```
+/// use lindstedt::impact::primary::sweep_primary;
+/// use lindstedt::problem::Problem;
+///
+/// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\nforce = 0.01\ndamping = 0.5\n[run]\nduration = 20".parse()?;
+/// let asked = file.primary_case(true)?;
+/// let rows = sweep_primary(asked.case, &[0.8, 1.0], &asked.settings, |_| ())?;
+/// let text = lindstedt::export::text::document(&lindstedt::report::primary_sweep(&rows, &asked.units), 120);
+/// assert_eq!(text.lines().filter(|line| line.contains('.')).count(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn primary_sweep<'a>(rows: &[PrimaryRow], units: &Units) -> Document<'a> {
+    let row = |row: &PrimaryRow| {
+        let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| decimal(value * units.length));
+        vec![
+            decimal(row.frequency / units.time()),
+            decimal(row.amplitude * units.length),
+            or_none(row.others.locked.amplitude),
+            or_none(row.others.without.amplitude),
+            row.impacts.to_string(),
+        ]
+    };
+    Document {
+        sections: vec![vec![
+            Block::Heading(
+                "Amplitude of the main mass in the long run, m; impacts in the last quarter of the run".to_owned(),
+            ),
+            Block::Table {
+                head: headings(["rad/s", "with its damper", "damper locked", "without", "impacts"]),
+                rows: rows.iter().map(row).collect(),
+            },
+        ]],
+    }
+}

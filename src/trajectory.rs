@@ -1,0 +1,377 @@
+//! A motion followed from its start: any equation of the grammar, any mechanism, in numbers.
+//!
+//! ```text
+//! h = sum q_i' dL/dq_i' - L,  L = T - V        dh/dt = -dL/dt + sum q_i' (Q_i - dD/dq_i')
+//! ```
+//!
+//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h.) In: coordinates, their accelerations, numbers for every
+//! parameter, a start, a duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a mechanism has
+//! energies, and the same by the other integrator to judge it. Power series go first; where they end, as at a root or a touch that
+//! is no power series in time, Runge-Kutta takes the whole motion.
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+
+use crate::exact::rational::ratio;
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::interrupt::Interrupt;
+use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
+use crate::oscillator::Oscillator;
+use crate::symbol::{Symbol, fresh};
+use crate::system::{End, Integrator, Options, Path, System, SystemError};
+
+/// What is followed, from where, and how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// The coordinates.
+    pub coordinates: Vec<Symbol>,
+    /// The equations, as they print, each `... = 0`.
+    pub equations: Vec<Expr>,
+    /// Coordinates and velocities with their rates.
+    pub rates: Rates,
+    /// h, and its rate; nothing for an equation without energies.
+    pub energy: Option<[Expr; 2]>,
+    /// A number for every parameter.
+    pub values: BTreeMap<Symbol, f64>,
+    /// Where each coordinate begins and how fast, in the order of the states.
+    pub start: Vec<f64>,
+    /// How long it is followed.
+    pub duration: f64,
+    /// Relative error of a step.
+    pub tolerance: f64,
+    /// Steps after which it ends.
+    pub step_limit: usize,
+    /// Who may ask it to end.
+    pub interrupt: Interrupt,
+}
+
+/// A motion.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    /// What was asked.
+    pub course: Course,
+    /// By which integrator it was followed.
+    pub integrator: Integrator,
+    /// The balance of energy; nothing where there is no energy.
+    pub balance: Option<Balance>,
+    path: Path,
+}
+
+/// The energy at the end, beside that of the start and the work in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// h at the start.
+    pub start: f64,
+    /// h at the end.
+    pub end: f64,
+    /// What forces, dampers and moving constraints have done.
+    pub work: f64,
+    /// The largest |h - h(0) - work| of many times, over the largest |h - h(0)| or kinetic share: how far the account is off.
+    pub residual: f64,
+}
+
+/// Why there is no motion.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum TrajectoryError {
+    /// Parameters without a number.
+    #[error("no value for {}", names(.0))]
+    Missing(Vec<Symbol>),
+    /// A value for a name that does not occur.
+    #[error("there is a value for `{0}`, which does not occur")]
+    Unknown(Symbol),
+    /// A start for a name that is no state.
+    #[error("the start gives `{name}`, but the states are {states}")]
+    NoState {
+        /// The name.
+        name: Symbol,
+        /// What there is.
+        states: String,
+    },
+    /// A duration that is none.
+    #[error("the duration must be a positive number, not {0}")]
+    Duration(f64),
+    /// The equations cannot be followed.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// No accelerations.
+    #[error(transparent)]
+    Mechanics(#[from] MechanicsError),
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+}
+
+fn names(symbols: &[Symbol]) -> String {
+    let names: Vec<String> = symbols.iter().map(|symbol| format!("`{symbol}`")).collect();
+    names.join(", ")
+}
+
+/// The times at which energy is accounted for.
+const ACCOUNTS: u32 = 2000;
+
+impl Course {
+    /// That of an equation of motion, from rest at zero for 50 units of time.
+    pub fn of_equation(oscillator: &Oscillator) -> Self {
+        let coordinate = oscillator.coordinate;
+        let velocity = oscillator.velocity();
+        let acceleration = Expr::from(velocity.derivative());
+        Self::new(
+            vec![coordinate],
+            vec![&acceleration + &oscillator.force],
+            Rates {
+                states: vec![coordinate, velocity],
+                right: vec![Expr::from(velocity), -&oscillator.force],
+            },
+            None,
+        )
+    }
+
+    /// That of a mechanism, likewise.
+    ///
+    /// # Errors
+    /// Energies that give no accelerations.
+    pub fn of_mechanism(mechanism: &Mechanism, equations: &Equations) -> Result<Self, TrajectoryError> {
+        let lagrangian = &mechanism.kinetic - &mechanism.potential;
+        let mut energy = vec![-&lagrangian];
+        let mut power = vec![-lagrangian.differentiate(Symbol::new("t"))?];
+        for coordinate in &mechanism.coordinates {
+            let velocity = coordinate.derivative();
+            let speed = Expr::from(velocity);
+            energy.push(&speed * &mechanism.kinetic.differentiate(velocity)?);
+            power.push(-(&speed * &mechanism.dissipation.differentiate(velocity)?));
+            power.extend(mechanism.forces.get(coordinate).map(|force| &speed * force));
+        }
+        Ok(Self::new(
+            mechanism.coordinates.clone(),
+            equations.left.clone(),
+            equations.rates()?,
+            Some([Expr::sum(energy), Expr::sum(power)]),
+        ))
+    }
+
+    fn new(coordinates: Vec<Symbol>, equations: Vec<Expr>, rates: Rates, energy: Option<[Expr; 2]>) -> Self {
+        Self {
+            start: vec![0.0; rates.states.len()],
+            coordinates,
+            equations,
+            rates,
+            energy,
+            values: BTreeMap::new(),
+            duration: 50.0,
+            tolerance: Options::default().tolerance,
+            step_limit: Options::default().step_limit,
+            interrupt: Interrupt::default(),
+        }
+    }
+
+    /// Puts a state at its start: `x`, `x'`.
+    ///
+    /// # Errors
+    /// A name that is no state.
+    pub fn begin(&mut self, name: Symbol, value: f64) -> Result<(), TrajectoryError> {
+        match self.rates.states.iter().position(|state| *state == name) {
+            Some(place) => self.start[place] = value,
+            None => {
+                return Err(TrajectoryError::NoState {
+                    name,
+                    states: names(&self.rates.states),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The names that need a number.
+    pub fn parameters(&self) -> Vec<Symbol> {
+        let energy = self.energy.iter().flatten();
+        let all = self.rates.right.iter().chain(energy).flat_map(Expr::symbols);
+        let all: std::collections::BTreeSet<Symbol> = all.collect();
+        let own = |name: &Symbol| self.rates.states.contains(name) || name.name() == "t";
+        all.into_iter().filter(|name| !own(name)).collect()
+    }
+
+    /// Follows the motion.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`]; a run that ends early says so by [`Trajectory::end`].
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    /// use lindstedt::trajectory::Course;
+    ///
+    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + 4*x = 0")?);
+    /// course.begin("x".into(), 1.0)?;
+    /// let motion = course.follow()?;
+    /// assert!((motion.at(10.0).ok_or("no state")?[0] - 20.0_f64.cos()).abs() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn follow(self) -> Result<Trajectory, TrajectoryError> {
+        let first = self.clone().follow_by(Integrator::Taylor);
+        // A start without a series, or a series that ends, may still be followed by evaluation alone.
+        match first {
+            Ok(motion) if motion.path.reason() != End::Singular => Ok(motion),
+            Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
+                let second = self.follow_by(Integrator::RungeKutta);
+                match (&first, &second) {
+                    (Ok(one), Ok(other)) if one.path.end() >= other.path.end() => first,
+                    (Ok(_), Err(_)) => first,
+                    _ => second,
+                }
+            }
+            Err(_) => first,
+        }
+    }
+
+    /// Follows the motion by this integrator alone.
+    ///
+    /// # Errors
+    /// As [`Course::follow`].
+    pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
+        let needed = self.parameters();
+        let missing: Vec<Symbol> = needed
+            .iter()
+            .filter(|name| !self.values.contains_key(name))
+            .copied()
+            .collect();
+        if !missing.is_empty() {
+            return Err(TrajectoryError::Missing(missing));
+        }
+        if !(self.duration > 0.0 && self.duration.is_finite()) {
+            return Err(TrajectoryError::Duration(self.duration));
+        }
+        let mut states = self.rates.states.clone();
+        let mut right: Vec<Expr> = self.rates.right.iter().map(gated_roots).collect::<Result<_, _>>()?;
+        let mut start = self.start.clone();
+        if let Some([_, power]) = &self.energy {
+            let taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
+            states.push(fresh("work", &taken));
+            right.push(gated_roots(power)?);
+            start.push(0.0);
+        }
+        let values: BTreeMap<Symbol, f64> = needed
+            .iter()
+            .filter_map(|name| Some((*name, *self.values.get(name)?)))
+            .collect();
+        let system = System::new(&states, Symbol::new("t"), &right, &values)?;
+        let options = Options {
+            integrator,
+            tolerance: self.tolerance,
+            step_limit: self.step_limit,
+            interrupt: self.interrupt,
+        };
+        let path = system.solve(0.0, &start, self.duration, &[], &options)?;
+        let balance = balance(&self, &path);
+        Ok(Trajectory {
+            course: self,
+            integrator,
+            balance,
+            path,
+        })
+    }
+}
+
+/// `u^(p/q) H(v)` as `(u^2)^(p/2q) H(v)`: the force of a contact begins with a root, and a step may look a little way across its
+/// touch before it is found. Where the gate is open nothing changes; without a gate nothing is touched, for there the root has no value.
+fn gated_roots(expression: &Expr) -> Result<Expr, ExprError> {
+    let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
+    let half = Expr::number(ratio(1, 2));
+    expression.fold(|expr, children: &[Expr]| {
+        if !(matches!(expr.node(), Node::Product(..)) && children.iter().any(is_gate)) {
+            return expr.with_children(children);
+        }
+        let open = |factor: &Expr| {
+            factor.fold(|expr, children: &[Expr]| match (expr.node(), children) {
+                (Node::Power(_, exponent), [base, _])
+                    if exponent.as_number().is_some_and(|exponent| !exponent.is_integer()) =>
+                {
+                    Expr::power(&base.integer_power(2)?, &(exponent * &half))
+                }
+                _ => expr.with_children(children),
+            })
+        };
+        let factors: Result<Vec<Expr>, ExprError> = children.iter().map(open).collect();
+        expr.with_children(&factors?)
+    })
+}
+
+/// The account of the energy along a path.
+fn balance(course: &Course, path: &Path) -> Option<Balance> {
+    let [energy, _] = course.energy.as_ref()?;
+    let at = |time: f64| {
+        let state = path.at(time)?;
+        let mut values = course.values.clone();
+        values.insert(Symbol::new("t"), time);
+        values.extend(course.rates.states.iter().copied().zip(state.iter().copied()));
+        Some((energy.evaluate(&values).ok()?, *state.last()?))
+    };
+    let (start, _) = at(0.0)?;
+    let (end, work) = at(path.end())?;
+    let (mut astray, mut moved) = (0.0_f64, 0.0_f64);
+    for index in 0..=ACCOUNTS {
+        let (now, work) = at(path.end() * f64::from(index) / f64::from(ACCOUNTS))?;
+        astray = astray.max((now - start - work).abs());
+        moved = moved.max(now.abs()).max(work.abs());
+    }
+    Some(Balance {
+        start,
+        end,
+        work,
+        residual: if moved > 0.0 { astray / moved } else { 0.0 },
+    })
+}
+
+impl Trajectory {
+    /// The time at which it ends.
+    pub fn end(&self) -> f64 {
+        self.path.end()
+    }
+
+    /// Why it ends there.
+    pub fn reason(&self) -> End {
+        self.path.reason()
+    }
+
+    /// Whether it was followed as long as asked.
+    pub fn is_complete(&self) -> bool {
+        self.path.reason() == End::Reached
+    }
+
+    /// Coordinates, then velocities; nothing outside of the motion.
+    pub fn at(&self, time: f64) -> Option<Vec<f64>> {
+        let mut state = self.path.at(time)?;
+        state.truncate(self.course.rates.states.len());
+        Some(state)
+    }
+
+    /// The largest difference of any coordinate from another motion of the same course, over the size of that coordinate.
+    pub fn difference(&self, other: &Self) -> f64 {
+        let end = self.end().min(other.end());
+        let count = self.course.coordinates.len();
+        let mut apart = vec![(0.0_f64, 0.0_f64); count];
+        for index in 0..=ACCOUNTS {
+            let time = end * f64::from(index) / f64::from(ACCOUNTS);
+            let (Some(one), Some(two)) = (self.at(time), other.at(time)) else {
+                continue;
+            };
+            for (entry, (one, two)) in apart.iter_mut().zip(one.iter().zip(&two)) {
+                *entry = (entry.0.max((one - two).abs()), entry.1.max(one.abs()));
+            }
+        }
+        let share = |(apart, size): (f64, f64)| if size > 0.0 { apart / size } else { apart };
+        apart.into_iter().map(share).fold(0.0, f64::max)
+    }
+}
+
+/// Why a motion ended, in words.
+pub fn in_words(end: End) -> &'static str {
+    match end {
+        End::Reached => "at the time asked for",
+        End::Event(_) => "at an event",
+        End::StepLimit => "after as many steps as were allowed",
+        End::Singular => "where a state or its rate has no value, or no next step",
+        End::Sticks => "at rest on a corner, where dry friction holds it",
+        End::Interrupted => "interrupted",
+    }
+}

@@ -1,0 +1,395 @@
+//! Lagrange's equations held against equations derived by hand, against energy, and against modes known in closed form.
+
+use std::collections::BTreeMap;
+
+use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
+use lindstedt::mechanics::{Dimension, Groups, MechanicsError, Mechanism, Modes, Place, equilibria, paper};
+use lindstedt::problem::Problem;
+use lindstedt::system::Integrator;
+use lindstedt::trajectory::Course;
+use lindstedt::{Oscillator, Symbol};
+
+fn expression(text: &str) -> Expr {
+    parse_expression(text).unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+fn example(name: &str) -> Problem {
+    let path = format!("{}/examples/lagrange/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path)
+        .expect("an example")
+        .parse()
+        .expect("a problem")
+}
+
+/// Numbers that are like no others, the same on every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        0.2 + (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Both sides at random points, all symbols between 0.2 and 1.2: a difference is a difference of the formulas.
+fn assert_same(derived: &Expr, by_hand: &Expr) {
+    let names: Vec<Symbol> = (derived - by_hand)
+        .symbols()
+        .into_iter()
+        .chain(derived.symbols())
+        .collect();
+    let [one, two] = [derived, by_hand].map(|side| CompiledFunction::new(side, &names).expect("a function"));
+    let mut random = Random(7);
+    for _ in 0..200 {
+        let point: Vec<f64> = {
+            let mut values: BTreeMap<Symbol, f64> = BTreeMap::new();
+            names
+                .iter()
+                .map(|name| *values.entry(*name).or_insert_with(|| random.next()))
+                .collect()
+        };
+        let (one, two) = (one.call(&point), two.call(&point));
+        assert!(
+            (one - two).abs() <= 1e-12 * (1.0 + one.abs()),
+            "{derived}\n{by_hand}: {one} {two}"
+        );
+    }
+}
+
+/// The textbooks' equations: Landau and Lifshitz, *Mechanics*, section 5, for the double pendulum's energies; the equations by hand.
+#[test]
+fn equations_are_those_derived_by_hand() {
+    let cases: [(&str, &[&str]); 5] = [
+        (
+            "double-pendulum",
+            &[
+                "(m1 + m2)*l1*a'' + m2*l2*b''*cos(a - b) + m2*l2*b'^2*sin(a - b) + (m1 + m2)*g*sin(a)",
+                "l2*b'' + l1*a''*cos(a - b) - l1*a'^2*sin(a - b) + g*sin(b)",
+            ],
+        ),
+        (
+            "spring-pendulum",
+            &[
+                "m*r'' - m*r*x'^2 - m*g*cos(x) + k*(r - L)",
+                "r^2*x'' + 2*r*r'*x' + g*r*sin(x)",
+            ],
+        ),
+        (
+            "cart-pendulum",
+            &[
+                "(M + m)*s'' + m*L*x''*cos(x) - m*L*x'^2*sin(x) + c*s'",
+                "m*L^2*x'' + m*L*s''*cos(x) + m*g*L*sin(x) + b*x'",
+            ],
+        ),
+        ("rotating-pendulum", &["x'' + g/L*sin(x) - Omega^2*sin(x)*cos(x)"]),
+        (
+            "bead-on-a-hoop",
+            &["u'' + c/m*u' + g/R*sin(u) - Omega^2*cos(u)*(e/R + sin(u))"],
+        ),
+    ];
+    for (name, by_hand) in cases {
+        let equations = example(name)
+            .mechanism()
+            .expect("a mechanism")
+            .mechanism
+            .equations()
+            .expect("equations");
+        assert_eq!(equations.left.len(), by_hand.len());
+        for (derived, by_hand) in equations.left.iter().zip(by_hand) {
+            assert_same(derived, &expression(by_hand));
+        }
+    }
+}
+
+/// What is derived keeps the energy of what it was derived from, and two integrators agree on it.
+#[test]
+fn energy_is_kept_by_what_is_derived() {
+    for (name, start) in [
+        ("double-pendulum", "a=1.5,b=-0.5"),
+        ("spring-pendulum", "r=1.5,x=0.3"),
+        ("cart-pendulum", "x=1.2"),
+        ("rotating-pendulum", "x=0.4"),
+        ("driven-masses", "p=0.1"),
+    ] {
+        let problem = example(name);
+        let mut course = problem.course().expect("a course");
+        course.values = problem.exact_values().expect("values").numbers();
+        course.duration = 20.0;
+        for part in start.split(',') {
+            let (name, value) = part.split_once('=').expect("a start");
+            course
+                .begin(Symbol::new(name), value.parse().expect("a number"))
+                .expect("a state");
+        }
+        let motion = course.clone().follow().expect("a motion");
+        assert!(motion.is_complete());
+        let balance = motion.balance.expect("an energy");
+        assert!(balance.residual < 1e-12, "{name}: {balance:?}");
+        let conservative = ["double-pendulum", "spring-pendulum", "rotating-pendulum"].contains(&name);
+        assert_eq!(balance.work == 0.0, conservative, "{name}: {balance:?}");
+        let judge = course.follow_by(Integrator::RungeKutta).expect("a motion");
+        assert!(
+            motion.difference(&judge) < 1e-6,
+            "{name}: {}",
+            motion.difference(&judge)
+        );
+    }
+}
+
+/// Two equal masses on three equal springs: omega^2 = k/m and 3 k/m. Two equal links: omega^2 = (2 -+ sqrt 2) g/l.
+#[test]
+fn modes_are_those_of_the_textbooks() {
+    let modes = |name: &str, values: &[(&str, f64)]| {
+        let equations = example(name).mechanism().unwrap().mechanism.equations().unwrap();
+        let rest = &equilibria(&equations).unwrap()[0];
+        let values = values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
+        Modes::at(&equations, rest).unwrap().numbers(&values).unwrap()
+    };
+    let links = modes(
+        "double-pendulum",
+        &[("m1", 2.0), ("m2", 2.0), ("l1", 0.5), ("l2", 0.5), ("g", 9.81)],
+    );
+    for (mode, sign) in links.iter().zip([-1.0, 1.0]) {
+        let square = (2.0 + sign * 2.0_f64.sqrt()) * 9.81 / 0.5;
+        assert!((mode.frequency.powi(2) / square - 1.0).abs() < 1e-13 && mode.growth == 0.0);
+        let shape = mode.shape.as_ref().expect("a shape");
+        assert!((shape[1] / shape[0] + sign * 2.0_f64.sqrt()).abs() < 1e-12, "{shape:?}");
+    }
+    let masses = modes("driven-masses", &[("m", 0.5), ("k", 8.0), ("c", 0.0)]);
+    assert!((masses[0].frequency - 4.0).abs() < 1e-13 && (masses[1].frequency - 48.0_f64.sqrt()).abs() < 1e-13);
+    // Both damped alike: lambda = -c/2m +- i sqrt(omega^2 - (c/2m)^2).
+    let masses = modes("driven-masses", &[("m", 0.5), ("k", 8.0), ("c", 1.0)]);
+    for (mode, square) in masses.iter().zip([16.0, 48.0]) {
+        assert!(
+            (mode.growth + 1.0).abs() < 1e-12 && (mode.frequency.powi(2) - square + 1.0).abs() < 1e-11,
+            "{mode:?}"
+        );
+    }
+    // A cart that rolls freely, a pendulum on it: omega^2 = (1 + m/M) g/L without friction.
+    let cart = modes(
+        "cart-pendulum",
+        &[("m", 1.0), ("M", 2.0), ("L", 0.3), ("g", 9.81), ("c", 0.0), ("b", 0.0)],
+    );
+    assert_eq!((cart[0].frequency, cart[0].growth), (0.0, 0.0));
+    assert!((cart[1].frequency.powi(2) / (1.5 * 9.81 / 0.3) - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn places_of_rest_are_exact() {
+    let places = |name: &str| {
+        let mechanism = example(name).mechanism().unwrap().mechanism;
+        let equations = mechanism.equations().unwrap();
+        let found = equilibria(&equations).unwrap();
+        for rest in &found {
+            // Put in, every force vanishes: at random numbers, for the formulas have acos in them.
+            let mut values: BTreeMap<Symbol, f64> = BTreeMap::new();
+            let mut random = Random(3);
+            for name in mechanism.parameters() {
+                values.insert(name, 0.5 + random.next());
+            }
+            values.insert(Symbol::new("Omega"), 9.0);
+            values.insert(Symbol::new("t"), 0.0);
+            values.insert(Symbol::new("F"), 0.0);
+            let mut state = values.clone();
+            for (coordinate, place) in rest.values(&equations.coordinates) {
+                state.insert(coordinate, place.evaluate(&values).unwrap());
+                state.insert(coordinate.derivative(), 0.0);
+            }
+            for force in &equations.rest {
+                assert!(
+                    force.evaluate(&state).unwrap().abs() < 1e-13,
+                    "{name}: {rest:?} {force}"
+                );
+            }
+        }
+        found
+    };
+    assert_eq!(places("double-pendulum").len(), 4);
+    assert_eq!(places("spring-pendulum").len(), 2);
+    assert_eq!(places("rotating-pendulum").len(), 4);
+    assert_eq!(places("cart-pendulum")[0].places[0], Place::Anywhere);
+    assert!(places("bead-on-a-hoop").is_empty());
+    assert_eq!(places("driven-masses").len(), 1);
+}
+
+/// The dimensionless equation in its groups is the equation itself: numbers put into either give the same accelerations.
+#[test]
+fn groups_leave_the_motion_as_it_is() {
+    for name in [
+        "cart-pendulum",
+        "double-pendulum",
+        "bead-on-a-hoop",
+        "rotating-pendulum",
+        "spring-pendulum",
+    ] {
+        let question = example(name).mechanism().unwrap();
+        let units = question.units.expect("units");
+        let mechanism = question.mechanism;
+        let equations = mechanism.equations().unwrap();
+        let groups = Groups::of(&mechanism, &equations, &units).unwrap();
+        let mut random = Random(11);
+        let parameters: BTreeMap<Symbol, f64> = equations
+            .parameters()
+            .into_iter()
+            .map(|name| (name, random.next()))
+            .collect();
+        let time = groups.time.evaluate(&parameters).unwrap();
+        for group in &groups.groups {
+            assert!(group.dimension.is_none(), "{name}: {group:?}");
+        }
+        let mut scaled: BTreeMap<Symbol, f64> = groups
+            .groups
+            .iter()
+            .map(|group| (group.name, group.definition.evaluate(&parameters).unwrap()))
+            .collect();
+        let mut state = parameters.clone();
+        for (coordinate, length) in equations.coordinates.iter().zip(&groups.lengths) {
+            let length = length.evaluate(&parameters).unwrap();
+            for (derivatives, symbol) in [
+                *coordinate,
+                coordinate.derivative(),
+                coordinate.derivative().derivative(),
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                let value = random.next();
+                scaled.insert(symbol, value);
+                state.insert(symbol, value * length / time.powi(derivatives as i32));
+            }
+        }
+        // Each equation up to the unit of its own terms, the same for every state.
+        let other = |seed: u64| {
+            let mut random = Random(seed);
+            let (mut state, mut scaled) = (state.clone(), scaled.clone());
+            for (coordinate, length) in equations.coordinates.iter().zip(&groups.lengths) {
+                let length = length.evaluate(&parameters).unwrap();
+                let value = random.next();
+                scaled.insert(coordinate.derivative(), value);
+                state.insert(coordinate.derivative(), value * length / time);
+            }
+            let ratio = |index: usize| {
+                groups.left[index].evaluate(&scaled).unwrap() / equations.left[index].evaluate(&state).unwrap()
+            };
+            (0..equations.left.len()).map(ratio).collect::<Vec<f64>>()
+        };
+        for (one, two) in other(1).iter().zip(other(2)) {
+            assert!(
+                (one / two - 1.0).abs() < 1e-11 && one.is_finite(),
+                "{name}: {one} {two}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_papers_equations_are_found_right_and_wrong() {
+    let findings = paper::findings().unwrap();
+    let wrong: Vec<&str> = findings
+        .iter()
+        .filter(|finding| finding.agrees == Some(false))
+        .map(|finding| finding.equation)
+        .collect();
+    assert_eq!(wrong, ["(1)", "(5)"]);
+    // The built-in mechanism is the one of the example.
+    let question = example("pendulum-and-barrier").mechanism().unwrap();
+    assert_eq!(question.mechanism, paper::pendulum());
+    assert_eq!(question.units, Some(paper::units()));
+}
+
+#[test]
+fn a_contact_is_followed_through_its_touches() {
+    let problem = example("pendulum-and-barrier");
+    let mut course = problem.course().unwrap();
+    for (name, value) in [
+        ("m", 1.0),
+        ("L", 1.0),
+        ("l", 1.0),
+        ("R", 0.01),
+        ("E", 1e6),
+        ("g", 9.81),
+        ("Ae", 0.0),
+        ("Omega", 1.0),
+        ("c", 0.0),
+        ("F", 0.0),
+        ("mu4", 0.0),
+        ("xc", 0.3),
+    ] {
+        course.values.insert(Symbol::new(name), value);
+    }
+    course.begin("x".into(), -1.5).unwrap();
+    course.duration = 10.0;
+    let motion = course.follow().unwrap();
+    assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+    assert!(
+        motion.balance.expect("an energy").residual < 1e-9,
+        "{:?}",
+        motion.balance
+    );
+}
+
+#[test]
+fn what_is_no_mechanism_is_refused() {
+    let refused = |coordinates: &[&str], kinetic: &str, potential: &str| {
+        Mechanism::parse(coordinates, kinetic, potential)
+            .and_then(|mechanism| mechanism.equations())
+            .unwrap_err()
+            .to_string()
+    };
+    for (coordinates, kinetic, potential, words) in [
+        (&["x"][..], "m*y'^2/2", "0", "`y'`: no coordinate"),
+        (&["x", "y"], "m*x'^2/2", "k*y^2/2", "does not contain `y'`"),
+        (&["x"], "m*x'^2/2", "k*x'*x", "a potential depends on coordinates alone"),
+        (&["x"], "m*x''^2/2", "0", "`x''`"),
+        (&["x", "x"], "m*x'^2/2", "0", "twice"),
+        (&[], "0", "0", "1 to 8 coordinates"),
+        (&["x", "y"], "m*(x' + y')^2/2", "0", "singular"),
+        (&["t"], "m*t^2/2", "0", "`t` cannot be a coordinate"),
+        (&["x"], "m*x'", "k*x^2", "singular"),
+    ] {
+        let message = refused(coordinates, kinetic, potential);
+        assert!(message.contains(words), "{kinetic}: {message}");
+    }
+    assert!(matches!(
+        Mechanism::parse(&["x"], "m*(", "0"),
+        Err(MechanicsError::Parse { .. })
+    ));
+    // A unit that is missing, and one that is not used.
+    let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)").unwrap();
+    let units = |names: &[(&str, &str)]| -> BTreeMap<Symbol, Dimension> {
+        names
+            .iter()
+            .map(|(name, unit)| (Symbol::new(name), unit.parse().unwrap()))
+            .collect()
+    };
+    let message = pendulum
+        .check_units(&units(&[("x", "1"), ("m", "kg"), ("L", "m")]))
+        .unwrap_err()
+        .to_string();
+    assert_eq!(message, "`g` has no unit");
+    let all = [("x", "1"), ("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("k", "N/m")];
+    assert!(
+        pendulum
+            .check_units(&units(&all))
+            .unwrap_err()
+            .to_string()
+            .contains("`k`")
+    );
+    assert!(pendulum.check_units(&units(&all[..4])).is_ok());
+}
+
+/// One coordinate: what is derived is an oscillator like any other.
+#[test]
+fn a_derived_equation_is_handed_on() {
+    let problem = example("pendulum");
+    let equation = problem.equation.clone().expect("an equation");
+    assert_eq!(
+        Oscillator::parse(&equation).expect("an oscillator").force.to_string(),
+        "g*sin(x)/L"
+    );
+    let course = Course::of_equation(&Oscillator::parse(&equation).unwrap());
+    assert_eq!(course.parameters(), vec![Symbol::new("L"), Symbol::new("g")]);
+}

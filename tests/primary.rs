@@ -1,0 +1,482 @@
+//! The main mass with its damper held against independent formulations: limits in closed form, equations written by hand and followed by
+//! Runge-Kutta, momentum and energy over every impact.
+
+use std::collections::BTreeMap;
+
+use lindstedt::Symbol;
+use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::impact::primary::{
+    Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary,
+};
+use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
+use lindstedt::system::{Event, Integrator as Route, Options, System};
+
+fn settings(duration: f64) -> PrimarySettings {
+    PrimarySettings {
+        duration,
+        ..PrimarySettings::default()
+    }
+}
+
+fn follow(case: PrimaryCase, duration: f64) -> PrimaryMotion {
+    let motion = simulate_primary(case, &settings(duration)).expect("a motion");
+    assert!(motion.is_complete(), "{:?} at {}", motion.stop, motion.end);
+    assert!(motion.energy.residual < 1e-9, "{:?}", motion.energy);
+    motion
+}
+
+const FREE: Model = Model {
+    zeta: 0.0,
+    alpha: 0.0,
+    friction: Friction::Exact,
+    beta: 0.0,
+    frequency_ratio: 0.0,
+    gamma: 1e5,
+    mu: 0.0,
+    left: None,
+    right: None,
+};
+
+const MASS: Primary = Primary {
+    mass: 20.0,
+    stiffness: 45.0,
+    damping: 0.0,
+    force: 0.0,
+    frequency: 0.0,
+};
+
+/// A main mass that hardly moves: the pendulum is that of equation (7), impact for impact.
+#[test]
+fn a_heavy_main_mass_leaves_the_pendulum_alone() {
+    let primary = Primary {
+        mass: 1e13,
+        stiffness: 1e13,
+        ..MASS
+    };
+    for model in [
+        Model {
+            right: Some(0.323),
+            mu: 1e4,
+            zeta: 0.02,
+            ..FREE
+        },
+        Model {
+            right: Some(0.2),
+            left: Some(-0.4),
+            zeta: 0.01,
+            ..FREE
+        },
+        Model {
+            right: Some(0.323),
+            alpha: 0.03,
+            ..FREE
+        },
+        Model {
+            right: Some(0.323),
+            alpha: 0.03,
+            friction: Friction::Arctangent,
+            ..FREE
+        },
+    ] {
+        let start = Start {
+            x: if model.left.is_some() { 0.0 } else { -1.5 },
+            velocity: if model.left.is_some() { 1.1 } else { 0.0 },
+        };
+        let truth = simulate(
+            &model,
+            start,
+            Integrator::Taylor,
+            &Settings {
+                duration: 40.0,
+                ..Settings::default()
+            },
+        )
+        .expect("a motion");
+        let motion = follow(
+            PrimaryCase {
+                primary,
+                model,
+                start: [start.x, start.velocity, 0.0, 0.0],
+            },
+            40.0,
+        );
+        assert_eq!(motion.impacts.len(), truth.impacts.len(), "{model:?}");
+        for (own, truth) in motion.impacts.iter().zip(&truth.impacts) {
+            assert!((own.entry - truth.entry_time).abs() < 1e-7, "{own:?} {truth:?}");
+            assert!((own.speed_in - truth.speed_in).abs() < 1e-7, "{own:?} {truth:?}");
+        }
+        for index in 0..=400 {
+            let t = 0.1 * f64::from(index);
+            let (x, _) = truth.path.at(t).expect("a state");
+            let own = motion.at(t).expect("a state").x;
+            assert!((own - x).abs() < 1e-6, "{model:?} at {t}: {own} {x}");
+        }
+    }
+}
+
+/// Without contact small swings are linear: two modes, from the quadratic (kappa - (R + 1) s)(1 - s) = s^2.
+#[test]
+fn without_contact_it_is_the_linear_system_of_two_modes() {
+    let (r, kappa) = (MASS.mass, MASS.stiffness);
+    let (half, rest) = ((kappa + r + 1.0) / (2.0 * r), kappa / r);
+    let root = (half * half - rest).sqrt();
+    let squares = [half - root, half + root];
+    // In a mode y = q x with -s x - s q x + x = 0.
+    let shapes = squares.map(|s| (1.0 - s) / s);
+    let size = 1e-6;
+    // Released with x = 0, y = size: parts p1 + p2 = 0 in x and q1 p1 + q2 p2 = size in y.
+    let part = size / (shapes[0] - shapes[1]);
+    let motion = follow(
+        PrimaryCase {
+            primary: MASS,
+            model: FREE,
+            start: [0.0, 0.0, size, 0.0],
+        },
+        100.0,
+    );
+    for index in 0..=500 {
+        let t = 0.2 * f64::from(index);
+        let waves = squares.map(|s| (s.sqrt() * t).cos());
+        let x = part * (waves[0] - waves[1]);
+        let y = part * (shapes[0] * waves[0] - shapes[1] * waves[1]);
+        let state = motion.at(t).expect("a state");
+        assert!(
+            (state.x - x).abs() < 1e-9 * size.max(1e-3 * size) + 1e-15,
+            "{t}: {} {x}",
+            state.x
+        );
+        assert!((state.y - y).abs() < 1e-9 * size, "{t}: {} {y}", state.y);
+    }
+    // With the pendulum held by friction, and without the pendulum's say: in closed form.
+    let damped = Primary { damping: 0.8, ..MASS };
+    let held = Model { alpha: 1e3, ..FREE };
+    let motion = follow(
+        PrimaryCase {
+            primary: damped,
+            model: held,
+            start: [0.0, 0.0, 0.5, 0.2],
+        },
+        60.0,
+    );
+    for index in 0..=300 {
+        let t = 0.2 * f64::from(index);
+        let state = motion.at(t).expect("a state");
+        assert!(
+            (state.y - damped.alone_at(damped.mass + 1.0, [0.5, 0.2], t)).abs() < 1e-11,
+            "{t}"
+        );
+        assert_eq!(state.x, 0.0);
+    }
+    let rest = follow(
+        PrimaryCase {
+            primary: damped,
+            model: held,
+            start: [0.0, 0.0, 0.5, 0.0],
+        },
+        200.0,
+    )
+    .rest_time();
+    let locked = damped.others().locked.rest_time.expect("a rest time");
+    assert!((rest.expect("a rest time") / locked - 1.0).abs() < 1e-9);
+}
+
+/// The contact is inside: over an impact the momentum of both changes by spring, dashpot and force alone, the energy by what the
+/// contact takes; integrated along the path, not read from the equations.
+#[test]
+fn momentum_and_energy_balance_over_every_impact() {
+    let primary = Primary {
+        damping: 0.5,
+        force: 0.4,
+        frequency: 1.4,
+        ..MASS
+    };
+    let model = Model {
+        mu: 3e4,
+        left: Some(-0.3),
+        right: Some(0.25),
+        ..FREE
+    };
+    let case = PrimaryCase {
+        primary,
+        model,
+        start: [0.0, 0.0, 0.6, 0.0],
+    };
+    let motion = follow(case, 60.0);
+    assert!(motion.impacts.len() > 20);
+    for impact in &motion.impacts {
+        let Some(exit) = impact.exit else { continue };
+        let at = |t: f64| motion.at(t).expect("a state");
+        let momentum = |t: f64| {
+            let state = at(t);
+            (primary.mass + 1.0) * state.speed + state.velocity * state.x.cos()
+        };
+        // Simpson over the contact: force of spring, dashpot and excitation; power of the last two.
+        const PARTS: u32 = 400;
+        let (mut push, mut work) = (0.0, 0.0);
+        let width = (exit - impact.entry) / f64::from(PARTS);
+        for part in 0..=PARTS {
+            let t = impact.entry + width * f64::from(part);
+            let state = at(t);
+            let weight = match part {
+                0 | PARTS => 1.0,
+                part if part % 2 == 1 => 4.0,
+                _ => 2.0,
+            } * width
+                / 3.0;
+            let drive = primary.force * (primary.frequency * t).sin();
+            push += weight * (drive - primary.stiffness * state.y - primary.damping * state.speed);
+            work += weight * (drive * state.speed - primary.damping * state.speed * state.speed);
+        }
+        let change = momentum(exit) - momentum(impact.entry);
+        assert!((change - push).abs() < 1e-9, "{impact:?}: {change} {push}");
+        let energy = case.energy(at(exit)) - case.energy(at(impact.entry));
+        assert!(
+            (energy - work + impact.energy_lost).abs() < 1e-9,
+            "{impact:?}: {energy} {work}"
+        );
+        assert!(impact.speed_out.expect("a release") < impact.speed_in && impact.energy_lost > 0.0);
+    }
+}
+
+/// Where the pendulum is inside of a barrier there is an impact, and nowhere else.
+#[test]
+fn no_impact_is_missed() {
+    let model = Model {
+        zeta: 0.005,
+        mu: 2e4,
+        left: Some(-0.31),
+        right: Some(0.2),
+        ..FREE
+    };
+    for start in [[0.0, 0.0, 0.4, 0.0], [0.1, 0.3, -0.2, 1.0], [0.0, 0.0, 0.05, 0.0]] {
+        let motion = follow(
+            PrimaryCase {
+                primary: MASS,
+                model,
+                start,
+            },
+            80.0,
+        );
+        let mut inside = 0;
+        for index in 0..=80_000 {
+            let t = 1e-3 * f64::from(index);
+            let state = motion.at(t).expect("a state");
+            let deep = model.depth(state.x).is_some_and(|(_, depth)| depth > 1e-12);
+            let within = motion
+                .impacts
+                .iter()
+                .any(|impact| (impact.entry..=impact.exit.unwrap_or(80.0)).contains(&t));
+            assert!(!deep || within, "{start:?} at {t}: {state:?}");
+            inside += usize::from(deep);
+        }
+        assert!(inside > 0 || start[2] < 0.1);
+    }
+}
+
+/// The accelerations solved by hand, the contact as |d|^(3/2) behind its step, followed by Runge-Kutta in the time itself.
+#[test]
+fn equations_written_by_hand_agree() {
+    let model = Model {
+        gamma: 2e3,
+        mu: 40.0,
+        zeta: 0.002,
+        right: Some(0.3),
+        ..FREE
+    };
+    let primary = Primary {
+        damping: 0.3,
+        force: 0.2,
+        frequency: 0.9,
+        ..MASS
+    };
+    let start = [-0.8, 0.0, 0.1, 0.0];
+    let motion = follow(PrimaryCase { primary, model, start }, 25.0);
+    assert!(motion.impacts.len() >= 3, "{}", motion.impacts.len());
+    // q + p cos x = g, (R + 1) p + q cos x = h  ->  p = (h - g cos x)/(R + sin^2 x)
+    let g = "(-sin(x) - 2*zeta*v - (gamma + mu*v)*((x - 3/10)^2)^(3/4)*H(x - 3/10))";
+    let h = "(v^2*sin(x) - delta*u - kappa*y + f*sin(eta*t))";
+    let p = format!("(({h} - {g}*cos(x))/(R + sin(x)^2))");
+    let read = |text: &str| -> Expr { parse_expression(text).expect("an expression") };
+    let right = [read("v"), read(&format!("{g} - {p}*cos(x)")), read("u"), read(&p)];
+    let numbers: BTreeMap<Symbol, f64> = [
+        ("R", primary.mass),
+        ("kappa", primary.stiffness),
+        ("delta", primary.damping),
+        ("f", primary.force),
+        ("eta", primary.frequency),
+        ("gamma", model.gamma),
+        ("mu", model.mu),
+        ("zeta", model.zeta),
+    ]
+    .map(|(name, value)| (Symbol::new(name), value))
+    .into();
+    let system = System::new(&["x", "v", "y", "u"].map(Symbol::new), "t".into(), &right, &numbers).expect("a system");
+    let options = Options {
+        integrator: Route::RungeKutta,
+        tolerance: 1e-12,
+        ..Options::default()
+    };
+    let path = system
+        .solve(0.0, &start, 25.0, &[Event::record(read("x - 3/10"))], &options)
+        .expect("a path");
+    assert_eq!(path.occurrences().len(), 2 * motion.impacts.len());
+    for index in 0..=250 {
+        let t = 0.1 * f64::from(index);
+        let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));
+        for (own, other) in [own.x, own.velocity, own.y, own.speed].iter().zip(other) {
+            assert!((own - other).abs() < 1e-7, "{t}: {own} {other}");
+        }
+    }
+}
+
+/// Driven with the damper held, the long run is the resonance curve of the locked mass.
+#[test]
+fn the_long_run_of_a_locked_damper_is_the_resonance_curve() {
+    let primary = Primary {
+        damping: 4.0,
+        force: 0.5,
+        frequency: 1.0,
+        ..MASS
+    };
+    let case = PrimaryCase {
+        primary,
+        model: Model { alpha: 1e3, ..FREE },
+        start: [0.0; 4],
+    };
+    let rows = sweep_primary(case, &[0.5, 1.2, 1.4, 2.5], &settings(300.0), |_| ()).expect("rows");
+    for row in &rows {
+        let exact = row.others.locked.amplitude.expect("an amplitude");
+        assert!((row.amplitude / exact - 1.0).abs() < 1e-9, "{row:?}");
+        assert!(row.stop == PrimaryStop::Duration && row.impacts == 0);
+    }
+    // One thread or all: the same.
+    let one = simulate_primary(
+        PrimaryCase {
+            primary: Primary {
+                frequency: 1.2,
+                ..primary
+            },
+            ..case
+        },
+        &settings(300.0),
+    )
+    .expect("a motion");
+    assert_eq!(one.largest_since(225.0), rows[1].amplitude);
+}
+
+/// A damper with losses brings the main mass to rest sooner than without, and where nothing takes energy nothing rests.
+#[test]
+fn what_the_damper_is_worth() {
+    let primary = Primary { damping: 0.4, ..MASS };
+    let caged = Model {
+        gamma: 1e6,
+        mu: 5e5,
+        zeta: 0.01,
+        left: Some(-0.3),
+        right: Some(0.3),
+        ..FREE
+    };
+    let start = [0.0, 0.0, 0.5, 0.0];
+    let with = follow(
+        PrimaryCase {
+            primary,
+            model: caged,
+            start,
+        },
+        400.0,
+    )
+    .rest_time()
+    .expect("a rest time");
+    let others = primary.others();
+    assert!(
+        with < others.locked.rest_time.expect("a rest time") && with < others.without.rest_time.expect("a rest time")
+    );
+    let lossless = follow(
+        PrimaryCase {
+            primary: MASS,
+            model: Model {
+                mu: 0.0,
+                zeta: 0.0,
+                ..caged
+            },
+            start,
+        },
+        100.0,
+    );
+    assert!(lossless.rest_time().is_err());
+    assert_eq!(MASS.others().without.rest_time, None);
+    assert!((lossless.energy.end / lossless.energy.start - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_followed_is_said() {
+    let case = PrimaryCase {
+        primary: MASS,
+        model: FREE,
+        start: [0.0, 0.0, 0.1, 0.0],
+    };
+    let refused = |case: PrimaryCase| simulate_primary(case, &settings(1.0)).expect_err("a refusal");
+    for (primary, word) in [
+        (Primary { mass: 0.0, ..MASS }, "mass"),
+        (
+            Primary {
+                stiffness: -1.0,
+                ..MASS
+            },
+            "stiffness",
+        ),
+        (
+            Primary {
+                damping: f64::NAN,
+                ..MASS
+            },
+            "damping",
+        ),
+        (
+            Primary {
+                force: f64::INFINITY,
+                ..MASS
+            },
+            "force",
+        ),
+    ] {
+        let message = refused(PrimaryCase { primary, ..case }).to_string();
+        assert!(message.contains(word), "{message}");
+    }
+    let driven = Model {
+        beta: 0.1,
+        frequency_ratio: 1.0,
+        ..FREE
+    };
+    assert_eq!(refused(PrimaryCase { model: driven, ..case }), PrimaryError::Driven);
+    let wall = Model {
+        right: Some(0.1),
+        ..FREE
+    };
+    assert_eq!(
+        refused(PrimaryCase {
+            model: wall,
+            start: [0.2, 0.0, 0.0, 0.0],
+            ..case
+        }),
+        PrimaryError::Inside
+    );
+    assert!(matches!(
+        simulate_primary(case, &settings(-1.0)),
+        Err(PrimaryError::Duration(_))
+    ));
+    let few = PrimarySettings {
+        phase_limit: 3,
+        ..settings(100.0)
+    };
+    let short = simulate_primary(
+        PrimaryCase {
+            model: wall,
+            start: [0.0, 0.0, 0.8, 0.0],
+            ..case
+        },
+        &few,
+    )
+    .expect("a part");
+    assert_eq!(short.stop, PrimaryStop::PhaseLimit);
+}

@@ -24,6 +24,7 @@
 //! | module | what it holds |
 //! | --- | --- |
 //! | [`numeric`] | true motions in numbers alone: Runge-Kutta, quadrature, roots; true periods; limit cycles in truth |
+//! | [`genetic`] | search by a genetic algorithm, one file each operator; fronts of several values; what it is measured by |
 //! | [`exact`] | fractions, polynomials, the coefficient ring |
 //! | [`expr`] | the expression tree, its parser, printer, calculus and evaluation; names that are free |
 //! | [`series`] | Taylor, Fourier, running convolutions |
@@ -35,6 +36,7 @@
 //! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
 //! | [`verify`] | the true motion and the verdict |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
+//! | [`optimize`] | the design that rests soonest: genetic algorithm, constraints, fronts, what decides |
 //! | [`problem`] | problem files |
 //! | [`catalog`] | classical oscillators |
 //! | [`audit`] | claims of publications, computed again, each with a verdict |
@@ -58,6 +60,8 @@ mod interrupt;
 pub mod numeric;
 mod spelling;
 mod symbol;
+
+pub mod genetic;
 
 pub mod exact;
 
@@ -90,6 +94,8 @@ pub mod method;
 pub mod verify;
 
 pub mod impact;
+
+pub mod optimize;
 
 #[cfg(feature = "toml")]
 pub mod problem;

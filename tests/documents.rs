@@ -8,8 +8,8 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
-    ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, PrimaryDocument, PrimarySweepDocument,
-    SimulationDocument, SolutionDocument, SweepDocument,
+    ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, OptimizationDocument, PrimaryDocument,
+    PrimarySweepDocument, SimulationDocument, SolutionDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -106,6 +106,7 @@ fn reads_back(document: &Value) {
         Kind::Primary => again::<PrimaryDocument>(document),
         Kind::PrimarySweep => again::<PrimarySweepDocument>(document),
         Kind::Materials => again::<MaterialsDocument>(document),
+        Kind::Optimization => again::<OptimizationDocument>(document),
         Kind::Audit => again::<AuditDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
     };
@@ -130,6 +131,9 @@ fn documents() -> Vec<(String, Value)> {
     }
     for file in files("examples/materials", ".toml") {
         add(&["materials", &file.to_string_lossy()]);
+    }
+    for file in files("examples/optimize", ".toml") {
+        add(&["optimize", &file.to_string_lossy()]);
     }
     for file in files("examples/audit", ".toml") {
         add(&["audit", &file.to_string_lossy()]);
@@ -225,6 +229,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/impact-comparison/1") => "/methods/0/speed",
         Some("lindstedt/simulation/1") => "/parameters/barrier",
         Some("lindstedt/materials/1") => "/materials/0/rest",
+        Some("lindstedt/optimization/1") => "/asked/genetic",
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         Some("lindstedt/friction/1") => "/speeds/0/printed_value",
         Some("lindstedt/audit/1") => "/claims/0/entries/0",

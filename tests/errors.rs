@@ -1,6 +1,6 @@
 //! One wrong input, one message: every file in `tests/errors/` is refused, located and helped, never a panic or a hang.
 //!
-//! `*.txt` is an equation on standard input; `*.toml` a problem file, for `impact`, `materials` or `audit` where its first line says so.
+//! `*.txt` is an equation on standard input; `*.toml` a problem file, for `impact`, `materials`, `optimize` or `audit` where its first line says so.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -30,6 +30,7 @@ fn message(file: &Path) -> String {
         Some("txt") => run(&["derive", "-"], &bytes),
         _ if bytes.starts_with(b"# impact") => run(&["impact", path], b""),
         _ if bytes.starts_with(b"# materials") => run(&["materials", path], b""),
+        _ if bytes.starts_with(b"# optimize") => run(&["optimize", path], b""),
         _ if bytes.starts_with(b"# audit") => run(&["audit", path], b""),
         _ if bytes.starts_with(b"# lagrange") => run(&["lagrange", path], b""),
         _ if bytes.starts_with(b"# simulate") => run(&["simulate", path], b""),

@@ -237,6 +237,35 @@ fn every_study_of_materials_prints_what_it_printed() {
     });
 }
 
+/// Searches for the best damper, in text, LaTeX, JSON and comma-separated values. Closed forms, so the numbers are those of any machine up to its
+/// powers and logarithms; a search multiplies the last digits of those, and six are shown.
+#[test]
+fn every_search_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/optimize"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("optimize-text", output(&["optimize", path]));
+            }
+        );
+        let of = |name: &str| format!("{}/examples/optimize/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let materials = of("materials");
+        insta::assert_snapshot!("optimize-latex", output(&["optimize", &materials, "--format", "latex"]));
+        insta::assert_snapshot!("optimize-csv", output(&["optimize", &materials, "--format", "csv"]));
+        insta::assert_snapshot!(
+            "optimize-front-csv",
+            output(&["optimize", &of("front"), "--format", "csv"])
+        );
+        let mut document: Value =
+            serde_json::from_str(&output(&["optimize", &materials, "--format", "json"])).expect("the output is JSON");
+        rounded(&mut document);
+        insta::assert_json_snapshot!("json@optimize-materials", document);
+        insta::assert_snapshot!("help-optimize", output(&["optimize", "--help"]));
+    });
+}
+
 /// The table of every method on one impact, in text, LaTeX and JSON: one for a page, one for a narrow terminal.
 #[test]
 fn every_method_on_one_impact_prints_what_it_printed() {

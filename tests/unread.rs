@@ -49,7 +49,7 @@ const MECHANISM: &str = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 61] = [
+const LINES: [(&str, &str, &str); 92] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -147,6 +147,73 @@ const LINES: [(&str, &str, &str); 61] = [
     ("[run] integrator_tolerance", "[run]\nintegrator_tolerance = 1e-6", ""),
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
     ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
+    ("[limits] mass", "[limits]\nmass = [0.02, 0.05]", ""),
+    ("[limits] radius", "[limits]\nradius = [0.002, 0.01]", ""),
+    ("[limits] length", "[limits]\nlength = [0.05, 0.2]", ""),
+    ("[limits] modulus", "[limits]\nmodulus = [1e9, 1e10]", ""),
+    ("[limits] density", "[limits]\ndensity = 7850", ""),
+    (
+        "[limits] elastic",
+        "[limits]\nelastic = true",
+        "[sphere]\nyield = 1e9\n",
+    ),
+    ("[limits] max_rest_time", "[limits]\nmax_rest_time = 9", ""),
+    (
+        "[limits] max_dimensionless_rest_time",
+        "[limits]\nmax_dimensionless_rest_time = 95",
+        "",
+    ),
+    ("[limits] max_peak_force", "[limits]\nmax_peak_force = 200", ""),
+    ("[limits] max_peak_pressure", "[limits]\nmax_peak_pressure = 1e9", ""),
+    ("[limits] max_impacts", "[limits]\nmax_impacts = 12", ""),
+    ("[genetic] objective", "[genetic]\nobjective = \"mass\"", ""),
+    ("[genetic] population", "[genetic]\npopulation = 20", ""),
+    ("[genetic] generations", "[genetic]\ngenerations = 2", ""),
+    ("[genetic] elite", "[genetic]\nelite = 5", ""),
+    (
+        "[genetic] crossover_fraction",
+        "[genetic]\ncrossover_fraction = 0.5",
+        "",
+    ),
+    ("[genetic] crossover", "[genetic]\ncrossover = \"scattered\"", ""),
+    ("[genetic] crossover_ratio", "[genetic]\ncrossover_ratio = 1.5", ""),
+    ("[genetic] mutation", "[genetic]\nmutation = \"bit-flip\"", ""),
+    (
+        "[genetic] mutation_rate",
+        "mutation_rate = 0.1",
+        "[genetic]\ncoding = \"bits\"\n",
+    ),
+    ("[genetic] coding", "[genetic]\ncoding = \"bits\"", ""),
+    ("[genetic] bits", "bits = 8", "[genetic]\ncoding = \"bits\"\n"),
+    (
+        "[genetic] penalty",
+        "[genetic]\npenalty = \"feasible-first\"",
+        "[limits]\nmax_impacts = 12\n",
+    ),
+    (
+        "[genetic] initial_penalty",
+        "initial_penalty = 5",
+        "[limits]\nmax_impacts = 12\n[genetic]\npenalty = \"augmented-lagrangian\"\n",
+    ),
+    (
+        "[genetic] penalty_factor",
+        "penalty_factor = 5",
+        "[limits]\nmax_impacts = 12\n[genetic]\npenalty = \"augmented-lagrangian\"\n",
+    ),
+    (
+        "[genetic] constraint_tolerance",
+        "[genetic]\nconstraint_tolerance = 0.5",
+        "[limits]\ndensity = 7850\n",
+    ),
+    ("[genetic] stall_generations", "[genetic]\nstall_generations = 1", ""),
+    ("[genetic] function_tolerance", "[genetic]\nfunction_tolerance = 1", ""),
+    ("[genetic] stall_test", "[genetic]\nstall_test = \"weighted\"", ""),
+    (
+        "[genetic] runs",
+        "runs = 2",
+        "[genetic]\npopulation = 4\nelite = 1\ngenerations = 2\n",
+    ),
+    ("[genetic] seed", "[genetic]\nseed = 2", ""),
 ];
 
 #[test]
@@ -162,6 +229,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             ("impact", Reader::Impact),
             ("simulate", Reader::Simulate),
             ("materials", Reader::Materials),
+            ("optimize", Reader::Optimize),
             ("lagrange", Reader::Lagrange),
         ] {
             // Keys of the top stand first; those of a section that is there already stand in it.
@@ -170,19 +238,29 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 (true, true) => (format!("{beside}{line}\n"), beside.to_owned()),
                 (false, _) => (format!("{line}\n{beside}"), beside.to_owned()),
             };
-            // An impact and a study of materials take nothing of [excitation].
+            // An impact, a study of materials and a search take nothing of [excitation].
             let (with, without) = match (reader, key) {
                 (Reader::Impact, "[excitation] beta") => ("[excitation]\nbeta = 0.25\n".to_owned(), String::new()),
-                (Reader::Materials, "[excitation] frequency_ratio") => {
+                (Reader::Materials | Reader::Optimize, "[excitation] frequency_ratio") => {
                     ("[excitation]\nfrequency_ratio = 0.75\n".to_owned(), String::new())
                 }
                 _ => (with, without),
             };
-            let foreign = matches!(reader, Reader::Impact | Reader::Simulate | Reader::Materials)
-                && beside.starts_with("equation");
+            let foreign = matches!(
+                reader,
+                Reader::Impact | Reader::Simulate | Reader::Materials | Reader::Optimize
+            ) && beside.starts_with("equation");
             let (with, without) = match foreign {
                 true => (format!("{line}\n"), String::new()),
                 false => (with, without),
+            };
+            // What stands beside a key of a search is no key of the others either.
+            let of_search = key.starts_with("[limits]") || key.starts_with("[genetic]");
+            let (with, without) = match (key.split_once(' '), line.lines().last()) {
+                (Some((section, _)), Some(line)) if of_search && reader != Reader::Optimize => {
+                    (format!("{section}\n{line}\n"), String::new())
+                }
+                _ => (with, without),
             };
             // A mechanism needs the rest of its impact, and one that is derived a mechanism.
             let foreign = reader == Reader::Lagrange && !key.starts_with("[lagrangian]") && beside != MECHANISM;
@@ -201,6 +279,10 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             }
             if command == "impact" && beside.starts_with("[lagrangian]") {
                 arguments.extend(["--at", "A=0.5", "--at", "xc=0.1", "--at", "gamma=1e4"]);
+            }
+            // A search is made short.
+            if command == "optimize" && key != "[genetic] runs" {
+                arguments.extend(["--runs", "1", "--budget", "300"]);
             }
             let answer = of_file("key", &with, &arguments);
             let refused = is_refused(&answer, word);
@@ -653,6 +735,43 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("materials", vec![], vec!["--tolerance", "0.1"]),
         ("materials", vec![], vec!["--timeout", "1e-9"]),
         ("materials", vec![], vec!["--quiet"]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--seed", "2"]),
+        ("optimize", vec!["--budget", "300"], vec!["--runs", "2"]),
+        // The result is the same for any number of threads.
+        ("optimize", vec!["--budget", "300"], vec!["--jobs", "0"]),
+        ("optimize", vec!["--runs", "1"], vec!["--budget", "300"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--record", "-"],
+        ),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--resume", "-"],
+        ),
+        ("optimize", vec!["--budget", "0.000001s"], vec!["--quiet"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--format", "latex"],
+        ),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--output", file],
+        ),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--plot", "-"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--tolerance", "0.1"],
+        ),
+        (
+            "optimize",
+            vec!["--runs", "2", "--budget", "600"],
+            vec!["--timeout", "1e-9"],
+        ),
         ("audit", vec![AUDIT], vec!["--strict"]),
         ("audit", vec![AUDIT], vec!["--format", "latex"]),
         ("audit", vec![AUDIT], vec!["--format", "csv"]),
@@ -684,6 +803,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "lagrange",
         "friction",
         "materials",
+        "optimize",
         "audit",
         "paper",
         "catalog",

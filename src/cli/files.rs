@@ -111,7 +111,8 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-fn same(one: &Path, other: &Path) -> bool {
+/// Whether two paths are one place.
+pub(super) fn same(one: &Path, other: &Path) -> bool {
     one == other || resolved(one).is_some_and(|place| Some(place) == resolved(other))
 }
 

@@ -15,6 +15,7 @@ mod friction;
 mod impact;
 mod lagrange;
 mod materials;
+mod optimize;
 mod primary;
 mod problem;
 mod schema;
@@ -65,6 +66,8 @@ enum Command {
     Lagrange(lagrange::Arguments),
     /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
     Materials(materials::Arguments),
+    /// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes
+    Optimize(optimize::Arguments),
     /// Claims of a publication from a file, each computed again, with a verdict
     Audit(audit::Arguments),
     /// Every number, equation, table and figure of the paper, computed again, with a verdict
@@ -190,6 +193,7 @@ impl Command {
             Self::Friction(arguments) => arguments.common.clone(),
             Self::Lagrange(arguments) => arguments.common.clone(),
             Self::Materials(arguments) => arguments.common.clone(),
+            Self::Optimize(arguments) => arguments.common.clone(),
             Self::Audit(arguments) => arguments.common.clone(),
             Self::Paper(arguments) => arguments.common.clone(),
             Self::Catalog(arguments) => arguments.common.clone(),
@@ -206,6 +210,7 @@ impl Command {
             Self::Simulate(arguments) => arguments.problem.as_deref().and_then(problem::path),
             Self::Lagrange(arguments) => arguments.file.as_deref(),
             Self::Materials(arguments) => arguments.file.as_deref(),
+            Self::Optimize(arguments) => arguments.file.as_deref(),
             Self::Audit(arguments) => Some(&arguments.file),
             Self::Paper(_) | Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
         }
@@ -215,7 +220,7 @@ impl Command {
     /// long one did takes a while.
     fn patience(&self) -> Duration {
         match self {
-            Self::Simulate(_) | Self::Materials(_) => Duration::from_secs(60),
+            Self::Simulate(_) | Self::Materials(_) | Self::Optimize(_) => Duration::from_secs(60),
             _ => Duration::ZERO,
         }
     }
@@ -235,6 +240,7 @@ impl Command {
             Self::Friction(arguments) => friction::run(arguments),
             Self::Lagrange(arguments) => lagrange::run(arguments),
             Self::Materials(arguments) => materials::run(arguments),
+            Self::Optimize(arguments) => optimize::run(arguments),
             Self::Audit(arguments) => audit::run(arguments),
             Self::Paper(arguments) => audit::run_paper(arguments),
             Self::Catalog(arguments) => catalog::run(arguments),
@@ -392,20 +398,25 @@ fn fail(code: u8, message: &str) -> ExitCode {
 /// Refuses `--format csv` where there is no trajectory.
 fn no_table<T>() -> Result<T, Failure> {
     Err(Failure::Usage(
-        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `friction` or `materials`"
+        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `friction`, `materials` or `optimize`"
             .to_owned(),
     ))
 }
 
 /// The text of a file, or of standard input for `-`; never more than a problem may have.
 fn read(path: &Path) -> Result<String, Failure> {
+    read_at_most(path, LARGEST_FILE)
+}
+
+/// The text of a file, or of standard input for `-`; one byte more than this length at most.
+fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
     let name = if path.as_os_str() == "-" {
         "standard input".to_owned()
     } else {
         path.display().to_string()
     };
     let failure = |error: std::io::Error| Failure::Refused(format!("cannot read {name}: {error}"));
-    let limit = LARGEST_FILE as u64 + 1;
+    let limit = length as u64 + 1;
     let mut bytes = Vec::new();
     if path.as_os_str() == "-" {
         std::io::stdin()

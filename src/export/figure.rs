@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use crate::verify::comparison::Backbone;
 use kuva::prelude::{Figure, LabelConfig, Layout, LegendEntry, LegendPlot, LinePlot, LineStyle, Plot};
-use kuva::prelude::{SvgBackend, TickFormat, collect_legend_entries};
+use kuva::prelude::{ScatterPlot, SvgBackend, TickFormat, collect_legend_entries};
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 use kuva::render::render_utils::wrap_text;
 
@@ -60,8 +60,19 @@ impl CurveStyle {
         Self("#cc79a7", "3 2", 1.6),
         Self("#e69f00", "8 2 2 2 2 2", 1.6),
     ];
+    /// Points that are not joined: small and grey, such as many designs.
+    pub const POINTS: Self = Self("#56b4e9", POINTS, 2.2);
+    /// Points that stand out.
+    pub const MARKED_POINTS: Self = Self("#d55e00", POINTS, 4.5);
+    /// Others that do.
+    pub const SECOND_MARKED_POINTS: Self = Self("#000000", POINTS, 4.5);
+    /// One of many curves, of which only the whole is to be seen.
+    pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
     const GUIDE: Self = Self("#777777", "none", 1.0);
 }
+
+/// In place of dashes: points alone.
+const POINTS: &str = "points";
 
 /// One line of a panel.
 #[derive(Clone, Copy, Debug)]
@@ -489,7 +500,8 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
         let points = points.iter().map(|&(x, y)| (place(x), height(y)));
         let points = points.filter(|(x, y)| x.is_finite() && y.is_finite());
         let points = thinned(&points.collect::<Vec<_>>());
-        if points.len() < 2 {
+        let enough = if style.1 == POINTS { 1 } else { 2 };
+        if points.len() < enough {
             return Err(FigureError::TooFewPoints(within(format!("curve \"{label}\""))));
         }
         xs.extend(points.iter().map(|point| point.0));
@@ -510,6 +522,15 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     let (x_unit, y_unit) = (10f64.powi(x_power), 10f64.powi(y_power));
 
     let line = |label, points: Vec<(f64, f64)>, CurveStyle(colour, dashes, width)| {
+        if dashes == POINTS {
+            let points = ScatterPlot::new().with_data(points).with_color(colour).with_size(width);
+            let words = printable(label);
+            return Plot::Scatter(if words.is_empty() {
+                points
+            } else {
+                points.with_legend(words)
+            });
+        }
         let line = LinePlot::new().with_data(points).with_color(colour);
         let mut line = line.with_stroke_width(width);
         line.legend_label = Some(printable(label)).filter(|label| !label.is_empty());

@@ -23,6 +23,7 @@ use crate::expr::{Equation, Expr, parse_expression};
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Impact, ImpactComparison, MaterialStudy};
 use crate::mechanics::MechanismStudy;
+use crate::optimize::Study;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -137,6 +138,11 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> String {
 /// ```
 pub fn friction(study: &FrictionStudy) -> String {
     document(&report::friction(study))
+}
+
+/// A search for the best damper: the numbers, and what they say.
+pub fn optimization(study: &Study) -> String {
+    document(&report::optimization(study))
 }
 
 /// The same swing against barriers of several materials: the numbers, and what they say.

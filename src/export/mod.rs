@@ -12,6 +12,7 @@ pub mod friction;
 pub mod json;
 pub mod latex;
 pub mod materials;
+pub mod optimization;
 pub mod primary;
 pub mod simulation;
 pub(crate) mod steps;

@@ -16,6 +16,7 @@ use crate::derivation::NOTATION;
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Impact, ImpactComparison, MaterialStudy};
 use crate::mechanics::MechanismStudy;
+use crate::optimize::Study;
 use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::Solution;
@@ -125,6 +126,11 @@ pub fn friction(study: &FrictionStudy) -> String {
 /// ```
 pub fn materials(study: &MaterialStudy, width: usize) -> String {
     document(&report::materials(study), width)
+}
+
+/// A search for the best damper, in lines of at most `width` characters where words allow it.
+pub fn optimization(study: &Study, width: usize) -> String {
+    document(&report::optimization(study), width)
 }
 
 /// Claims with their verdicts, in lines of at most `width` characters where words allow it.

@@ -47,8 +47,12 @@ pub struct Problem {
     pub lagrangian: Option<LagrangianSection>,
     /// The units of its coordinates and parameters.
     pub units: BTreeMap<String, String>,
-    /// The materials of a study.
+    /// The materials of a study, or those a search chooses from.
     pub material: Vec<MaterialSection>,
+    /// What a search for the best design may vary, and what it must keep.
+    pub limits: LimitsSection,
+    /// How it searches.
+    pub genetic: GeneticSection,
     /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
     #[serde(skip)]
     pub given: Vec<String>,
@@ -142,6 +146,104 @@ pub struct MaterialSection {
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2).
     pub damping: Option<f64>,
+}
+
+/// `[limits]`: what a search for the best design may vary between, in SI units, and what it must keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LimitsSection {
+    /// Lower and upper limit of the mass, kg.
+    pub mass: Option<Range>,
+    /// Those of the radius of the sphere, m.
+    pub radius: Option<Range>,
+    /// Those of the length, m.
+    pub length: Option<Range>,
+    /// Those of the modulus of the barrier, Pa.
+    pub modulus: Option<Range>,
+    /// The density of the sphere, kg/m^3: its mass is then that of its radius.
+    pub density: Option<f64>,
+    /// Whether no body with a stated yield limit may yield.
+    pub elastic: bool,
+    /// The longest rest time, s.
+    pub max_rest_time: Option<f64>,
+    /// The longest rest time, in units of 1/omega.
+    pub max_dimensionless_rest_time: Option<f64>,
+    /// The greatest force of a contact, N.
+    pub max_peak_force: Option<f64>,
+    /// The greatest pressure of a contact, Pa.
+    pub max_peak_pressure: Option<f64>,
+    /// The most contacts until rest.
+    pub max_impacts: Option<f64>,
+}
+
+/// `[lower, upper]`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
+pub struct Range(pub [f64; 2]);
+
+impl TryFrom<Vec<f64>> for Range {
+    type Error = &'static str;
+
+    fn try_from(limits: Vec<f64>) -> Result<Self, &'static str> {
+        let limits = <[f64; 2]>::try_from(limits);
+        limits.map(Self).map_err(|_| "expected two limits: [lower, upper]")
+    }
+}
+
+/// `[genetic]`: how a search for the best design goes; the defaults are those of the paper's Table 3 where they can hold together.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct GeneticSection {
+    /// What is to be small: one name, or a list of them for a front.
+    pub objective: Option<Objectives>,
+    /// Individuals.
+    pub population: Option<u32>,
+    /// Generations after the random population.
+    pub generations: Option<u32>,
+    /// The best ones, which go on as they are.
+    pub elite: Option<u32>,
+    /// The part of the others that crossover makes.
+    pub crossover_fraction: Option<f64>,
+    /// `heuristic`, `scattered` or `one-point`.
+    pub crossover: Option<String>,
+    /// How far beyond the better parent a heuristic child lies.
+    pub crossover_ratio: Option<f64>,
+    /// `adaptive-feasible` or `bit-flip`.
+    pub mutation: Option<String>,
+    /// The probability of a bit to be turned over.
+    pub mutation_rate: Option<f64>,
+    /// `real` or `bits`.
+    pub coding: Option<String>,
+    /// Bits of a number.
+    pub bits: Option<u32>,
+    /// `death`, `feasible-first` or `augmented-lagrangian`.
+    pub penalty: Option<String>,
+    /// The weight that an augmented Lagrangian begins with.
+    pub initial_penalty: Option<f64>,
+    /// What that is multiplied by.
+    pub penalty_factor: Option<f64>,
+    /// How far the mass may be from that of the density, in parts.
+    pub constraint_tolerance: Option<f64>,
+    /// Over so many generations the best value is watched.
+    pub stall_generations: Option<u32>,
+    /// Below this change of it the search ends.
+    pub function_tolerance: Option<f64>,
+    /// `average` or `weighted`.
+    pub stall_test: Option<String>,
+    /// Runs.
+    pub runs: Option<u32>,
+    /// The seed of all random numbers.
+    pub seed: Option<u64>,
+}
+
+/// One name, or a list of names.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(untagged, expecting = "expected a name in quotes, or a list of them")]
+pub enum Objectives {
+    /// One.
+    One(String),
+    /// Several.
+    Several(Vec<String>),
 }
 
 /// The side of its place on which a barrier is.

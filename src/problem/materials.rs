@@ -114,6 +114,31 @@ impl Problem {
             true => vec![],
             false => Material::of_table_2(),
         };
+        self.own_materials(&mut materials)?;
+        Ok(MaterialQuestion {
+            case,
+            materials,
+            sphere_yield: self.yield_limit("[sphere] yield", self.sphere.yield_limit)?,
+            settings,
+            integrator: Integrator::Taylor,
+            defaults,
+        })
+    }
+
+    /// The same file as it describes the design alone, whose barrier is the modulus at which a damping is what is given.
+    pub(super) fn for_design(&self) -> Self {
+        Self {
+            sphere: SphereSection {
+                modulus: None,
+                poisson: None,
+                ..self.sphere
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The materials of the file, after those that are there already.
+    pub(super) fn own_materials(&self, materials: &mut Vec<Material>) -> Result<(), MaterialsFileError> {
         for section in &self.material {
             let material = self.a_material(section)?;
             if materials.iter().any(|known| known.name == material.name) {
@@ -131,26 +156,7 @@ impl Problem {
             let missing = "[[material]] poisson";
             return Err(DesignError::Needs { key, missing }.into());
         }
-        Ok(MaterialQuestion {
-            case,
-            materials,
-            sphere_yield: self.yield_limit("[sphere] yield", self.sphere.yield_limit)?,
-            settings,
-            integrator: Integrator::Taylor,
-            defaults,
-        })
-    }
-
-    /// The same file as it describes the design alone, whose barrier is the modulus at which a damping is what is given.
-    fn for_design(&self) -> Self {
-        Self {
-            sphere: SphereSection {
-                modulus: None,
-                poisson: None,
-                ..self.sphere
-            },
-            ..self.clone()
-        }
+        Ok(())
     }
 
     fn a_material(&self, section: &MaterialSection) -> Result<Material, MaterialsFileError> {
@@ -189,7 +195,7 @@ impl Problem {
         })
     }
 
-    fn yield_limit(&self, key: &'static str, limit: Option<f64>) -> Result<Option<f64>, DesignError> {
+    pub(super) fn yield_limit(&self, key: &'static str, limit: Option<f64>) -> Result<Option<f64>, DesignError> {
         limit.map(|limit| super::design::positive(key, limit)).transpose()
     }
 }

@@ -8,6 +8,7 @@
 //! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
 //! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept;
 //! - barriers of several materials, [`Problem::materials`];
+//! - a search for the best design, [`Problem::optimize`];
 //! - the motion of an equation of one's own, [`Problem::course`];
 //! - a mechanism by its energies, [`Problem::mechanism`]: of one with a single coordinate the equation is derived at once, and every
 //!   command that reads an equation reads that.
@@ -20,6 +21,7 @@ mod keys;
 mod materials;
 mod mechanism;
 mod mistakes;
+mod optimize;
 mod primary;
 mod simulate;
 mod trajectory;
@@ -33,8 +35,9 @@ use crate::values::ValueError;
 
 pub use design::DesignError;
 pub use document::{
-    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, LagrangianSection,
-    MaterialSection, NoBarrier, Order, Pendulum, PrimarySection, Problem, Run, SphereSection,
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, GeneticSection,
+    LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives, Order, Pendulum, PrimarySection, Problem,
+    Range, Run, SphereSection,
 };
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
@@ -42,6 +45,7 @@ pub use keys::{KEYS, Reader, UnreadKey};
 pub use materials::MaterialsFileError;
 pub use mechanism::MechanismFileError;
 pub(crate) use mistakes::in_words;
+pub use optimize::OptimizeFileError;
 pub use primary::{PrimaryFileError, PrimaryProblem};
 pub use simulate::{Simulate, SimulateError};
 pub use trajectory::TrajectoryFileError;

@@ -125,7 +125,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
 }
 
 /// The form that is given, with its number: `held fixed: zeta = 0.02`.
-fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2]) -> String {
+pub(super) fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2]) -> String {
     let form = forms.into_iter().find(|(form, ..)| *form == given);
     match form {
         Some((form, Some(value), unit)) => {
@@ -139,18 +139,18 @@ fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2]) -> Strin
 }
 
 /// `lambda = 0.122347 s/m`
-fn in_words(damping: ContactDamping) -> String {
+pub(super) fn in_words(damping: ContactDamping) -> String {
     let form = damping.form();
     let text = format!("{} = {} {}", form.name(), decimal(damping.value()), form.unit());
     text.trim_end().to_owned()
 }
 
-fn head(columns: &[(&'static str, &'static str)]) -> Vec<Heading> {
+pub(super) fn head(columns: &[(&'static str, &'static str)]) -> Vec<Heading> {
     columns.iter().map(|&(text, latex)| Heading { text, latex }).collect()
 }
 
 /// A number, or a stroke where there is none.
-fn cell(value: Option<f64>) -> String {
+pub(super) fn cell(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), decimal)
 }
 
@@ -340,7 +340,7 @@ fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
     blocks.into_iter().chain(aside).collect()
 }
 
-fn percent(part: f64) -> String {
+pub(super) fn percent(part: f64) -> String {
     match part < 5e-7 {
         true => "< 0.0001 %".to_owned(),
         false => format!("{} %", significant(100.0 * part, 3)),

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::{
     AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
-    JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, PrimaryDocument, PrimarySweepDocument,
-    SimulationDocument, SolutionDocument, SweepDocument, unexpected,
+    JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, OptimizationDocument, PrimaryDocument,
+    PrimarySweepDocument, SimulationDocument, SolutionDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -38,6 +38,8 @@ pub enum Kind {
     Lagrangian,
     /// `materials`.
     Materials,
+    /// `optimize`.
+    Optimization,
     /// `audit`, `paper`.
     Audit,
     /// `catalog`.
@@ -46,7 +48,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -59,6 +61,7 @@ impl Kind {
         Self::Friction,
         Self::Lagrangian,
         Self::Materials,
+        Self::Optimization,
         Self::Audit,
         Self::Catalog,
     ];
@@ -78,6 +81,7 @@ impl Kind {
             Self::Friction => "lindstedt/friction/1",
             Self::Lagrangian => "lindstedt/lagrangian/1",
             Self::Materials => "lindstedt/materials/1",
+            Self::Optimization => "lindstedt/optimization/1",
             Self::Audit => "lindstedt/audit/1",
             Self::Catalog => "lindstedt/catalog/1",
         }
@@ -117,6 +121,7 @@ impl Kind {
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
+            Self::Optimization => generator.into_root_schema_for::<OptimizationDocument>(),
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
         };

@@ -74,7 +74,7 @@ pub fn materials(study: &MaterialStudy) -> String {
 }
 
 /// A field as it may stand between commas (RFC 4180).
-fn quoted(text: &str) -> String {
+pub(in crate::export) fn quoted(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_owned(),

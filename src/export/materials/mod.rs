@@ -6,3 +6,4 @@ mod csv;
 pub mod figure;
 
 pub use csv::materials as csv;
+pub(super) use csv::quoted;

@@ -369,6 +369,30 @@ fn remaining(y: f64, m: f64) -> f64 {
     (-(m * y.ln()).exp_m1()).max(0.0).sqrt()
 }
 
+/// The greatest force of a contact, per unit of mass, as of [`HuntCrossley::new`] but without its motion in time; nothing for quantities
+/// outside their domains.
+///
+/// ```
+/// use lindstedt::impact::contact::{HuntCrossley, hunt_crossley::peak_force};
+///
+/// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;
+/// assert_eq!(peak_force(1.5, 1e6, 0.3, 1.0), Some(contact.peak_force));
+/// # Ok::<(), lindstedt::impact::contact::ContactError>(())
+/// ```
+pub fn peak_force(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Option<f64> {
+    let x = damping * speed;
+    let inside = exponent > 0.0 && stiffness > 0.0 && speed > 0.0 && (0.0..=LARGEST).contains(&x);
+    if !inside {
+        return None;
+    }
+    let (m, inverse) = (exponent + 1.0, 1.0 / (exponent + 1.0));
+    let undamped = (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
+    let depth = undamped * (1.0 + excess(x)).powf(inverse);
+    let whole = signed_root(x);
+    let (_, factor) = Motion { x, whole }.peak(exponent);
+    Some(0.5 * m * speed / depth * speed * (1.0 + excess(x)) * factor).filter(|force| force.is_finite())
+}
+
 /// The motion in the phase plane: u/v as a function of sigma, the part of S(lambda v) that is left, with its sign.
 #[derive(Debug, Clone, Copy)]
 struct Motion {

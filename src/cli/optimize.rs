@@ -1,0 +1,282 @@
+//! `lindstedt optimize [FILE]`.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use lindstedt::export::json::optimization::{read_record, record_head, record_line};
+use lindstedt::export::{json, latex, optimization, text};
+use lindstedt::genetic::OptionsError;
+use lindstedt::optimize::{OptimizeError, Question, SearchRun, Study, Watch, optimize, optimize_on};
+use lindstedt::problem::Problem;
+
+use super::files::{is_standard, same, width};
+use super::problem::from_file;
+use super::{Common, Failure, Format, Outcome, STOP, count, json_text, read_at_most, whole};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A TOML file, or - for standard input; without it the paper's study: its Table 4 searched for the least rest time
+    pub file: Option<PathBuf>,
+    /// Seed of all random numbers, in place of that of the file
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// How often to run the search, in place of the number in the file
+    #[arg(long, value_name = "N", value_parser = count)]
+    runs: Option<u32>,
+    /// Threads; all cores without it. The result is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Stop after so many evaluations, shared evenly by the runs, or after so many seconds (30s) with the runs that are done
+    #[arg(long, value_name = "N|SECONDSs", value_parser = budget)]
+    budget: Option<Budget>,
+    /// Write every run to this file as soon as it is done, a line of JSON each
+    #[arg(long, value_name = "FILE.jsonl")]
+    record: Option<PathBuf>,
+    /// Take the runs of this record over, do the missing ones, and add them to it: the result is the same as in one go
+    #[arg(long, value_name = "FILE.jsonl")]
+    resume: Option<PathBuf>,
+    /// Print results only, no notes and no progress
+    #[arg(long)]
+    quiet: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// How much a search may take.
+#[derive(Clone, Copy, PartialEq)]
+enum Budget {
+    Evaluations(usize),
+    Time(Duration),
+}
+
+fn budget(text: &str) -> Result<Budget, String> {
+    let seconds = |text: &str| {
+        let seconds = text.parse::<f64>().ok().filter(|seconds| *seconds > 0.0)?;
+        Duration::try_from_secs_f64(seconds).ok()
+    };
+    match (text.strip_suffix('s'), text.parse::<usize>()) {
+        (None, Ok(evaluations)) if evaluations > 0 => Ok(Budget::Evaluations(evaluations)),
+        (Some(text), _) if seconds(text).is_some() => Ok(Budget::Time(seconds(text).unwrap_or_default())),
+        _ => Err("expected a number of evaluations (50000), or of seconds (30s)".to_owned()),
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = match &arguments.file {
+        None => Problem::default(),
+        Some(path) => from_file(path)?,
+    };
+    let common = &arguments.common;
+    if common.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "--tolerance belongs to a verdict, and a search has none: leave it out".to_owned(),
+        ));
+    }
+    let mut question = problem
+        .optimize()
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    question.seed = arguments.seed.unwrap_or(question.seed);
+    question.runs = arguments.runs.map_or(question.runs, |runs| runs as usize);
+    if let Some(Budget::Evaluations(evaluations)) = arguments.budget {
+        question.genetic.budget = Some(evaluations / question.runs.max(1));
+    }
+    let deadline = match arguments.budget {
+        Some(Budget::Time(time)) => Instant::now().checked_add(time),
+        _ => None,
+    };
+    question.check().map_err(refused)?;
+    let record = Record::open(arguments, &question)?;
+    let study = search(arguments, question, &record, deadline)?;
+    let text = match common.format {
+        Format::Text => text::optimization(&study, width(common.output.as_deref())),
+        Format::Latex => latex::optimization(&study),
+        Format::Csv => optimization::csv(&study),
+        Format::Json => json_text(&json::optimization(&study))?,
+    };
+    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&study)));
+    let note = match (record.trouble(), study.complete) {
+        (Some(trouble), _) => Some(format!("warning: the record is not complete: {trouble}")),
+        (None, false) => Some(format!(
+            "warning: stopped early, what there is is kept: {} of {} runs{}",
+            study.runs.len(),
+            study.question.runs,
+            match &record.path {
+                Some(path) => format!("; --resume {} goes on", path.display()),
+                None => String::new(),
+            }
+        )),
+        (None, true) => None,
+    };
+    Ok(Outcome {
+        result: whole(text),
+        picture,
+        note: note.filter(|_| !arguments.quiet),
+        verdict: None,
+        partial: !study.complete,
+    })
+}
+
+fn search(
+    arguments: &Arguments,
+    question: Question,
+    record: &Record,
+    deadline: Option<Instant>,
+) -> Result<Study, Failure> {
+    // Draws on standard error, and only where that is a terminal.
+    let bar = match arguments.quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(question.most_work() as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} % of the generations, {eta} left at most") {
+        bar.set_style(style);
+    }
+    let watch = Watch {
+        stop: &|| STOP.load(Ordering::Relaxed) || deadline.is_some_and(|deadline| Instant::now() >= deadline),
+        done: &|run| record.write(run),
+        progress: &|done| bar.inc(done as u64),
+    };
+    let known = record.known.clone();
+    let study = match arguments.jobs {
+        Some(threads) => optimize_on(usize::from(threads), question, known, &watch),
+        None => optimize(question, known, &watch),
+    };
+    bar.finish_and_clear();
+    study.map_err(refused)
+}
+
+fn refused(error: OptimizeError) -> Failure {
+    let help = match &error {
+        OptimizeError::NoRest { .. } => Some("raise `duration` in [run], or damp more"),
+        OptimizeError::NoFeasible { .. } => Some("loosen [limits], or give the search more generations"),
+        OptimizeError::Options(OptionsError::Budget { .. }) => Some("raise --budget, or lower --runs"),
+        OptimizeError::Stopped => Some("give it more time"),
+        _ => None,
+    };
+    Failure::refused(&error, help.map(str::to_owned))
+}
+
+/// The record of a search: what it knows, and where the next runs go.
+struct Record {
+    path: Option<PathBuf>,
+    known: Vec<SearchRun>,
+    file: Mutex<Option<File>>,
+    trouble: Mutex<Option<String>>,
+}
+
+/// The largest record that is read, in bytes.
+const LARGEST_RECORD: usize = 1 << 30;
+
+impl Record {
+    fn open(arguments: &Arguments, question: &Question) -> Result<Self, Failure> {
+        let none = Self {
+            path: None,
+            known: vec![],
+            file: Mutex::new(None),
+            trouble: Mutex::new(None),
+        };
+        let named = [("--record", &arguments.record), ("--resume", &arguments.resume)];
+        for (option, path) in named {
+            let Some(path) = path else { continue };
+            if is_standard(path) {
+                return Err(Failure::Usage(format!("{option} needs a file: runs are written to it")));
+            }
+            let others = [&arguments.common.output, &arguments.common.plot, &arguments.file];
+            if others.into_iter().flatten().any(|other| same(other, path)) {
+                return Err(Failure::Usage(format!(
+                    "{option} {} is read or written as something else: give another name",
+                    path.display()
+                )));
+            }
+        }
+        let (mut known, mut end) = (vec![], 0);
+        if let Some(path) = &arguments.resume {
+            let text = read_at_most(path, LARGEST_RECORD)?;
+            (known, end) = read_record(&text, question)
+                .map_err(|error| Failure::Refused(format!("--resume {}: {error}", path.display())))?;
+        }
+        let (path, goes_on) = match (&arguments.record, &arguments.resume) {
+            (None, None) => return Ok(none),
+            (Some(record), Some(resume)) if same(record, resume) => (resume, true),
+            (Some(record), _) => (record, false),
+            (None, Some(resume)) => (resume, true),
+        };
+        let cannot =
+            |error: std::io::Error| Failure::Refused(format!("cannot write {}: {}", path.display(), error.kind()));
+        let file = match goes_on {
+            true => {
+                let mut file = OpenOptions::new().write(true).open(path).map_err(cannot)?;
+                // A line that a killed process left unfinished goes.
+                file.set_len(end as u64)
+                    .and_then(|()| file.seek(SeekFrom::End(0)))
+                    .map_err(cannot)?;
+                file
+            }
+            false => {
+                let mut file = Self::create(path)?;
+                let mut text = record_head(question).map_err(|error| Failure::refused(&error, None))?;
+                for run in &known {
+                    text += &record_line(run).map_err(|error| Failure::refused(&error, None))?;
+                }
+                file.write_all(text.as_bytes()).map_err(cannot)?;
+                file
+            }
+        };
+        Ok(Self {
+            path: Some(path.clone()),
+            known,
+            file: Mutex::new(Some(file)),
+            ..none
+        })
+    }
+
+    fn create(path: &Path) -> Result<File, Failure> {
+        OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(path)
+            .map_err(|error| {
+                Failure::Refused(match error.kind() {
+                    std::io::ErrorKind::AlreadyExists => format!(
+                        "--record {0} exists: take it up with --resume {0}, or give another name",
+                        path.display()
+                    ),
+                    kind => format!("cannot write {}: {kind}", path.display()),
+                })
+            })
+    }
+
+    /// Writes a run as a whole line; what goes wrong is told at the end.
+    fn write(&self, run: &SearchRun) {
+        let Ok(mut file) = self.file.lock() else { return };
+        let Some(open) = file.as_mut() else { return };
+        let written = record_line(run)
+            .map_err(|error| error.to_string())
+            .and_then(|line| open.write_all(line.as_bytes()).map_err(|error| error.to_string()));
+        if let Err(error) = written {
+            *file = None;
+            if let Ok(mut trouble) = self.trouble.lock() {
+                *trouble = Some(error);
+            }
+        }
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.lock().ok()?.clone()
+    }
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &Study) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(study: &Study) -> Result<String, Failure> {
+    optimization::figure::optimization(study).map_err(|error| Failure::refused(&error, None))
+}

@@ -1,0 +1,258 @@
+//! How the runs of a search come down, where in the box the good designs lie, and the front of several objectives.
+
+use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
+use crate::decimal::{decimal, significant};
+use crate::optimize::{Objective, Study, WITHIN};
+
+/// Points of one curve.
+type Points = Vec<(f64, f64)>;
+
+/// The most runs that are drawn.
+const DRAWN: usize = 200;
+
+/// For one objective the convergence of all runs beside the searches it is measured by, and the designs within 1 % of the best in the box, with the best
+/// of the runs and the paper's Table 5; for several the front, the first objective against each other one.
+///
+/// # Errors
+/// As [`figure`].
+///
+/// ```
+/// use lindstedt::export::optimization::figure;
+/// use lindstedt::optimize::{Question, Watch, optimize};
+///
+/// let study = optimize(Question { runs: 3, ..Question::default() }, vec![], &Watch::default())?;
+/// assert!(figure::optimization(&study)?.contains("Convergence"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn optimization(study: &Study) -> Result<String, FigureError> {
+    match study.question.objectives.len() {
+        1 => search(study),
+        _ => front(study),
+    }
+}
+
+fn axis(objective: Objective) -> &'static str {
+    match objective {
+        Objective::RestTime => "rest time (s)",
+        Objective::DimensionlessRestTime => "rest time (1/ω)",
+        Objective::PeakForce => "peak force (N)",
+        Objective::PeakPressure => "peak pressure (Pa)",
+        Objective::Mass => "mass (kg)",
+        Objective::Impacts => "impacts until rest",
+    }
+}
+
+fn search(study: &Study) -> Result<String, FigureError> {
+    let objective = study.objective();
+    let population = study.question.genetic.population as f64;
+    let (crossed, mutated) = study.question.genetic.children();
+    let born = (crossed + mutated) as f64;
+    let finite = |points: Points| -> Points { points.into_iter().filter(|(_, value)| value.is_finite()).collect() };
+    // After so many evaluations.
+    let after = |curve: &[f64]| -> Points {
+        let place = |(index, value): (usize, &f64)| (population + born * index as f64, *value);
+        finite(curve.iter().enumerate().map(place).collect())
+    };
+    let runs: Vec<Points> = study
+        .runs
+        .iter()
+        .take(DRAWN)
+        .map(|run| after(&run.curve))
+        .filter(|points| points.len() > 1)
+        .collect();
+    let median = after(&study.median_curve());
+    let rivals: Vec<Points> = study
+        .rivals
+        .iter()
+        .map(|rival| {
+            let place = |(index, value): (usize, &f64)| (population * (index + 1) as f64, *value);
+            finite(rival.curve.iter().enumerate().map(place).collect())
+        })
+        .collect();
+    let mut curves: Vec<Curve> = runs
+        .iter()
+        .map(|points| curve("each run", points, CurveStyle::ONE_OF_MANY))
+        .collect();
+    let beside = [CurveStyle::SERIES[1], CurveStyle::SERIES[2]];
+    let rivals = study.rivals.iter().zip(&rivals).zip(beside);
+    curves.extend(
+        rivals
+            .filter(|((_, points), _)| points.len() > 1)
+            .map(|((rival, points), style)| curve(rival.name, points, style)),
+    );
+    if median.len() > 1 {
+        curves.push(curve("genetic algorithm, median", &median, CurveStyle::SERIES[0]));
+    }
+    let mut panels = Vec::new();
+    if !curves.is_empty() {
+        panels.push(Panel {
+            title: "Convergence",
+            x_label: "evaluations of a run",
+            y_label: axis(objective),
+            x_scale: Scale::Linear,
+            curves,
+            ..Panel::default()
+        });
+    }
+    let variables = &study.question.variables;
+    let labels: Vec<String> = variables
+        .iter()
+        .map(|variable| format!("{} ({})", variable.parameter.name(), variable.parameter.unit()))
+        .collect();
+    // Every variable once, two by two; the last one alone beside the first.
+    let mut pairs: Vec<[usize; 2]> = (0..variables.len())
+        .step_by(2)
+        .filter_map(|index| match (index + 1 < variables.len(), index) {
+            (true, _) => Some([index, index + 1]),
+            (false, 0) => None,
+            (false, _) => Some([0, index]),
+        })
+        .collect();
+    pairs.truncate(2);
+    let scale = |index: usize| match variables[index].upper / variables[index].lower > 30.0 {
+        true => Scale::Logarithmic,
+        false => Scale::Linear,
+    };
+    let near: Vec<Points> = pairs
+        .iter()
+        .map(|pair| {
+            let points = study.decision.iter().flat_map(|decision| &decision.points);
+            points
+                .take(1500)
+                .map(|point| (point[pair[0]], point[pair[1]]))
+                .collect()
+        })
+        .collect();
+    let bests: Vec<Points> = pairs
+        .iter()
+        .map(|pair| {
+            let found = study.runs.iter().filter_map(|run| run.found.first());
+            found
+                .map(|found| (found.point[pair[0]], found.point[pair[1]]))
+                .collect()
+        })
+        .collect();
+    let papers: Vec<Points> = pairs
+        .iter()
+        .map(|pair| {
+            let papers = study.papers.iter();
+            papers
+                .map(|papers| (papers.point[pair[0]], papers.point[pair[1]]))
+                .collect()
+        })
+        .collect();
+    let within = format!("within {} % of the best", decimal(100.0 * WITHIN));
+    for (place, pair) in pairs.iter().enumerate() {
+        let mut curves = Vec::new();
+        for (label, points, style) in [
+            (within.as_str(), &near[place], CurveStyle::POINTS),
+            ("best of each run", &bests[place], CurveStyle::MARKED_POINTS),
+            ("the paper's Table 5", &papers[place], CurveStyle::SECOND_MARKED_POINTS),
+        ] {
+            if !points.is_empty() {
+                curves.push(curve(label, points, style));
+            }
+        }
+        if curves.is_empty() {
+            continue;
+        }
+        let [x, y] = pair.map(|index| [variables[index].lower, variables[index].upper]);
+        panels.push(Panel {
+            title: "Where the good designs lie",
+            x_label: &labels[pair[0]],
+            y_label: &labels[pair[1]],
+            x_scale: scale(pair[0]),
+            y_scale: scale(pair[1]),
+            curves,
+            guides: x
+                .map(|at| Guide::X(at, "limits"))
+                .into_iter()
+                .chain(y.map(|at| Guide::Y(at, "limits")))
+                .collect(),
+        });
+    }
+    let best = study.best().map_or(String::new(), |best| {
+        format!(
+            "; the best design by integration: {} {}",
+            significant(best.values[0], 5),
+            objective.unit()
+        )
+    });
+    let caption = format!(
+        "{} runs of a genetic algorithm, seed {}: {}{best}.",
+        study.runs.len(),
+        study.question.seed,
+        objective.meaning()
+    );
+    figure(&panels, &caption)
+}
+
+fn front(study: &Study) -> Result<String, FigureError> {
+    let objectives = &study.question.objectives;
+    let others: Vec<usize> = (1..objectives.len()).collect();
+    let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(f64::NAN);
+    let points: Vec<Points> = others
+        .iter()
+        .map(|index| {
+            let pairs = study
+                .finalists
+                .iter()
+                .map(|finalist| (value(&finalist.values, 0), value(&finalist.values, *index)));
+            pairs.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
+        })
+        .collect();
+    let papers: Vec<Points> = others
+        .iter()
+        .map(|index| {
+            let papers = study.papers.as_ref();
+            let pair =
+                papers.and_then(|papers| Some((objectives[0].value(papers)?, objectives[*index].value(papers)?)));
+            pair.into_iter().collect()
+        })
+        .collect();
+    let mut panels = Vec::new();
+    for (place, index) in others.iter().enumerate() {
+        let mut curves = Vec::new();
+        if !points[place].is_empty() {
+            curves.push(curve("the front", &points[place], CurveStyle::POINTS));
+        }
+        if !papers[place].is_empty() {
+            curves.push(curve(
+                "the paper's Table 5",
+                &papers[place],
+                CurveStyle::SECOND_MARKED_POINTS,
+            ));
+        }
+        let spread = |of: fn(&(f64, f64)) -> f64| {
+            let values = points[place].iter().map(of);
+            let least = values.clone().fold(f64::INFINITY, f64::min);
+            let greatest = values.fold(0.0, f64::max);
+            match least > 0.0 && greatest / least > 30.0 {
+                true => Scale::Logarithmic,
+                false => Scale::Linear,
+            }
+        };
+        panels.push(Panel {
+            title: "Front",
+            x_label: axis(objectives[0]),
+            y_label: axis(objectives[*index]),
+            x_scale: spread(|point| point.0),
+            y_scale: spread(|point| point.1),
+            curves,
+            guides: vec![],
+        });
+    }
+    let names: Vec<&str> = objectives.iter().map(|objective| objective.meaning()).collect();
+    let caption = format!(
+        "{} designs none of which is better than another in everything: {}. {} runs of NSGA-II, seed {}.",
+        study.finalists.len(),
+        names.join("; "),
+        study.runs.len(),
+        study.question.seed
+    );
+    figure(&panels, &caption)
+}
+
+fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
+    Curve { label, points, style }
+}

@@ -1,0 +1,200 @@
+//! NSGA-II: a population that spreads along the front of several values.
+//!
+//! (K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, *IEEE Trans. Evol. Comput.* 6 (2002) 182; simulated binary crossover: K. Deb and R. B.
+//! Agrawal, *Complex Systems* 9 (1995) 115.) Children come from tournaments of two, won by the lower rank, of equals by the lonelier; of
+//! parents and children together the better half goes on. Genes are numbers.
+
+use rand::{Rng, RngExt};
+
+use super::pareto::{crowding, non_dominated, ranks};
+use super::population::{Individual, Options, Run};
+use super::space::{Evaluation, Space};
+use super::stopping::Stop;
+
+/// How near to their parents the children of a crossover are: the larger the nearer.
+const CROSSOVER_INDEX: f64 = 15.0;
+
+/// The same of a mutation.
+const MUTATION_INDEX: f64 = 20.0;
+
+/// The probability that two parents are crossed at all.
+const CROSSED: f64 = 0.9;
+
+/// One of two children by simulated binary crossover, kept in the box: their mean is that of the parents, and their distance in parts of
+/// the parents' is spread as that of the children of strings of bits.
+pub fn simulated_binary(one: &[f64], other: &[f64], space: &Space, generator: &mut impl Rng) -> Vec<f64> {
+    let gene = |((one, other), [lower, upper]): ((&f64, &f64), &[f64; 2])| {
+        let part: f64 = generator.random();
+        let power = 1.0 / (CROSSOVER_INDEX + 1.0);
+        let spread = match part < 0.5 {
+            true => (2.0 * part).powf(power),
+            false => (0.5 / (1.0 - part)).powf(power),
+        };
+        let sign = if generator.random::<bool>() { 1.0 } else { -1.0 };
+        (0.5 * (one + other) + sign * 0.5 * spread * (one - other)).clamp(*lower, *upper)
+    };
+    one.iter().zip(other).zip(space.bounds()).map(gene).collect()
+}
+
+/// Each number changed with the probability 1/n, by a part of its range that is mostly small; kept in the box.
+pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl Rng) -> Vec<f64> {
+    let rate = 1.0 / parent.len().max(1) as f64;
+    let gene = |(x, [lower, upper]): (&f64, &[f64; 2])| {
+        if generator.random::<f64>() >= rate {
+            return *x;
+        }
+        let part: f64 = generator.random();
+        let power = 1.0 / (MUTATION_INDEX + 1.0);
+        let change = match part < 0.5 {
+            true => (2.0 * part).powf(power) - 1.0,
+            false => 1.0 - (2.0 * (1.0 - part)).powf(power),
+        };
+        (x + change * (upper - lower)).clamp(*lower, *upper)
+    };
+    parent.iter().zip(space.bounds()).map(gene).collect()
+}
+
+/// One run of NSGA-II: the front it ends with, everybody in it feasible. Of the options population, generations, budget and the tolerance of
+/// constraints count. The curve has the size of the front.
+pub fn search_front(
+    space: &Space,
+    mut evaluate: impl FnMut(&[f64]) -> Evaluation,
+    options: &Options,
+    generator: &mut impl Rng,
+    go_on: &mut dyn FnMut(usize) -> bool,
+) -> (Vec<Individual>, Run) {
+    let (size, tolerance) = (options.population, options.constraint_tolerance);
+    let mut evaluations = 0;
+    let mut born = |point: Vec<f64>| {
+        let evaluation = evaluate(&point);
+        Individual { point, evaluation }
+    };
+    let mut population: Vec<Individual> = (0..size).map(|_| born(space.draw(generator))).collect();
+    evaluations += size;
+    let (mut standing, mut loneliness) = standings(&population, tolerance);
+    let mut curve = vec![front_size(&population, &standing, tolerance)];
+    let mut generation = 0;
+    let stop = loop {
+        if generation >= options.generations {
+            break Stop::Generations;
+        }
+        if options.budget.is_some_and(|budget| evaluations + size > budget) {
+            break Stop::Budget;
+        }
+        if !go_on(generation + 1) {
+            break Stop::Interrupted;
+        }
+        let winner = |generator: &mut _| {
+            let [one, other] = [0, 1].map(|_| RngExt::random_range(generator, 0..size));
+            let by_rank = standing[one].cmp(&standing[other]);
+            match by_rank.then(loneliness[other].total_cmp(&loneliness[one])).is_le() {
+                true => one,
+                false => other,
+            }
+        };
+        let mut children = Vec::with_capacity(size);
+        while children.len() < size {
+            let [one, other] = [0, 1].map(|_| &population[winner(generator)].point);
+            let child = match generator.random::<f64>() < CROSSED {
+                true => simulated_binary(one, other, space, generator),
+                false => one.clone(),
+            };
+            children.push(polynomial_mutation(&child, space, generator));
+        }
+        population.extend(children.into_iter().map(&mut born));
+        evaluations += size;
+        let (all, lonely) = standings(&population, tolerance);
+        let mut order: Vec<usize> = (0..population.len()).collect();
+        order.sort_by(|one, other| {
+            all[*one]
+                .cmp(&all[*other])
+                .then(lonely[*other].total_cmp(&lonely[*one]))
+        });
+        order.truncate(size);
+        let mut places: Vec<Option<Individual>> = population.into_iter().map(Some).collect();
+        population = order.iter().filter_map(|index| places[*index].take()).collect();
+        (standing, loneliness) = standings(&population, tolerance);
+        curve.push(front_size(&population, &standing, tolerance));
+        generation += 1;
+    };
+    let all: Vec<&Evaluation> = population.iter().map(|member| &member.evaluation).collect();
+    let front = non_dominated(&all, tolerance);
+    let front = front.into_iter().map(|index| population[index].clone());
+    let front: Vec<Individual> = front
+        .filter(|member| member.evaluation.is_feasible(tolerance))
+        .collect();
+    let run = Run {
+        best: front.first().cloned(),
+        curve,
+        generations: generation,
+        evaluations,
+        stop,
+    };
+    (front, run)
+}
+
+/// Ranks, and how lonely everybody is among those of the same rank.
+fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>) {
+    let all: Vec<&Evaluation> = population.iter().map(|member| &member.evaluation).collect();
+    let ranks = ranks(&all, tolerance);
+    let mut lonely = vec![0.0; all.len()];
+    for rank in 0..=ranks.iter().copied().max().unwrap_or(0) {
+        let same: Vec<usize> = (0..all.len()).filter(|index| ranks[*index] == rank).collect();
+        let of_rank: Vec<&Evaluation> = same.iter().map(|index| all[*index]).collect();
+        for (index, distance) in same.iter().zip(crowding(&of_rank)) {
+            lonely[*index] = distance;
+        }
+    }
+    (ranks, lonely)
+}
+
+/// How many stand in the front and are feasible.
+fn front_size(population: &[Individual], ranks: &[usize], tolerance: f64) -> f64 {
+    let standing = population.iter().zip(ranks);
+    let front = standing.filter(|(member, rank)| **rank == 0 && member.evaluation.is_feasible(tolerance));
+    front.count() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::generator;
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn children_stay_in_the_box_and_between_equal_parents(part in 0.0..=1.0_f64, other in 0.0..=1.0_f64, seed in any::<u64>()) {
+            let space = Space::new(vec![[-3.0, 5.0]; 3]).unwrap();
+            let (one, other) = (space.at(&[part; 3]), space.at(&[other; 3]));
+            let mut generator = generator(seed, 0);
+            prop_assert!(space.contains(&simulated_binary(&one, &other, &space, &mut generator)));
+            let same = simulated_binary(&one, &one, &space, &mut generator);
+            prop_assert!(same.iter().zip(&one).all(|(child, parent)| (child - parent).abs() < 1e-12));
+            prop_assert!(space.contains(&polynomial_mutation(&one, &space, &mut generator)));
+        }
+    }
+
+    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2) = 2.
+    #[test]
+    fn a_known_front_is_found_and_covered() {
+        let space = Space::new(vec![[-100.0, 100.0]]).unwrap();
+        let schaffer = |point: &[f64]| Evaluation {
+            objectives: vec![point[0].powi(2), (point[0] - 2.0).powi(2)],
+            ..Evaluation::default()
+        };
+        let options = Options {
+            generations: 60,
+            ..Options::default()
+        };
+        let (front, run) = search_front(&space, schaffer, &options, &mut generator(1, 0), &mut |_| true);
+        assert!(front.len() > 80 && run.evaluations == 6100, "{}", front.len());
+        let mut places: Vec<f64> = front.iter().map(|member| member.point[0]).collect();
+        places.sort_by(f64::total_cmp);
+        assert!(places[0] > -0.02 && *places.last().unwrap() < 2.02, "{places:?}");
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 0.15), "{places:?}");
+        for member in &front {
+            let sum: f64 = member.evaluation.objectives.iter().map(|value| value.sqrt()).sum();
+            assert!((sum - 2.0).abs() < 0.05, "{member:?}");
+        }
+    }
+}

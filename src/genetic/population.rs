@@ -1,0 +1,525 @@
+//! The generations of one run.
+
+use rand::Rng;
+use thiserror::Error;
+
+use super::coding::Coding;
+use super::crossover::{Crossover, heuristic, one_point, scattered};
+use super::mutation::{Mutation, adaptive_feasible, bit_flips, next_step};
+use super::penalty::{Multipliers, Penalty, scores};
+use super::scaling::rank_scaling;
+use super::selection::stochastic_uniform;
+use super::space::{Evaluation, Space};
+use super::stopping::{StallTest, Stop, has_stalled};
+
+/// How a population lives; the default is the paper's Table 3 with its contradictions resolved: real numbers in place of bits, and a
+/// penalty that is one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Individuals.
+    pub population: usize,
+    /// The best ones, which go on as they are.
+    pub elite: usize,
+    /// The part of the others that crossover makes; mutation makes the rest.
+    pub crossover_fraction: f64,
+    /// How genes are written.
+    pub coding: Coding,
+    /// How two parents make a child.
+    pub crossover: Crossover,
+    /// How one parent makes a child.
+    pub mutation: Mutation,
+    /// What a broken constraint costs.
+    pub penalty: Penalty,
+    /// How far an equality may be from zero.
+    pub constraint_tolerance: f64,
+    /// The most generations after the random population.
+    pub generations: usize,
+    /// Over so many generations the best value is watched.
+    pub stall_generations: usize,
+    /// Below this change it has ceased to change.
+    pub function_tolerance: f64,
+    /// How that is measured.
+    pub stall_test: StallTest,
+    /// The most evaluations of a run, where there is such a limit.
+    pub budget: Option<usize>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            population: 100,
+            elite: 2,
+            crossover_fraction: 0.8,
+            coding: Coding::Real,
+            crossover: Crossover::default(),
+            mutation: Mutation::default(),
+            penalty: Penalty::default(),
+            constraint_tolerance: 0.001,
+            generations: 400,
+            stall_generations: 50,
+            function_tolerance: 1e-6,
+            stall_test: StallTest::default(),
+            budget: None,
+        }
+    }
+}
+
+/// Options that make no population.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum OptionsError {
+    /// Fewer than two have nobody to cross with.
+    #[error("population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most")]
+    Population(usize),
+    /// Nothing would happen.
+    #[error("generations = {0}: a run needs 1 or more, {MOST_GENERATIONS} at most")]
+    Generations(usize),
+    /// Nobody would be left to change.
+    #[error("elite = {elite} leaves nobody of a population of {population} to change: it must be smaller")]
+    Elite {
+        /// The elite.
+        elite: usize,
+        /// The population.
+        population: usize,
+    },
+    /// No fraction.
+    #[error("crossover_fraction must lie between 0 and 1, not {0}")]
+    Fraction(f64),
+    /// A child short of the better parent.
+    #[error("crossover_ratio must be a number of 1 or more, not {0}: the child lies beyond the better parent")]
+    Ratio(f64),
+    /// No probability.
+    #[error("mutation_rate must lie between 0 and 1, not {0}")]
+    Rate(f64),
+    /// Too few or too many.
+    #[error("bits must be a whole number from 1 to 52, not {0}")]
+    Bits(u32),
+    /// An operator that needs numbers.
+    #[error("{operator} needs numbers and knows nothing of bits: use {instead}, or leave out `coding`")]
+    NeedsNumbers {
+        /// What was asked for.
+        operator: &'static str,
+        /// What works.
+        instead: &'static str,
+    },
+    /// An operator that needs bits.
+    #[error("mutation \"bit-flip\" needs coding = \"bits\": give that too, or use \"adaptive-feasible\"")]
+    NeedsBits,
+    /// A penalty that is none.
+    #[error("{key} must be a positive number, not {value}")]
+    NotPositive {
+        /// The key.
+        key: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// Nothing to watch.
+    #[error("stall_generations must be 1 or more")]
+    Window,
+    /// Less than the random population.
+    #[error("a budget of {budget} evaluations a run is less than one population of {population}")]
+    Budget {
+        /// The budget of one run.
+        budget: usize,
+        /// The population.
+        population: usize,
+    },
+}
+
+/// The largest population.
+const MOST_INDIVIDUALS: usize = 100_000;
+
+/// The most generations.
+const MOST_GENERATIONS: usize = 1_000_000;
+
+impl Options {
+    /// Refuses what makes no population.
+    ///
+    /// # Errors
+    /// [`OptionsError`] names the option.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        let &Self {
+            population,
+            elite,
+            generations,
+            crossover_fraction,
+            ..
+        } = self;
+        if !(2..=MOST_INDIVIDUALS).contains(&population) {
+            return Err(OptionsError::Population(population));
+        }
+        if !(1..=MOST_GENERATIONS).contains(&generations) {
+            return Err(OptionsError::Generations(generations));
+        }
+        if elite >= population {
+            return Err(OptionsError::Elite { elite, population });
+        }
+        if !(0.0..=1.0).contains(&crossover_fraction) {
+            return Err(OptionsError::Fraction(crossover_fraction));
+        }
+        if self.stall_generations == 0 {
+            return Err(OptionsError::Window);
+        }
+        let bits = match self.coding {
+            Coding::Bits(bits) if !(1..=52).contains(&bits) => return Err(OptionsError::Bits(bits)),
+            coding => coding != Coding::Real,
+        };
+        match self.crossover {
+            Crossover::Heuristic(_) if bits => {
+                let (operator, instead) = ("crossover \"heuristic\"", "\"scattered\" or \"one-point\"");
+                return Err(OptionsError::NeedsNumbers { operator, instead });
+            }
+            Crossover::Heuristic(ratio) if !(ratio >= 1.0 && ratio.is_finite()) => {
+                return Err(OptionsError::Ratio(ratio));
+            }
+            _ => {}
+        }
+        match self.mutation {
+            Mutation::AdaptiveFeasible if bits => {
+                let (operator, instead) = ("mutation \"adaptive-feasible\"", "\"bit-flip\"");
+                return Err(OptionsError::NeedsNumbers { operator, instead });
+            }
+            Mutation::BitFlips(_) if !bits => return Err(OptionsError::NeedsBits),
+            Mutation::BitFlips(rate) if !(0.0..=1.0).contains(&rate) => return Err(OptionsError::Rate(rate)),
+            _ => {}
+        }
+        let mut positive = vec![
+            ("function_tolerance", self.function_tolerance),
+            ("constraint_tolerance", self.constraint_tolerance),
+        ];
+        if let Penalty::AugmentedLagrangian { initial, factor } = self.penalty {
+            positive.extend([("initial_penalty", initial), ("penalty_factor", factor)]);
+        }
+        for (key, value) in positive {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(OptionsError::NotPositive { key, value });
+            }
+        }
+        match self.budget {
+            Some(budget) if budget < population => Err(OptionsError::Budget { budget, population }),
+            _ => Ok(()),
+        }
+    }
+
+    /// How many children crossover makes, and how many mutation.
+    ///
+    /// ```
+    /// use lindstedt::genetic::Options;
+    ///
+    /// assert_eq!(Options::default().children(), (78, 20)); // of 100 with an elite of 2
+    /// ```
+    pub fn children(&self) -> (usize, usize) {
+        let all = self.population.saturating_sub(self.elite);
+        let crossed = (self.crossover_fraction * all as f64).round() as usize;
+        (crossed, all - crossed.min(all))
+    }
+
+    /// The most evaluations of one run.
+    pub fn most_evaluations(&self) -> usize {
+        let (crossed, mutated) = self.children();
+        let all = self.population + self.generations.saturating_mul(crossed + mutated);
+        self.budget.map_or(all, |budget| budget.min(all))
+    }
+}
+
+/// A point and what it is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Individual {
+    /// The point, in the box.
+    pub point: Vec<f64>,
+    /// What it is worth.
+    pub evaluation: Evaluation,
+}
+
+/// What came of one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The best of all points that break no constraint; nothing where there was none.
+    pub best: Option<Individual>,
+    /// Its value after the random population and after every generation; infinite while there was none.
+    pub curve: Vec<f64>,
+    /// Generations after the random population.
+    pub generations: usize,
+    /// Points that were evaluated.
+    pub evaluations: usize,
+    /// Why it ended.
+    pub stop: Stop,
+}
+
+/// After so many generations the multipliers of an augmented Lagrangian are corrected.
+const SUBPROBLEM: usize = 10;
+
+/// One individual as the search has it: the genes and their point.
+struct Member {
+    genes: Vec<f64>,
+    individual: Individual,
+}
+
+/// One run of the genetic algorithm: the smallest first objective under the constraints.
+///
+/// `go_on` hears the number of the generation before it begins, and may end the run there.
+pub fn search(
+    space: &Space,
+    mut evaluate: impl FnMut(&[f64]) -> Evaluation,
+    options: &Options,
+    generator: &mut impl Rng,
+    go_on: &mut dyn FnMut(usize) -> bool,
+) -> Run {
+    let tolerance = options.constraint_tolerance;
+    let mut best: Option<Individual> = None;
+    let mut evaluations = 0;
+    let mut born = |genes: Vec<f64>, best: &mut Option<Individual>| {
+        let point = options.coding.point(&genes, space);
+        let evaluation = evaluate(&point);
+        let individual = Individual { point, evaluation };
+        let better = |best: &Individual| individual.evaluation.value() < best.evaluation.value();
+        if individual.evaluation.is_feasible(tolerance) && best.as_ref().is_none_or(better) {
+            *best = Some(individual.clone());
+        }
+        Member { genes, individual }
+    };
+    let value = |best: &Option<Individual>| best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
+    let mut population = Vec::with_capacity(options.population);
+    for _ in 0..options.population {
+        population.push(born(options.coding.draw(space, generator), &mut best));
+        evaluations += 1;
+    }
+    let mut multipliers = match (options.penalty, population.first()) {
+        (Penalty::AugmentedLagrangian { initial, .. }, Some(first)) => {
+            Some(Multipliers::new(initial, &first.individual.evaluation))
+        }
+        _ => None,
+    };
+    let (crossed, mutated) = options.children();
+    let score = |population: &[Member], multipliers: Option<&Multipliers>| {
+        let evaluations: Vec<&Evaluation> = population.iter().map(|member| &member.individual.evaluation).collect();
+        scores(&evaluations, options.penalty, multipliers, tolerance)
+    };
+    let (mut curve, mut step, mut generation) = (vec![value(&best)], 1.0, 0);
+    let stop = loop {
+        if has_stalled(
+            &curve,
+            options.stall_generations,
+            options.function_tolerance,
+            options.stall_test,
+        ) {
+            break Stop::Stalled;
+        }
+        if generation >= options.generations {
+            break Stop::Generations;
+        }
+        if options
+            .budget
+            .is_some_and(|budget| evaluations + crossed + mutated > budget)
+        {
+            break Stop::Budget;
+        }
+        if !go_on(generation + 1) {
+            break Stop::Interrupted;
+        }
+        let scored = score(&population, multipliers.as_ref());
+        let expected = rank_scaling(&scored, 2 * crossed + mutated);
+        let parents = stochastic_uniform(&expected, 2 * crossed + mutated, generator);
+        let mut order: Vec<usize> = (0..population.len()).collect();
+        order.sort_by(|one, other| scored[*one].total_cmp(&scored[*other]));
+        let mut children: Vec<Vec<f64>> = Vec::with_capacity(crossed + mutated);
+        let (pairs, alone) = parents.split_at(2 * crossed);
+        for pair in pairs.chunks_exact(2) {
+            let (one, other) = (&population[pair[0]].genes, &population[pair[1]].genes);
+            children.push(match options.crossover {
+                Crossover::Heuristic(ratio) if scored[pair[0]] <= scored[pair[1]] => {
+                    heuristic(other, one, ratio, space)
+                }
+                Crossover::Heuristic(ratio) => heuristic(one, other, ratio, space),
+                Crossover::Scattered => scattered(one, other, generator),
+                Crossover::OnePoint => one_point(one, other, generator),
+            });
+        }
+        for parent in alone {
+            let genes = &population[*parent].genes;
+            children.push(match options.mutation {
+                Mutation::AdaptiveFeasible => adaptive_feasible(genes, step, space, generator),
+                Mutation::BitFlips(rate) => bit_flips(genes, rate, generator),
+            });
+        }
+        let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
+        let elite = order.iter().take(options.elite);
+        population = elite.filter_map(|index| places[*index].take()).collect();
+        for genes in children {
+            population.push(born(genes, &mut best));
+            evaluations += 1;
+        }
+        let before = order.first().map_or(f64::INFINITY, |index| scored[*index]);
+        let now = score(&population, multipliers.as_ref());
+        let leader = (0..now.len()).min_by(|one, other| now[*one].total_cmp(&now[*other]));
+        let improved = leader.is_some_and(|leader| now[leader] < before);
+        step = next_step(step, generation, improved);
+        generation += 1;
+        curve.push(value(&best));
+        if let (Some(multipliers), Penalty::AugmentedLagrangian { factor, .. }, Some(leader)) =
+            (&mut multipliers, options.penalty, leader)
+            && generation % SUBPROBLEM == 0
+        {
+            multipliers.update(&population[leader].individual.evaluation, factor, tolerance);
+        }
+    };
+    Run {
+        best,
+        curve,
+        generations: generation,
+        evaluations,
+        stop,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::generator;
+    use super::*;
+
+    fn rastrigin(point: &[f64]) -> Evaluation {
+        let term = |x: &f64| x * x - 10.0 * (std::f64::consts::TAU * x).cos() + 10.0;
+        Evaluation::of(point.iter().map(term).sum())
+    }
+
+    fn run(bounds: [f64; 2], evaluate: fn(&[f64]) -> Evaluation, options: &Options, stream: u64) -> Run {
+        let space = Space::new(vec![bounds; 2]).unwrap();
+        search(&space, evaluate, options, &mut generator(7, stream), &mut |_| true)
+    }
+
+    #[test]
+    fn one_of_the_lowest_of_many_valleys_is_found() {
+        let bits = Options {
+            coding: Coding::Bits(16),
+            crossover: Crossover::Scattered,
+            mutation: Mutation::BitFlips(0.02),
+            ..Options::default()
+        };
+        for options in [Options::default(), bits] {
+            let found = (0..10).filter(|stream| {
+                let run = run([-5.0, 5.5], rastrigin, &options, *stream);
+                assert!(run.curve.windows(2).all(|pair| pair[1] <= pair[0]));
+                assert_eq!(run.curve.len(), run.generations + 1);
+                assert_eq!(run.evaluations, 100 + 98 * run.generations);
+                assert!(run.generations >= 51);
+                // The lowest is 0, the four beside it are 0.995, of a hundred.
+                run.curve.last().is_some_and(|best| *best < 1.5)
+            });
+            let count = found.count();
+            assert!(count >= 8, "{options:?}: {count} of 10");
+        }
+    }
+
+    /// Random numbers of a library may change from version to version: these are those of the lock file.
+    #[test]
+    fn a_seed_gives_the_same_run_for_ever() {
+        let first = run([-5.0, 5.5], rastrigin, &Options::default(), 0);
+        assert_eq!(first, run([-5.0, 5.5], rastrigin, &Options::default(), 0));
+        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve);
+        assert_eq!(first.curve[0], GOLDEN);
+    }
+
+    const GOLDEN: f64 = 5.525_355_977_437_131;
+
+    /// min x^2 + 2 y^2 on the line x + y = 1, beyond x = 0.75: (0.75, 0.25).
+    #[test]
+    fn constraints_are_kept_by_every_penalty() {
+        let on_a_line = |point: &[f64]| Evaluation {
+            objectives: vec![point[0] * point[0] + 2.0 * point[1] * point[1]],
+            equalities: vec![point[0] + point[1] - 1.0],
+            inequalities: vec![0.75 - point[0]],
+        };
+        let beyond = |point: &[f64]| Evaluation {
+            equalities: vec![],
+            ..on_a_line(point)
+        };
+        let lagrangian = Penalty::AugmentedLagrangian {
+            initial: 10.0,
+            factor: 100.0,
+        };
+        let space = Space::new(vec![[-2.0, 2.0]; 2]).unwrap();
+        for (penalty, equality) in [
+            (Penalty::Death, false),
+            (Penalty::FeasibleFirst, false),
+            (lagrangian, false),
+            (Penalty::FeasibleFirst, true),
+            (lagrangian, true),
+        ] {
+            let options = Options {
+                penalty,
+                ..Options::default()
+            };
+            let evaluate = |point: &[f64]| if equality { on_a_line(point) } else { beyond(point) };
+            let run = search(&space, evaluate, &options, &mut generator(1, 0), &mut |_| true);
+            let best = run.best.expect("a point that keeps them");
+            assert!(best.evaluation.is_feasible(options.constraint_tolerance));
+            let expected = if equality { [0.75, 0.25] } else { [0.75, 0.0] };
+            let value = expected[0] * expected[0] + 2.0 * expected[1] * expected[1];
+            let found = best.evaluation.value();
+            assert!(found < value + 0.02, "{penalty:?} {equality}: {:?}", best.point);
+        }
+    }
+
+    #[test]
+    fn a_run_ends_where_it_is_told() {
+        let few = Options {
+            generations: 7,
+            ..Options::default()
+        };
+        let run_of = |options: &Options| run([-5.0, 5.5], rastrigin, options, 0);
+        let ended = run_of(&few);
+        assert_eq!((ended.stop, ended.generations), (Stop::Generations, 7));
+        let little = Options {
+            budget: Some(450),
+            ..Options::default()
+        };
+        let ended = run_of(&little);
+        assert_eq!((ended.stop, ended.evaluations), (Stop::Budget, 100 + 3 * 98));
+        let space = Space::new(vec![[-5.0, 5.5]; 2]).unwrap();
+        let mut until = |generation| generation <= 4;
+        let ended = search(&space, rastrigin, &Options::default(), &mut generator(7, 0), &mut until);
+        assert_eq!((ended.stop, ended.generations), (Stop::Interrupted, 4));
+        let whole = run_of(&Options::default());
+        assert_eq!(ended.curve[..], whole.curve[..5]);
+    }
+
+    #[test]
+    fn what_makes_no_population_is_refused_by_name() {
+        let usual = Options::default();
+        let population = Options { population: 1, ..usual };
+        let elite = Options { elite: 100, ..usual };
+        let generations = Options {
+            generations: 0,
+            ..usual
+        };
+        let fraction = Options {
+            crossover_fraction: f64::NAN,
+            ..usual
+        };
+        let bits = Options {
+            coding: Coding::Bits(8),
+            ..usual
+        };
+        let flips = Options {
+            mutation: Mutation::BitFlips(0.1),
+            ..usual
+        };
+        let budget = Options {
+            budget: Some(99),
+            ..usual
+        };
+        for (options, words) in [
+            (population, "population"),
+            (elite, "elite"),
+            (generations, "generations"),
+            (fraction, "crossover_fraction"),
+            (bits, "heuristic"),
+            (flips, "bit-flip"),
+            (budget, "budget"),
+        ] {
+            let error = options.check().expect_err(words).to_string();
+            assert!(error.contains(words), "{error}");
+        }
+        assert_eq!(usual.check(), Ok(()));
+    }
+}

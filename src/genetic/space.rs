@@ -1,0 +1,110 @@
+//! The box that is searched, and what a point of it is worth.
+
+use rand::{Rng, RngExt};
+use thiserror::Error;
+
+/// A box: a lower and an upper bound of every variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Space(Vec<[f64; 2]>);
+
+/// Why there is no box.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SpaceError {
+    /// Nothing to vary.
+    #[error("there is nothing to vary")]
+    Empty,
+    /// Bounds in the wrong order, equal or no numbers.
+    #[error("the bounds {lower} and {upper} of variable {number} leave nothing between them")]
+    Inverted {
+        /// Which, counted from 1.
+        number: usize,
+        /// What was given for the lower one.
+        lower: f64,
+        /// What was given for the upper one.
+        upper: f64,
+    },
+}
+
+impl Space {
+    /// The box between these bounds, finite and the lower one first.
+    ///
+    /// # Errors
+    /// [`SpaceError`]: no variable, or one without a range.
+    pub fn new(bounds: Vec<[f64; 2]>) -> Result<Self, SpaceError> {
+        if bounds.is_empty() {
+            return Err(SpaceError::Empty);
+        }
+        for (index, &[lower, upper]) in bounds.iter().enumerate() {
+            let range = upper - lower;
+            if !(range > 0.0 && range.is_finite()) {
+                let number = index + 1;
+                return Err(SpaceError::Inverted { number, lower, upper });
+            }
+        }
+        Ok(Self(bounds))
+    }
+
+    /// Lower and upper bound of every variable.
+    pub fn bounds(&self) -> &[[f64; 2]] {
+        &self.0
+    }
+
+    /// Whether a point lies in the box.
+    pub fn contains(&self, point: &[f64]) -> bool {
+        let inside = |(x, [lower, upper]): (&f64, &[f64; 2])| (*lower..=*upper).contains(x);
+        point.len() == self.0.len() && point.iter().zip(&self.0).all(inside)
+    }
+
+    /// The point at these parts of the ranges, 0 the lower and 1 the upper bound, never outside.
+    pub fn at(&self, parts: &[f64]) -> Vec<f64> {
+        let place = |(part, [lower, upper]): (&f64, &[f64; 2])| (lower + part * (upper - lower)).clamp(*lower, *upper);
+        parts.iter().zip(&self.0).map(place).collect()
+    }
+
+    /// A point drawn evenly from the box.
+    pub fn draw(&self, generator: &mut impl Rng) -> Vec<f64> {
+        let parts: Vec<f64> = self.0.iter().map(|_| generator.random()).collect();
+        self.at(&parts)
+    }
+}
+
+/// What a point is worth.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Evaluation {
+    /// What is to be small; infinite where there is no value.
+    pub objectives: Vec<f64>,
+    /// What is to be zero, in parts of something that makes 1 a lot.
+    pub equalities: Vec<f64>,
+    /// What is to be no more than zero, likewise.
+    pub inequalities: Vec<f64>,
+}
+
+impl Evaluation {
+    /// One value without constraints.
+    pub fn of(value: f64) -> Self {
+        Self {
+            objectives: vec![value],
+            ..Self::default()
+        }
+    }
+
+    /// The first objective; infinite where it is no number.
+    pub fn value(&self) -> f64 {
+        let value = self.objectives.first().copied().unwrap_or(f64::INFINITY);
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
+
+    /// By how much it breaks its constraints, all together; an equality holds up to the tolerance.
+    pub fn violation(&self, tolerance: f64) -> f64 {
+        let equalities = self.equalities.iter().map(|value| (value.abs() - tolerance).max(0.0));
+        let inequalities = self.inequalities.iter().map(|value| value.max(0.0));
+        let sum = equalities.chain(inequalities).fold(0.0, |sum, part| sum + part);
+        if sum.is_nan() { f64::INFINITY } else { sum }
+    }
+
+    /// Whether it has values and breaks no constraint.
+    pub fn is_feasible(&self, tolerance: f64) -> bool {
+        self.violation(tolerance) == 0.0 && self.objectives.iter().all(|value| value.is_finite())
+    }
+}

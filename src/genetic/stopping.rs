@@ -1,0 +1,122 @@
+//! When a run ends: the best value has ceased to change, or its generations or evaluations are used up.
+//!
+//! With B_g the best value up to generation g, w the window:
+//!
+//! ```text
+//! average   |B_(g-w) - B_g|/(w max(1, |B_g|)) <= tolerance                                   MATLAB since R2014a
+//! weighted  sum_n (1/2)^n |B_(g-n+1) - B_(g-n)|/max(1, |B_g|), n = 1 .. w, <= tolerance      before
+//! ```
+//!
+//! g is counted from 1, the first generation after the random population, so a window of 50 ends no run before generation 51: a run of
+//! exactly 51 generations is one whose best value hardly moved after the first.
+
+/// How the change of the best value over a window is measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum StallTest {
+    /// Its average.
+    #[default]
+    Average,
+    /// Its last changes above all.
+    Weighted,
+}
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// The best value has ceased to change.
+    Stalled,
+    /// The last generation allowed.
+    Generations,
+    /// No evaluations were left for another generation.
+    Budget,
+    /// Somebody asked it to.
+    Interrupted,
+}
+
+impl Stop {
+    /// Every reason.
+    pub const ALL: [Self; 4] = [Self::Stalled, Self::Generations, Self::Budget, Self::Interrupted];
+
+    /// `stalled`
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stalled => "stalled",
+            Self::Generations => "generations",
+            Self::Budget => "budget",
+            Self::Interrupted => "interrupted",
+        }
+    }
+
+    /// The reason of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|stop| stop.name() == name)
+    }
+}
+
+/// Whether the best values, that of the random population first, have ceased to change. Where there was none all along they have too.
+///
+/// ```
+/// use lindstedt::genetic::{StallTest, has_stalled};
+///
+/// let still = vec![7.0; 60];
+/// let first = (1..60).find(|end| has_stalled(&still[..*end], 50, 1e-6, StallTest::Average));
+/// assert_eq!(first, Some(52)); // the random population and 51 generations
+/// ```
+pub fn has_stalled(best: &[f64], window: usize, tolerance: f64, test: StallTest) -> bool {
+    // The random population is no generation.
+    let generations = best.get(1..).unwrap_or_default();
+    let (Some(first), Some(last)) = (
+        generations
+            .len()
+            .checked_sub(window + 1)
+            .map(|index| generations[index]),
+        generations.last(),
+    ) else {
+        return false;
+    };
+    if first.is_infinite() && last.is_infinite() {
+        return true;
+    }
+    let scale = last.abs().max(1.0);
+    let change = match test {
+        StallTest::Average => (first - last).abs() / window as f64,
+        StallTest::Weighted => {
+            let steps = generations.windows(2).rev().take(window);
+            steps
+                .rev()
+                .fold(0.0, |sum, pair| 0.5 * (sum + (pair[0] - pair[1]).abs()))
+        }
+    };
+    change / scale <= tolerance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The best values of a run that halves what is missing to 10 each generation.
+    fn coming_down(count: i32) -> Vec<f64> {
+        (0..count).map(|generation| 10.0 + 0.5_f64.powi(generation)).collect()
+    }
+
+    #[test]
+    fn each_test_ends_a_run_where_its_formula_says() {
+        let best = coming_down(120);
+        let end = |window, test| (1..120).find(|end| has_stalled(&best[..*end], window, 1e-6, test));
+        // 2^-(g-w)/(10 w) = 1e-6 at g - w = 14.3 for w = 5, and g values stand after the first.
+        assert_eq!(end(5, StallTest::Average), Some(15 + 5 + 1));
+        // Each of w terms is 2^-n 2^(n-1-g) = 2^-(g+1), over 10: w 2^-(g+1) = 1e-5 at g = 17.9 for w = 5.
+        assert_eq!(end(5, StallTest::Weighted), Some(18 + 1));
+        // 2^-(g-w)/(10 w) = 1e-6 at g - w = 11 for w = 50.
+        assert_eq!(end(50, StallTest::Average), Some(11 + 50 + 1));
+    }
+
+    #[test]
+    fn a_value_found_late_is_a_change() {
+        let mut best = vec![f64::INFINITY; 30];
+        best.extend([5.0; 10]);
+        assert!(!has_stalled(&best, 20, 1e-6, StallTest::Average));
+        assert!(has_stalled(&[f64::INFINITY; 22], 20, 1e-6, StallTest::Average));
+        assert!(!has_stalled(&[], 20, 1e-6, StallTest::Weighted));
+    }
+}

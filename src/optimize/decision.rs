@@ -1,0 +1,410 @@
+//! What decides the best design: found by moving every variable alone, by designs drawn around it, and by the unit of the rest time.
+//!
+//! ```text
+//! elasticity      (p/T) dT/dp, by steps of 1 % of p, of motions that are integrated
+//! alone           how far a variable may go, the others held, before the objective is 1 % worse
+//!   to both ends      flat: it says nothing
+//!   to one end only   corner: the limit decides, and moving it moves the best design
+//!   to neither        limit, where a constraint stops it, else trade: something is lost on either side
+//! share           the part of the box within 1 % of the best
+//! ```
+//!
+//! With a density the mass follows the radius, and the radius the mass where that is moved.
+
+use std::f64::consts::PI;
+
+use super::design::Route;
+use super::objective::Objective;
+use super::question::Question;
+use crate::genetic::{Space, generator};
+use crate::impact::Parameter;
+
+/// A design this much worse, in parts, is as good for an engineer.
+pub const WITHIN: f64 = 0.01;
+
+/// What a variable has to do with the best design.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Its whole range is as good.
+    Flat,
+    /// It lies at its lower limit.
+    Lower,
+    /// It lies at its upper limit.
+    Upper,
+    /// A constraint stops it.
+    Limit,
+    /// Something is lost on either side.
+    Trade,
+}
+
+impl Role {
+    /// Every role.
+    pub const ALL: [Self; 5] = [Self::Flat, Self::Lower, Self::Upper, Self::Limit, Self::Trade];
+
+    /// In a word or two.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Lower => "lower end",
+            Self::Upper => "upper end",
+            Self::Limit => "constraint",
+            Self::Trade => "trade",
+        }
+    }
+}
+
+/// What one variable does at the best design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensitivity {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its value there.
+    pub value: f64,
+    /// Its limits.
+    pub limits: [f64; 2],
+    /// (p/T) dT/dp of the objective T; nothing where it has no value on one side.
+    pub elasticity: Option<f64>,
+    /// Between these values, the others held, the objective is no more than 1 % worse.
+    pub alone: [f64; 2],
+    /// The least and the greatest value of the objective on its whole range, the others held, constraints aside; nothing where the motion
+    /// does not rest somewhere.
+    pub range: Option<[f64; 2]>,
+    /// What follows.
+    pub role: Role,
+}
+
+/// The rest times of the best design with the length at either limit, in both units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ends {
+    /// The lengths, m.
+    pub lengths: [f64; 2],
+    /// The rest times in seconds.
+    pub seconds: [f64; 2],
+    /// The same in units of 1/omega.
+    pub dimensionless: [f64; 2],
+}
+
+/// What decides the best design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decision {
+    /// The variables, in their order.
+    pub sensitivities: Vec<Sensitivity>,
+    /// The part of the box within 1 % of the best.
+    pub share: f64,
+    /// Least and greatest value of every variable among the designs within 1 %.
+    pub extents: Vec<[f64; 2]>,
+    /// Some of those designs.
+    pub points: Vec<Vec<f64>>,
+    /// The constraints that have no more than 1 % to spare.
+    pub active: Vec<String>,
+    /// What the unit of the rest time does, where a rest time is the objective and the length is searched.
+    pub ends: Option<Ends>,
+    /// The objective with every material, the best design otherwise; nothing for one that does not rest.
+    pub materials: Vec<Option<f64>>,
+}
+
+/// Designs drawn from the whole box, and from the box of what is as good alone.
+const DRAWN: [usize; 2] = [4000, 2000];
+
+/// Streams of random numbers far from those of the runs.
+const STREAM: u64 = 1 << 40;
+
+/// Steps from the best value of a variable to its limit.
+const STEPS: i32 = 40;
+
+impl Decision {
+    /// What decides this point, the best of its box.
+    pub(super) fn of(question: &Question, space: &Space, best: &[f64]) -> Self {
+        let probe = Probe {
+            question,
+            space,
+            integrated: question
+                .follow(best, Route::Chain, false)
+                .is_ok_and(|design| design.integrated),
+        };
+        let level = probe.value(best).unwrap_or(f64::INFINITY) * (1.0 + WITHIN);
+        let sensitivities: Vec<Sensitivity> = (0..question.variables.len())
+            .map(|index| probe.sensitivity(best, index, level))
+            .collect();
+        let mut near: Vec<[f64; 2]> = sensitivities.iter().map(|sensitivity| sensitivity.alone).collect();
+        near.extend(space.bounds().iter().skip(near.len()));
+        // What is fixed at one value has no room of its own.
+        for (range, [lower, upper]) in near.iter_mut().zip(space.bounds()) {
+            let least = 1e-3 * (upper - lower);
+            *range = [
+                range[0].min(range[1] - least).max(*lower),
+                range[1].max(range[0] + least).min(*upper),
+            ];
+        }
+        let (share, points) = probe.share(&near, level);
+        let extents = (0..best.len()).map(|index| {
+            let values = points.iter().map(|point| point[index]).chain([best[index]]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
+                [least.min(value), most.max(value)]
+            })
+        });
+        Self {
+            extents: extents.collect(),
+            share,
+            points,
+            active: probe.active(best),
+            ends: probe.ends(best),
+            materials: (0..question.materials.len())
+                .map(|number| {
+                    let mut point = best.to_vec();
+                    if let Some(gene) = point.get_mut(question.variables.len()) {
+                        *gene = number as f64 + 0.5;
+                    }
+                    probe.value(&point)
+                })
+                .collect(),
+            sensitivities,
+        }
+    }
+}
+
+/// Designs of one question, followed by closed forms.
+struct Probe<'a> {
+    question: &'a Question,
+    space: &'a Space,
+    /// Whether they have no closed forms, so that fewer must do.
+    integrated: bool,
+}
+
+impl Probe<'_> {
+    /// The objective at a point, constraints aside.
+    fn value(&self, point: &[f64]) -> Option<f64> {
+        let objective = *self.question.objectives.first()?;
+        objective.value(
+            &self
+                .question
+                .follow(point, Route::Chain, objective.is_of_contact())
+                .ok()?,
+        )
+    }
+
+    /// The objective of a point that keeps the constraints.
+    fn feasible(&self, point: &[f64]) -> Option<f64> {
+        let design = self
+            .question
+            .follow(point, Route::Chain, self.question.needs_contact())
+            .ok()?;
+        let evaluation = self.question.evaluation(&design);
+        let tolerance = self.question.genetic.constraint_tolerance;
+        evaluation.is_feasible(tolerance).then(|| evaluation.value())
+    }
+
+    /// The same point on the surface of the density, where there is one; nothing where that leaves the box.
+    fn on_surface(&self, mut point: Vec<f64>, moved: Option<usize>) -> Option<Vec<f64>> {
+        let Some(density) = self.question.density else {
+            return Some(point);
+        };
+        let variables = &self.question.variables;
+        let place = |parameter| variables.iter().position(|variable| variable.parameter == parameter);
+        let (mass, radius) = (place(Parameter::Mass), place(Parameter::Radius));
+        if moved.is_some() && moved != mass && moved != radius {
+            return Some(point);
+        }
+        let of_radius = |radius: f64| density * 4.0 / 3.0 * PI * radius.powi(3);
+        match (mass, radius) {
+            (Some(mass), Some(radius)) if moved == Some(mass) => {
+                point[radius] = (point[mass] / of_radius(1.0)).cbrt();
+            }
+            (Some(mass), Some(radius)) => point[mass] = of_radius(point[radius]),
+            _ => {}
+        }
+        self.space.contains(&point).then_some(point)
+    }
+
+    fn moved(&self, best: &[f64], index: usize, value: f64) -> Option<Vec<f64>> {
+        let mut point = best.to_vec();
+        point[index] = value;
+        self.on_surface(point, Some(index))
+    }
+
+    /// Values from the best one to a limit, closer together near the smaller where the range has decades.
+    fn way(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+        let decades = (to / from).abs().max((from / to).abs()) > 10.0;
+        let steps = if self.integrated { STEPS / 4 } else { STEPS };
+        (1..=steps).map(move |step| {
+            let part = f64::from(step) / f64::from(steps);
+            match decades {
+                _ if step == steps => to,
+                true => from * (to / from).powf(part),
+                false => from + part * (to - from),
+            }
+        })
+    }
+
+    fn sensitivity(&self, best: &[f64], index: usize, level: f64) -> Sensitivity {
+        let variable = self.question.variables[index];
+        let (parameter, value) = (variable.parameter, best[index]);
+        let limits = [variable.lower, variable.upper];
+        let good = |value: f64| {
+            let point = self.moved(best, index, value)?;
+            self.feasible(&point).filter(|objective| *objective <= level)
+        };
+        let reach = |limit: f64| {
+            let mut last = value;
+            for next in self.way(value, limit) {
+                if good(next).is_none() {
+                    // The place between by halving.
+                    let (mut inside, mut outside) = (last, next);
+                    for _ in 0..30 {
+                        let middle = 0.5 * (inside + outside);
+                        match good(middle) {
+                            Some(_) => inside = middle,
+                            None => outside = middle,
+                        }
+                    }
+                    return inside;
+                }
+                last = next;
+            }
+            limit
+        };
+        let alone = limits.map(reach);
+        let role = match (alone[0] == limits[0], alone[1] == limits[1]) {
+            (true, true) => Role::Flat,
+            (true, false) => Role::Lower,
+            (false, true) => Role::Upper,
+            (false, false) => {
+                // Just beyond what is as good: worse, or forbidden?
+                let forbidden = alone.into_iter().zip(limits).any(|(end, limit)| {
+                    let beyond = end + 1e-3 * (limit - end);
+                    let point = self.moved(best, index, beyond);
+                    point.is_none_or(|point| self.value(&point).is_some_and(|objective| objective <= level))
+                });
+                if forbidden { Role::Limit } else { Role::Trade }
+            }
+        };
+        // With a density some values are not to be had.
+        let whole: Option<Vec<f64>> = limits
+            .into_iter()
+            .flat_map(|limit| self.way(value, limit))
+            .filter_map(|value| Some(self.value(&self.moved(best, index, value)?)))
+            .chain([self.value(best)])
+            .collect();
+        let range = whole.map(|values| {
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            [least, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        });
+        let role = match range {
+            Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => Role::Flat,
+            _ => role,
+        };
+        Sensitivity {
+            parameter,
+            value,
+            limits,
+            elasticity: self.elasticity(best, index),
+            alone,
+            range,
+            role,
+        }
+    }
+
+    /// By motions that are integrated, one-sided at a limit.
+    fn elasticity(&self, best: &[f64], index: usize) -> Option<f64> {
+        const STEP: f64 = 0.01;
+        let variable = self.question.variables[index];
+        let objective = *self.question.objectives.first()?;
+        let value = best[index];
+        let ends = [
+            (value * (1.0 - STEP)).max(variable.lower),
+            (value * (1.0 + STEP)).min(variable.upper),
+        ];
+        let at = |end: f64| {
+            let point = self.moved(best, index, end).unwrap_or_else(|| {
+                let mut point = best.to_vec();
+                point[index] = end;
+                point
+            });
+            let design = self
+                .question
+                .follow(&point, Route::Integration, objective.is_of_contact())
+                .ok()?;
+            objective.value(&design)
+        };
+        let [below, above] = [at(ends[0])?, at(ends[1])?];
+        Some((above / below).ln() / (ends[1] / ends[0]).ln()).filter(|slope| slope.is_finite())
+    }
+
+    /// The part of the box within the level, and designs there.
+    fn share(&self, near: &[[f64; 2]], level: f64) -> (f64, Vec<Vec<f64>>) {
+        let mut points = Vec::new();
+        let mut shares = [0.0; 2];
+        let whole = self.space.bounds();
+        let drawn = DRAWN.map(|count| if self.integrated { count / 10 } else { count });
+        for (turn, bounds) in [whole, near].into_iter().enumerate() {
+            let Ok(space) = Space::new(bounds.to_vec()) else {
+                continue;
+            };
+            let mut generator = generator(self.question.seed, STREAM + turn as u64);
+            let before = points.len();
+            for _ in 0..drawn[turn] {
+                let Some(point) = self.on_surface(space.draw(&mut generator), None) else {
+                    continue;
+                };
+                if self.feasible(&point).is_some_and(|objective| objective <= level) {
+                    points.push(point);
+                }
+            }
+            shares[turn] = (points.len() - before) as f64 / drawn[turn] as f64;
+        }
+        let part = |(near, whole): (&[f64; 2], &[f64; 2])| (near[1] - near[0]) / (whole[1] - whole[0]);
+        let volume: f64 = near.iter().zip(whole).map(part).product();
+        // Few of the whole box say little.
+        match shares[0] * drawn[0] as f64 >= 20.0 {
+            true => (shares[0], points),
+            false => (shares[1] * volume, points),
+        }
+    }
+
+    fn active(&self, best: &[f64]) -> Vec<String> {
+        let Ok(design) = self.question.follow(best, Route::Chain, self.question.needs_contact()) else {
+            return vec![];
+        };
+        let evaluation = self.question.evaluation(&design);
+        let words = self.question.constraints();
+        let mut active: Vec<String> = Vec::new();
+        let limits = self.question.limits.len();
+        for (index, excess) in evaluation.inequalities.iter().enumerate() {
+            let word = if index < limits { words.get(index) } else { words.last() };
+            if *excess > -WITHIN {
+                active.extend(word.cloned());
+            }
+        }
+        if self.question.density.is_some() {
+            active.extend(words.get(limits).cloned());
+        }
+        active
+    }
+
+    fn ends(&self, best: &[f64]) -> Option<Ends> {
+        let objective = self.question.objectives.first()?;
+        let variables = &self.question.variables;
+        let index = variables
+            .iter()
+            .position(|variable| variable.parameter == Parameter::Length)?;
+        if !objective.is_rest_time() {
+            return None;
+        }
+        let lengths = [variables[index].lower, variables[index].upper];
+        let at = |length: f64| {
+            let mut point = best.to_vec();
+            point[index] = length;
+            let design = self.question.follow(&point, Route::Chain, false).ok()?;
+            Some([
+                Objective::RestTime.value(&design)?,
+                Objective::DimensionlessRestTime.value(&design)?,
+            ])
+        };
+        let [short, long] = [at(lengths[0])?, at(lengths[1])?];
+        Some(Ends {
+            lengths,
+            seconds: [short[0], long[0]],
+            dimensionless: [short[1], long[1]],
+        })
+    }
+}

@@ -1,0 +1,38 @@
+//! The best damper: the paper's search for the design that rests soonest, and what decides it.
+//!
+//! In: a [`Question`]: what may vary between which limits, what is held fixed, what is to be small, how it is searched. Out: a [`Study`]: the
+//! best design judged again by integration, how far many runs agree, what the same number of evaluations finds otherwise, the
+//! paper's own design under the same assumptions, and why the best one is best: a [`Decision`]. With several objectives at once it is the
+//! Pareto front.
+//!
+//! - `objective`: what may be small or limited, one row each.
+//! - `question`: the box, the constraints, the options.
+//! - `design`: one design: its motion by closed forms until it rests, and by integration where there are none.
+//! - `decision`: what decides the best design: sensitivities, what is as good, corner, flat direction or trade.
+//! - `study`: all runs, and what stands beside them.
+//!
+//! ```
+//! use lindstedt::optimize::{Question, Watch, optimize};
+//!
+//! let mut question = Question { runs: 2, ..Question::default() };
+//! question.genetic.population = 20;
+//! question.genetic.generations = 10;
+//! let study = optimize(question, vec![], &Watch::default())?;
+//! let best = study.best().ok_or("a design that rests")?;
+//! assert!(best.design.point[2] < 0.031); // the shortest pendulum rests soonest, in seconds
+//! # Ok::<(), lindstedt::optimize::OptimizeError>(())
+//! ```
+
+mod decision;
+mod design;
+mod objective;
+mod question;
+mod study;
+
+pub use decision::{Decision, Ends, Role, Sensitivity, WITHIN};
+pub use design::{Design, HardestContact, Route};
+pub use objective::Objective;
+pub use question::{Limit, OptimizeError, Question, TABLE_4, Variable};
+#[cfg(feature = "parallel")]
+pub use study::optimize_on;
+pub use study::{Finalist, Found, Rival, SearchRun, Spread, Study, Watch, optimize};

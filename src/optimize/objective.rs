@@ -1,0 +1,99 @@
+//! What may be small, or limited: one row each.
+
+use super::design::Design;
+
+/// A number of a design that is to be small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objective {
+    /// The rest time of the pendulum in seconds.
+    RestTime,
+    /// The same in units of 1/omega of its small swings.
+    DimensionlessRestTime,
+    /// The greatest force of a contact.
+    PeakForce,
+    /// The greatest pressure of a contact.
+    PeakPressure,
+    /// The mass of the pendulum.
+    Mass,
+    /// The contacts until it rests.
+    Impacts,
+}
+
+/// Name, unit, meaning and value of an objective.
+type Row = (&'static str, &'static str, &'static str, fn(&Design) -> Option<f64>);
+
+impl Objective {
+    /// Every objective, in the order of the documentation.
+    pub const ALL: [Self; 6] = [
+        Self::RestTime,
+        Self::DimensionlessRestTime,
+        Self::PeakForce,
+        Self::PeakPressure,
+        Self::Mass,
+        Self::Impacts,
+    ];
+
+    fn row(self) -> Row {
+        match self {
+            Self::RestTime => ("rest_time", "s", "the rest time", |design| {
+                Some(design.rest_time.ok()? * design.units.time())
+            }),
+            Self::DimensionlessRestTime => (
+                "dimensionless_rest_time",
+                "1/omega",
+                "the rest time in units of 1/omega",
+                |design| design.rest_time.ok(),
+            ),
+            Self::PeakForce => ("peak_force", "N", "the greatest force of a contact", |design| {
+                Some(design.hardest.map_or(0.0, |contact| contact.force))
+            }),
+            Self::PeakPressure => (
+                "peak_pressure",
+                "Pa",
+                "the greatest pressure of Hertz in a contact",
+                |design| Some(design.hardest.map_or(0.0, |contact| contact.pressure)),
+            ),
+            Self::Mass => ("mass", "kg", "the mass of the pendulum", |design| {
+                Some(design.case.design.mass)
+            }),
+            Self::Impacts => ("impacts", "", "the contacts until it rests", |design| {
+                Some(design.impacts as f64)
+            }),
+        }
+    }
+
+    /// `rest_time`
+    pub fn name(self) -> &'static str {
+        self.row().0
+    }
+
+    /// Its unit, as it is typed; empty where it has none.
+    pub fn unit(self) -> &'static str {
+        self.row().1
+    }
+
+    /// What it is, in words: `the rest time`.
+    pub fn meaning(self) -> &'static str {
+        self.row().2
+    }
+
+    /// Its value of a design; nothing where it has none.
+    pub fn value(self, design: &Design) -> Option<f64> {
+        (self.row().3)(design).filter(|value| value.is_finite())
+    }
+
+    /// Whether the greatest contact has to be known.
+    pub(super) fn is_of_contact(self) -> bool {
+        matches!(self, Self::PeakForce | Self::PeakPressure)
+    }
+
+    /// Whether it is a rest time.
+    pub fn is_rest_time(self) -> bool {
+        matches!(self, Self::RestTime | Self::DimensionlessRestTime)
+    }
+
+    /// The objective of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|objective| objective.name() == name)
+    }
+}

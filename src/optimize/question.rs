@@ -1,0 +1,309 @@
+//! What is asked: which design, of which box, under which constraints, by which search.
+
+use std::f64::consts::PI;
+
+use thiserror::Error;
+
+use super::design::{Design, Route};
+use super::objective::Objective;
+use crate::genetic::{Evaluation, Options, OptionsError, Space, SpaceError};
+use crate::impact::{
+    Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter, Settings, default_lambda,
+};
+
+/// The limits of the paper's Table 4, in SI units: inputs of its study, as printed.
+pub const TABLE_4: [(Parameter, f64, f64); 4] = [
+    (Parameter::Mass, 0.010, 0.100),
+    (Parameter::Radius, 0.001, 0.020),
+    (Parameter::Length, 0.030, 0.300),
+    (Parameter::Modulus, 0.1e9, 200e9),
+];
+
+/// A number of the design that is searched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Variable {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its lower limit.
+    pub lower: f64,
+    /// Its upper limit.
+    pub upper: f64,
+}
+
+/// A number of the design that must not be larger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Which.
+    pub objective: Objective,
+    /// The largest value.
+    pub at_most: f64,
+}
+
+/// A search for the best design: the question.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// What is held fixed, and what the variables do not say.
+    pub case: Case,
+    /// What is searched.
+    pub variables: Vec<Variable>,
+    /// The materials of the barrier that are tried, in place of its modulus; none where that is searched or fixed.
+    pub materials: Vec<Material>,
+    /// What is to be small; several at once make a front.
+    pub objectives: Vec<Objective>,
+    /// What must not be larger.
+    pub limits: Vec<Limit>,
+    /// The density of the sphere, kg/m^3, where its mass is that of its radius.
+    pub density: Option<f64>,
+    /// Whether the bodies must not yield.
+    pub elastic: bool,
+    /// The yield limit of the sphere, Pa, where one is stated.
+    pub sphere_yield: Option<f64>,
+    /// The yield limit of the barrier, Pa, where one is stated and no materials are tried.
+    pub barrier_yield: Option<f64>,
+    /// How long and how closely motions are followed.
+    pub settings: Settings,
+    /// The genetic algorithm.
+    pub genetic: Options,
+    /// How often it is run.
+    pub runs: usize,
+    /// The seed of all random numbers.
+    pub seed: u64,
+    /// The dampings that nobody gave: the paper prints none.
+    pub defaults: Vec<Parameter>,
+}
+
+impl Default for Question {
+    /// The paper's study: Table 4 searched a hundred times for the least rest time in seconds, with the dissipation that it does not print.
+    fn default() -> Self {
+        let variable = |(parameter, lower, upper)| Variable {
+            parameter,
+            lower,
+            upper,
+        };
+        Self {
+            case: Case {
+                contact_damping: ContactDamping::Lambda(default_lambda()),
+                zeta: DEFAULT_ZETA,
+                ..Case::default()
+            },
+            variables: TABLE_4.map(variable).into(),
+            materials: vec![],
+            objectives: vec![Objective::RestTime],
+            limits: vec![],
+            density: None,
+            elastic: false,
+            sphere_yield: None,
+            barrier_yield: None,
+            settings: Settings {
+                duration: DEFAULT_DURATION,
+                ..Settings::default()
+            },
+            genetic: Options::default(),
+            runs: 100,
+            seed: 1,
+            defaults: vec![Parameter::Lambda, Parameter::Zeta],
+        }
+    }
+}
+
+/// Why there is no search.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum OptimizeError {
+    /// Limits that leave nothing.
+    #[error("[limits] {0}")]
+    Limits(String),
+    /// Nothing to be small.
+    #[error("[genetic] objective names nothing that is to be small: choose one or more of {}", Objective::ALL.map(Objective::name).join(", "))]
+    NoObjective,
+    /// The same twice.
+    #[error("[genetic] objective names `{0}` twice")]
+    SameObjective(&'static str),
+    /// No run.
+    #[error("[genetic] runs = {0}: a study needs 1 run or more, {MOST_RUNS} at most")]
+    Runs(usize),
+    /// Options that make no population.
+    #[error("[genetic] {0}")]
+    Options(#[from] OptionsError),
+    /// Several objectives and an option of one.
+    #[error(
+        "[genetic] {0} belongs to a search for one objective; several at once are searched by NSGA-II: leave it out"
+    )]
+    OneObjective(&'static str),
+    /// A design in the middle of the box that makes no motion.
+    #[error("{0}")]
+    Motion(String),
+    /// No design that rests.
+    #[error("no design in this box comes to rest in the time allowed, {duration} units of 1/omega: {reason}")]
+    NoRest {
+        /// How long motions were followed.
+        duration: f64,
+        /// What the design in the middle of the box says.
+        reason: String,
+    },
+    /// No design that keeps the constraints.
+    #[error("no design was found in this box that comes to rest in the time allowed and keeps {constraints}")]
+    NoFeasible {
+        /// The constraints in words.
+        constraints: String,
+    },
+    /// Records of another search.
+    #[error("{0}")]
+    Record(String),
+    /// Stopped before anything was found.
+    #[error("stopped before a design was found")]
+    Stopped,
+}
+
+/// The most runs of a study.
+const MOST_RUNS: usize = 100_000;
+
+impl Question {
+    /// The box; a material is a number from 0 to their count.
+    ///
+    /// # Errors
+    /// [`OptimizeError::Limits`] where nothing may vary, or limits leave nothing between them.
+    pub fn space(&self) -> Result<Space, OptimizeError> {
+        let mut bounds: Vec<[f64; 2]> = self
+            .variables
+            .iter()
+            .map(|variable| [variable.lower, variable.upper])
+            .collect();
+        if self.materials.len() > 1 {
+            bounds.push([0.0, self.materials.len() as f64]);
+        }
+        Space::new(bounds).map_err(|error| match error {
+            SpaceError::Inverted { number, lower, upper } if number <= self.variables.len() => {
+                let name = self.variables[number - 1].parameter.name();
+                OptimizeError::Limits(format!(
+                    "{name} = [{lower}, {upper}] leaves nothing between: the lower limit comes first; to hold it fixed give it in [design]"
+                ))
+            }
+            error => OptimizeError::Limits(format!(
+                "{error}: give limits to one of {}",
+                TABLE_4.map(|(parameter, ..)| parameter.name()).join(", ")
+            )),
+        })
+    }
+
+    /// Refuses what makes no search.
+    ///
+    /// # Errors
+    /// [`OptimizeError`] names the key.
+    pub fn check(&self) -> Result<Space, OptimizeError> {
+        for variable in &self.variables {
+            if !(variable.lower > 0.0 && variable.upper.is_finite()) {
+                return Err(OptimizeError::Limits(format!(
+                    "{} = [{}, {}] must be positive numbers",
+                    variable.parameter.name(),
+                    variable.lower,
+                    variable.upper
+                )));
+            }
+        }
+        let space = self.space()?;
+        for limit in &self.limits {
+            if !(limit.at_most > 0.0 && limit.at_most.is_finite()) {
+                return Err(OptimizeError::Limits(format!(
+                    "max_{} must be a positive number, not {}",
+                    limit.objective.name(),
+                    limit.at_most
+                )));
+            }
+        }
+        if let Some(density) = self.density.filter(|density| !(*density > 0.0 && density.is_finite())) {
+            return Err(OptimizeError::Limits(format!(
+                "density must be a positive number, not {density}"
+            )));
+        }
+        if self.objectives.is_empty() {
+            return Err(OptimizeError::NoObjective);
+        }
+        for (index, objective) in self.objectives.iter().enumerate() {
+            if self.objectives[..index].contains(objective) {
+                return Err(OptimizeError::SameObjective(objective.name()));
+            }
+        }
+        if !(1..=MOST_RUNS).contains(&self.runs) {
+            return Err(OptimizeError::Runs(self.runs));
+        }
+        self.genetic.check()?;
+        let middle: Vec<f64> = space.bounds().iter().map(|_| 0.5).collect();
+        self.follow(&space.at(&middle), Route::Chain, false)
+            .map_err(OptimizeError::Motion)?;
+        Ok(space)
+    }
+
+    /// Whether the greatest contact counts.
+    pub(super) fn needs_contact(&self) -> bool {
+        let limited = self.limits.iter().map(|limit| limit.objective);
+        self.elastic
+            || self
+                .objectives
+                .iter()
+                .copied()
+                .chain(limited)
+                .any(Objective::is_of_contact)
+    }
+
+    /// The lowest stated yield limit of the bodies of a design, Pa.
+    pub fn yield_limit(&self, design: &Design) -> Option<f64> {
+        let barrier = match design.material {
+            Some(number) => self.materials.get(number)?.yield_limit,
+            None => self.barrier_yield,
+        };
+        [self.sphere_yield, barrier].into_iter().flatten().reduce(f64::min)
+    }
+
+    /// What a design is worth.
+    pub fn evaluation(&self, design: &Design) -> Evaluation {
+        let value = |objective: Objective| objective.value(design).unwrap_or(f64::INFINITY);
+        let mut inequalities: Vec<f64> = self
+            .limits
+            .iter()
+            .map(|limit| (value(limit.objective) / limit.at_most - 1.0).min(LARGEST_EXCESS))
+            .collect();
+        if self.elastic
+            && let Some(limit) = self.yield_limit(design)
+        {
+            inequalities.push(value(Objective::PeakPressure) / (FIRST_YIELD * limit) - 1.0);
+        }
+        let sphere = self.density.map(|density| {
+            let volume = 4.0 / 3.0 * PI * design.case.design.radius.powi(3);
+            design.case.design.mass / (density * volume) - 1.0
+        });
+        Evaluation {
+            objectives: self.objectives.iter().copied().map(value).collect(),
+            equalities: sphere.into_iter().collect(),
+            inequalities,
+        }
+    }
+
+    /// The constraints in words: `max_peak_force = 200`.
+    pub fn constraints(&self) -> Vec<String> {
+        let mut words: Vec<String> = self
+            .limits
+            .iter()
+            .map(|limit| {
+                format!(
+                    "max_{} = {} {}",
+                    limit.objective.name(),
+                    limit.at_most,
+                    limit.objective.unit()
+                )
+            })
+            .map(|words| words.trim_end().to_owned())
+            .collect();
+        words.extend(
+            self.density
+                .map(|density| format!("density = {density} kg/m^3, m = density*(4/3)*pi*R^3")),
+        );
+        if self.elastic {
+            words.push("elastic = true, pressure below 1.6 times the yield limit".to_owned());
+        }
+        words
+    }
+}
+
+/// A constraint is never broken by more: infinities would have no order.
+const LARGEST_EXCESS: f64 = 1e6;

@@ -1,0 +1,551 @@
+//! Many runs of one search, on all cores, and what stands beside them.
+//!
+//! Run number i has the i-th stream of random numbers of the seed, so what it finds depends on nothing but the question: not on threads,
+//! not on whether it was done before and read from a record.
+
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+
+use super::decision::Decision;
+use super::design::{Design, Route};
+use super::objective::Objective;
+use super::question::{OptimizeError, Question};
+use crate::genetic::{
+    Evaluation, Individual, Options, Run, Space, Stop, crowding, differential_evolution, generator, non_dominated,
+    random_search, search, search_front,
+};
+use crate::impact::hertz;
+
+/// A design that a run found, by closed forms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The point of the box.
+    pub point: Vec<f64>,
+    /// The objectives there.
+    pub values: Vec<f64>,
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchRun {
+    /// Its number, from 0: the stream of its random numbers.
+    pub number: usize,
+    /// What it found: the best design, or with several objectives its front; nothing where no design rests and keeps the constraints.
+    pub found: Vec<Found>,
+    /// The best value after the random population and after every generation, infinite while there is none; with several objectives the size
+    /// of the front.
+    pub curve: Vec<f64>,
+    /// Generations after the random population.
+    pub generations: usize,
+    /// Designs that were followed.
+    pub evaluations: usize,
+    /// Those of them that have no closed form and were integrated.
+    pub integrated: usize,
+    /// Why it ended.
+    pub stop: Stop,
+}
+
+/// Who looks on at a study; nobody by default.
+pub struct Watch<'a> {
+    /// Whether to stop.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+    /// Hears of every run that has ended by itself.
+    pub done: &'a (dyn Fn(&SearchRun) + Sync),
+    /// Hears of so many more generations, of those that [`Question::most_work`] counts.
+    pub progress: &'a (dyn Fn(usize) + Sync),
+}
+
+impl Default for Watch<'_> {
+    fn default() -> Self {
+        Self {
+            stop: &|| false,
+            done: &|_| (),
+            progress: &|_| (),
+        }
+    }
+}
+
+/// How a number is spread over the runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// The least.
+    pub best: f64,
+    /// A quarter is no more than this.
+    pub lower_quartile: f64,
+    /// Half.
+    pub median: f64,
+    /// Three quarters.
+    pub upper_quartile: f64,
+    /// The greatest.
+    pub worst: f64,
+}
+
+impl Spread {
+    /// Of these values; nothing where there is none. Quartiles lie between values in proportion.
+    pub fn of(values: &[f64]) -> Option<Self> {
+        let mut values = values.to_vec();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let at = |part: f64| {
+            let place = part * last as f64;
+            let index = (place.floor() as usize).min(last);
+            let next = values[(index + 1).min(last)];
+            values[index] + (place - index as f64) * (next - values[index])
+        };
+        Some(Self {
+            best: values[0],
+            lower_quartile: at(0.25),
+            median: at(0.5),
+            upper_quartile: at(0.75),
+            worst: values[last],
+        })
+    }
+}
+
+/// Another search with as many evaluations, run as often.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rival {
+    /// `random search`
+    pub name: &'static str,
+    /// Evaluations of one run.
+    pub evaluations: usize,
+    /// The best value of every run; infinite where it found none.
+    pub values: Vec<f64>,
+    /// The median of the best values so far over the runs, after every population of evaluations.
+    pub curve: Vec<f64>,
+}
+
+impl Rival {
+    /// How the values are spread over the runs that found one.
+    pub fn spread(&self) -> Option<Spread> {
+        let found: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
+        Spread::of(&found)
+    }
+}
+
+/// A design that was judged again by integration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finalist {
+    /// The run that found it.
+    pub run: usize,
+    /// Its objectives by closed forms.
+    pub by_chain: Vec<f64>,
+    /// The design by integration.
+    pub design: Design,
+    /// Its objectives by integration; infinite where it has none.
+    pub values: Vec<f64>,
+    /// Whether it keeps the constraints by integration as well, with 1 % to spare for what closed forms leave out.
+    pub feasible: bool,
+}
+
+/// A search for the best design: the answer.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Study {
+    /// What was asked.
+    pub question: Question,
+    /// The runs, by their numbers.
+    pub runs: Vec<SearchRun>,
+    /// Whether all runs and all that stands beside them were done.
+    pub complete: bool,
+    /// The best designs of the runs judged again, the best first; with several objectives the front.
+    pub finalists: Vec<Finalist>,
+    /// The paper's Table 5 under the same assumptions, by integration, in the box or not.
+    pub papers: Option<Design>,
+    /// What decides the best design; with several objectives nothing.
+    pub decision: Option<Decision>,
+    /// Other searches with the same number of evaluations; none with several objectives.
+    pub rivals: Vec<Rival>,
+}
+
+/// The best of so many runs are judged again.
+const FINALISTS: usize = 10;
+
+/// What closed forms may be off where a constraint is judged again.
+const SPARE: f64 = 0.01;
+
+/// Streams of random numbers of the rivals.
+const RIVALS: [u64; 2] = [1 << 32, 1 << 33];
+
+impl Question {
+    /// The most generations of the whole study, those of the rivals among them.
+    pub fn most_work(&self) -> usize {
+        let rivals = if self.objectives.len() == 1 { 2 } else { 0 };
+        self.runs.saturating_mul((1 + rivals) * self.genetic.generations)
+    }
+
+    /// The value of a design in a search; what makes no motion is worth nothing.
+    fn worth(&self, point: &[f64], integrated: &mut usize) -> Evaluation {
+        match self.follow(point, Route::Chain, self.needs_contact()) {
+            Ok(design) => {
+                *integrated += usize::from(design.integrated);
+                self.evaluation(&design)
+            }
+            Err(_) => Evaluation {
+                objectives: vec![f64::INFINITY; self.objectives.len()],
+                equalities: self.density.map(|_| 1.0).into_iter().collect(),
+                inequalities: vec![1.0; self.limits.len() + usize::from(self.elastic)],
+            },
+        }
+    }
+
+    fn run(&self, space: &Space, number: usize, watch: &Watch) -> SearchRun {
+        let mut generator = generator(self.seed, number as u64);
+        let mut integrated = 0;
+        let mut go_on = |_| {
+            (watch.progress)(1);
+            !(watch.stop)()
+        };
+        let evaluate = |point: &[f64]| self.worth(point, &mut integrated);
+        let (front, run) = match self.objectives.len() {
+            1 => {
+                let run = search(space, evaluate, &self.genetic, &mut generator, &mut go_on);
+                (run.best.clone().into_iter().collect(), run)
+            }
+            _ => search_front(space, evaluate, &self.genetic, &mut generator, &mut go_on),
+        };
+        (watch.progress)(self.genetic.generations.saturating_sub(run.generations));
+        let found = |individual: Individual| Found {
+            point: individual.point,
+            values: individual.evaluation.objectives,
+        };
+        SearchRun {
+            number,
+            found: front.into_iter().map(found).collect(),
+            curve: run.curve,
+            generations: run.generations,
+            evaluations: run.evaluations,
+            integrated,
+            stop: run.stop,
+        }
+    }
+}
+
+/// Every number of a range, on all cores where there is the feature `parallel`; results in order.
+fn each<T: Send>(numbers: Vec<usize>, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    let numbers = numbers.into_par_iter();
+    #[cfg(not(feature = "parallel"))]
+    let numbers = numbers.into_iter();
+    numbers.map(work).collect()
+}
+
+/// Searches: all runs but those that are known already, on all threads of the current pool.
+///
+/// # Errors
+/// [`OptimizeError`]: options that make no search, a box in which nothing rests or keeps the constraints.
+pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Result<Study, OptimizeError> {
+    let space = question.check()?;
+    let missing: Vec<usize> = (0..question.runs)
+        .filter(|number| known.iter().all(|run| run.number != *number))
+        .collect();
+    (watch.progress)((question.runs - missing.len()) * question.genetic.generations);
+    // The first one has its random population at least: there is always something to hand back.
+    let first = missing.first().copied();
+    let one = |number| {
+        if first != Some(number) && (watch.stop)() {
+            return None;
+        }
+        let run = question.run(&space, number, watch);
+        if run.stop != Stop::Interrupted {
+            (watch.done)(&run);
+        }
+        Some(run)
+    };
+    let new = each(missing, one);
+    let mut runs: Vec<SearchRun> = known.into_iter().filter(|run| run.number < question.runs).collect();
+    runs.extend(new.into_iter().flatten());
+    runs.sort_by_key(|run| run.number);
+    if runs.is_empty() {
+        return Err(OptimizeError::Stopped);
+    }
+    let complete = runs.len() == question.runs && runs.iter().all(|run| run.stop != Stop::Interrupted);
+    if runs.iter().all(|run| run.found.is_empty()) {
+        return Err(nothing(&question, &space, complete));
+    }
+    let finalists = finalists(&question, &runs);
+    let (mut rivals, mut decision) = (vec![], None);
+    if question.objectives.len() == 1 {
+        decision = finalists
+            .first()
+            .map(|best| Decision::of(&question, &space, &best.design.point));
+        if complete {
+            rivals = self::rivals(&question, &space, &runs, watch);
+        }
+    }
+    // All of Table 5, also what is held fixed here.
+    let papers = question.papers_point().and_then(|point| {
+        let mut papers = question.clone();
+        papers.case.design = hertz::Design {
+            gravity: question.case.design.gravity,
+            ..hertz::Design::default()
+        };
+        papers.follow(&point, Route::Integration, true).ok()
+    });
+    Ok(Study {
+        complete: complete && !(watch.stop)(),
+        finalists,
+        papers,
+        decision,
+        rivals: if (watch.stop)() { vec![] } else { rivals },
+        runs,
+        question,
+    })
+}
+
+/// The same on so many threads.
+///
+/// # Errors
+/// As [`optimize`].
+#[cfg(feature = "parallel")]
+pub fn optimize_on(
+    threads: usize,
+    question: Question,
+    known: Vec<SearchRun>,
+    watch: &Watch,
+) -> Result<Study, OptimizeError> {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(|| optimize(question, known, watch)),
+        // Without threads of its own it runs on those there are.
+        Err(_) => optimize(question, known, watch),
+    }
+}
+
+/// Why nothing was found.
+fn nothing(question: &Question, space: &Space, complete: bool) -> OptimizeError {
+    if !complete {
+        return OptimizeError::Stopped;
+    }
+    // Whether anything rests at all, constraints aside.
+    let mut generator = generator(question.seed, u64::MAX);
+    let middle = space.at(&vec![0.5; space.bounds().len()]);
+    let mut reason = None;
+    let rests = (0..question.genetic.population.max(100)).any(|number| {
+        let point = if number == 0 {
+            middle.clone()
+        } else {
+            space.draw(&mut generator)
+        };
+        match question.follow(&point, Route::Chain, false) {
+            Ok(design) => {
+                reason = reason
+                    .take()
+                    .or(design.rest_time.err().map(|reason| reason.to_string()));
+                design.rest_time.is_ok()
+            }
+            Err(error) => {
+                reason = reason.take().or(Some(error));
+                false
+            }
+        }
+    });
+    match (rests, reason) {
+        (false, Some(reason)) => OptimizeError::NoRest {
+            duration: question.settings.duration,
+            reason,
+        },
+        _ => OptimizeError::NoFeasible {
+            constraints: question.constraints().join("; "),
+        },
+    }
+}
+
+fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
+    let mut found: Vec<(usize, &Found)> = runs
+        .iter()
+        .flat_map(|run| run.found.iter().map(move |found| (run.number, found)))
+        .collect();
+    if question.objectives.len() == 1 {
+        found.sort_by(|one, other| one.1.values[0].total_cmp(&other.1.values[0]));
+        found = distinct(question, &found);
+    } else {
+        found = front(&found, question.genetic.population);
+    }
+    let judge = |index: usize| {
+        let (run, found) = found[index];
+        let design = question.follow(&found.point, Route::Integration, true).ok()?;
+        let evaluation = question.evaluation(&design);
+        Some(Finalist {
+            run,
+            by_chain: found.values.clone(),
+            feasible: evaluation.inequalities.iter().all(|excess| *excess <= SPARE),
+            values: evaluation.objectives,
+            design,
+        })
+    };
+    let judged = each((0..found.len()).collect(), judge);
+    let mut finalists: Vec<Finalist> = judged.into_iter().flatten().collect();
+    // Those that keep the constraints first; of a front by the first objective.
+    finalists.sort_by(|one, other| {
+        let broken = one.feasible.cmp(&other.feasible).reverse();
+        broken.then(one.values[0].total_cmp(&other.values[0]))
+    });
+    finalists
+}
+
+/// The first designs that differ from those before by more than a part of the limits that nobody builds to.
+fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize, &'a Found)> {
+    const SAME: f64 = 1e-6;
+    let same = |one: &Found, other: &Found| {
+        let ranges = question
+            .variables
+            .iter()
+            .map(|variable| variable.upper - variable.lower);
+        // A material is a whole number.
+        let ranges = ranges.chain(std::iter::once(1.0 / SAME));
+        let pairs = one.point.iter().zip(&other.point).zip(ranges);
+        let mut distances = pairs.map(|((one, other), range)| (one - other).abs() / range);
+        distances.all(|distance| distance <= SAME)
+    };
+    let mut kept: Vec<(usize, &Found)> = Vec::new();
+    for candidate in found {
+        if kept.iter().all(|(_, other)| !same(candidate.1, other)) {
+            kept.push(*candidate);
+        }
+        if kept.len() == FINALISTS {
+            break;
+        }
+    }
+    kept
+}
+
+/// Whom nobody dominates among the fronts of all runs; the loneliest where they are too many.
+fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
+    let evaluation = |found: &Found| Evaluation {
+        objectives: found.values.clone(),
+        ..Evaluation::default()
+    };
+    let all: Vec<Evaluation> = found.iter().map(|(_, found)| evaluation(found)).collect();
+    let mut left = non_dominated(&all.iter().collect::<Vec<_>>(), 0.0);
+    while left.len() > most {
+        let standing: Vec<&Evaluation> = left.iter().map(|index| &all[*index]).collect();
+        let lonely = crowding(&standing);
+        // A tenth of what is too many at a time: neighbours that go together leave no gap.
+        let mut order: Vec<usize> = (0..left.len()).collect();
+        order.sort_by(|one, other| lonely[*one].total_cmp(&lonely[*other]));
+        let mut gone: Vec<usize> = order.into_iter().take((left.len() - most).div_ceil(10)).collect();
+        gone.sort_unstable();
+        for index in gone.into_iter().rev() {
+            left.remove(index);
+        }
+    }
+    left.into_iter().map(|index| found[index]).collect()
+}
+
+fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch) -> Vec<Rival> {
+    let Options {
+        population,
+        constraint_tolerance,
+        generations,
+        ..
+    } = question.genetic;
+    let total: usize = runs.iter().map(|run| run.evaluations).sum();
+    let evaluations = (total as f64 / runs.len() as f64).round() as usize;
+    let compete = |name: &'static str, work: &(dyn Fn(usize) -> Run + Sync)| {
+        let numbers = runs.iter().map(|run| run.number).collect();
+        let runs = each(numbers, |number| {
+            // Asked to stop, it is not used.
+            let run = (!(watch.stop)()).then(|| work(number));
+            (watch.progress)(generations);
+            run
+        });
+        let runs: Option<Vec<Run>> = runs.into_iter().collect();
+        let runs = runs?;
+        let length = runs.iter().map(|run| run.curve.len()).min().unwrap_or(0);
+        let median = |index: usize| {
+            let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
+            Spread::of(&values).map_or(f64::INFINITY, |spread| spread.median)
+        };
+        let value = |run: &Run| run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
+        Some(Rival {
+            name,
+            evaluations: runs.first().map_or(0, |run| run.evaluations),
+            values: runs.iter().map(value).collect(),
+            curve: (0..length).map(median).collect(),
+        })
+    };
+    let budget = (evaluations, population);
+    let worth = |point: &[f64]| question.worth(point, &mut 0);
+    let random = |number: usize| {
+        let mut generator = generator(question.seed, RIVALS[0] + number as u64);
+        random_search(space, worth, budget, constraint_tolerance, &mut generator)
+    };
+    let differential = |number: usize| {
+        let seed = rand::RngExt::random(&mut generator(question.seed, RIVALS[1] + number as u64));
+        differential_evolution(space, worth, budget, constraint_tolerance, seed)
+    };
+    [
+        compete("random search", &random),
+        compete("differential evolution", &differential),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+impl Study {
+    /// The best design that keeps the constraints, judged by integration; with several objectives the one best in the first.
+    pub fn best(&self) -> Option<&Finalist> {
+        self.finalists.first()
+    }
+
+    /// The best values of the runs that found one, by closed forms.
+    pub fn values(&self) -> Vec<f64> {
+        let value = |run: &SearchRun| Some(run.found.first()?.values[0]);
+        self.runs.iter().filter_map(value).collect()
+    }
+
+    /// How they are spread.
+    pub fn spread(&self) -> Option<Spread> {
+        Spread::of(&self.values())
+    }
+
+    /// All designs that the genetic algorithm followed, and those that were integrated for want of a closed form.
+    pub fn evaluations(&self) -> (usize, usize) {
+        let sum = |of: fn(&SearchRun) -> usize| self.runs.iter().map(of).sum();
+        (sum(|run| run.evaluations), sum(|run| run.integrated))
+    }
+
+    /// The median over the runs of the best value after each generation; runs that have ended keep theirs.
+    pub fn median_curve(&self) -> Vec<f64> {
+        let length = self.runs.iter().map(|run| run.curve.len()).max().unwrap_or(0);
+        let at = |index: usize| {
+            let last = |run: &SearchRun| run.curve.get(index).or(run.curve.last()).copied();
+            let values: Vec<f64> = self.runs.iter().filter_map(last).collect();
+            Spread::of(&values).map(|spread| spread.median)
+        };
+        (0..length).filter_map(at).collect()
+    }
+
+    /// The generation from which on the median run was within this part of its last value.
+    pub fn settled(&self, part: f64) -> Option<usize> {
+        let curve = self.median_curve();
+        let last = *curve.last()?;
+        curve.iter().position(|value| value - last <= part * last.abs())
+    }
+
+    /// The first objective.
+    pub fn objective(&self) -> Objective {
+        self.question.objectives.first().copied().unwrap_or(Objective::RestTime)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_lie_between_the_values() {
+        let spread = Spread::of(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
+        let numbers = [
+            spread.best,
+            spread.lower_quartile,
+            spread.median,
+            spread.upper_quartile,
+            spread.worst,
+        ];
+        assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 8.0]);
+        assert_eq!(Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile), Some(1.25));
+        assert_eq!(Spread::of(&[]), None);
+    }
+}

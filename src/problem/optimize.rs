@@ -1,0 +1,474 @@
+//! What `optimize` reads of a problem file: a pendulum and what damps it, `[limits]`, `[genetic]`, and `[[material]]` to choose from.
+//!
+//! In: a [`Problem`]. Out: a [`Question`]. A quantity of the paper's Table 4 varies between its limits there unless `[limits]` has others;
+//! given in `[design]`, or by its own name, it is fixed. With `[[material]]` a material takes the place of the modulus.
+
+use thiserror::Error;
+
+use super::simulate::refuse_two_forms;
+use super::{DesignError, MaterialsFileError, Objectives, Problem, ProblemError, Reader, SimulateError, UnreadKey};
+use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest};
+use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
+use crate::optimize::{Limit, Objective, OptimizeError, Question, TABLE_4, Variable};
+use crate::spelling::nearest;
+
+/// Why a problem file is no search.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum OptimizeFileError {
+    /// A key that belongs to another command.
+    #[error(transparent)]
+    Unread(#[from] UnreadKey),
+    /// The pendulum, what damps it, or the run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The bodies.
+    #[error(transparent)]
+    Bodies(#[from] DesignError),
+    /// The materials.
+    #[error(transparent)]
+    Materials(#[from] MaterialsFileError),
+    /// A swing without a barrier.
+    #[error("a search for the best damper needs a barrier: leave out `barrier = false`")]
+    NoBarrier,
+    /// An empty list.
+    #[error("`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out")]
+    NoMaterial,
+    /// A quantity that varies and is fixed.
+    #[error(
+        "`{fixed}` and `[limits] {name}` say the same: leave out `{fixed}` to search, or the limits to hold it fixed"
+    )]
+    FixedAndVaried {
+        /// The key that fixes it.
+        fixed: String,
+        /// Its name in `[limits]`.
+        name: &'static str,
+    },
+    /// A modulus beside materials.
+    #[error("`{0}` changes nothing beside [[material]], which have their own moduli: leave one of them out")]
+    ModulusBesideMaterials(String),
+    /// A density that has nothing to work on.
+    #[error("`[limits] density` makes the mass follow the radius: let mass and radius both vary, or leave it out")]
+    Density,
+    /// Bodies that may yield at any pressure.
+    #[error("`[limits] elastic` needs a yield limit: give `yield` in [sphere], [barrier] or [[material]]")]
+    NoYield,
+    /// A yield limit that nobody reads.
+    #[error("`{0}` changes nothing without `elastic = true` in [limits]: give that too, or leave it out")]
+    YieldAlone(&'static str),
+    /// A yield limit of what has one of its own.
+    #[error("`[barrier] yield` changes nothing beside [[material]]: give each material its `yield`")]
+    YieldBesideMaterials,
+    /// A name that is none.
+    #[error("[genetic] {key} = \"{name}\" is unknown: choose one of {}", .known.join(", "))]
+    Unknown {
+        /// The key.
+        key: &'static str,
+        /// What it says.
+        name: String,
+        /// What it may say.
+        known: Vec<&'static str>,
+    },
+    /// A key that another one leaves nothing to say.
+    #[error("`[genetic] {key}` changes nothing without {other}: give that too, or leave it out")]
+    NoEffect {
+        /// The key.
+        key: &'static str,
+        /// What it needs.
+        other: &'static str,
+    },
+    /// What the search itself refuses.
+    #[error(transparent)]
+    Question(#[from] OptimizeError),
+}
+
+impl OptimizeFileError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Simulate(error) => error.help(),
+            Self::Materials(error) => error.help(),
+            Self::Unknown { name, known, .. } => {
+                nearest(name, known.iter().copied()).map(|name| format!("did you mean \"{name}\"?"))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl From<ProblemError> for OptimizeFileError {
+    fn from(error: ProblemError) -> Self {
+        Self::Simulate(error.into())
+    }
+}
+
+/// The keys that fix a variable: in `[design]`, or by its own name.
+fn fixing(parameter: Parameter) -> [&'static str; 2] {
+    match parameter {
+        Parameter::Mass => ["[design] mass", "[pendulum] mass"],
+        Parameter::Radius => ["[design] radius", "[sphere] radius"],
+        Parameter::Length => ["[design] length", "[pendulum] length"],
+        _ => ["[design] modulus", "[barrier] modulus"],
+    }
+}
+
+/// The value that a name stands for.
+fn named<T: Clone>(
+    key: &'static str,
+    given: Option<&String>,
+    usual: T,
+    known: &[(&'static str, T)],
+) -> Result<T, OptimizeFileError> {
+    let Some(name) = given else {
+        return Ok(usual);
+    };
+    let found = known.iter().find(|(known, _)| known == name);
+    found
+        .map(|(_, value)| value.clone())
+        .ok_or_else(|| OptimizeFileError::Unknown {
+            key,
+            name: name.clone(),
+            known: known.iter().map(|(name, _)| *name).collect(),
+        })
+}
+
+impl Problem {
+    /// The search that this file asks for; an empty one is the paper's.
+    ///
+    /// # Errors
+    /// [`OptimizeFileError`] names the key. Whether the options make a search is seen by [`Question::check`].
+    ///
+    /// ```
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let file: Problem = "[limits]\nlength = [0.1, 0.2]\n[design]\nmass = 0.05".parse()?;
+    /// let asked = file.optimize()?;
+    /// assert_eq!(asked.variables.len(), 3); // radius, length, modulus
+    /// assert_eq!((asked.variables[1].lower, asked.case.design.mass), (0.1, 0.05));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn optimize(&self) -> Result<Question, OptimizeFileError> {
+        self.check_keys(Reader::Optimize)?;
+        let gives = |parameter| self.gives_parameter(parameter);
+        refuse_two_forms(gives)?;
+        self.check_pairs(gives)?;
+        let mut question = Question {
+            case: self.for_design().case()?,
+            ..Question::default()
+        };
+        let case = &mut question.case;
+        if case.left.is_none() && case.right.is_none() {
+            return Err(OptimizeFileError::NoBarrier);
+        }
+        question.defaults.clear();
+        if !ContactDamping::FORMS.into_iter().any(gives) {
+            case.contact_damping = ContactDamping::Lambda(default_lambda());
+            question.defaults.push(Parameter::Lambda);
+        }
+        if !gives(Parameter::Zeta) && !gives(Parameter::Viscous) {
+            case.zeta = DEFAULT_ZETA;
+            question.defaults.push(Parameter::Zeta);
+        }
+        question.settings = self.settings()?;
+        if !self.gives("[run] duration") {
+            question.settings.duration = DEFAULT_DURATION;
+        }
+        self.boundaries(&mut question)?;
+        self.kept(&mut question)?;
+        self.search_options(&mut question)?;
+        Ok(question)
+    }
+
+    /// What varies.
+    fn boundaries(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+        let limits = &self.limits;
+        if self.material.is_empty() && self.gives("[[material]]") {
+            return Err(OptimizeFileError::NoMaterial);
+        }
+        self.own_materials(&mut question.materials)?;
+        question.variables.clear();
+        for (parameter, lower, upper) in TABLE_4 {
+            let given = match parameter {
+                Parameter::Mass => limits.mass,
+                Parameter::Radius => limits.radius,
+                Parameter::Length => limits.length,
+                _ => limits.modulus,
+            };
+            let fixed = fixing(parameter).into_iter().find(|key| self.gives(key));
+            let name = parameter.name();
+            if parameter == Parameter::Modulus && !question.materials.is_empty() {
+                let key = fixed
+                    .map(str::to_owned)
+                    .or(given.map(|_| "[limits] modulus".to_owned()));
+                match key {
+                    Some(key) => return Err(OptimizeFileError::ModulusBesideMaterials(key)),
+                    None => continue,
+                }
+            }
+            match (given, fixed) {
+                (Some(_), Some(fixed)) => {
+                    let fixed = fixed.to_owned();
+                    return Err(OptimizeFileError::FixedAndVaried { fixed, name });
+                }
+                (None, Some(_)) => {}
+                (given, None) => {
+                    let [lower, upper] = given.map_or([lower, upper], |range| range.0);
+                    question.variables.push(Variable {
+                        parameter,
+                        lower,
+                        upper,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What must be kept.
+    fn kept(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+        let limits = &self.limits;
+        let of = [
+            (Objective::RestTime, limits.max_rest_time),
+            (Objective::DimensionlessRestTime, limits.max_dimensionless_rest_time),
+            (Objective::PeakForce, limits.max_peak_force),
+            (Objective::PeakPressure, limits.max_peak_pressure),
+            (Objective::Impacts, limits.max_impacts),
+        ];
+        question.limits = of
+            .into_iter()
+            .filter_map(|(objective, limit)| {
+                Some(Limit {
+                    objective,
+                    at_most: limit?,
+                })
+            })
+            .collect();
+        question.density = limits.density;
+        let varies = |parameter| {
+            question
+                .variables
+                .iter()
+                .any(|variable| variable.parameter == parameter)
+        };
+        if limits.density.is_some() && !(varies(Parameter::Mass) && varies(Parameter::Radius)) {
+            return Err(OptimizeFileError::Density);
+        }
+        question.sphere_yield = self.yield_limit("[sphere] yield", self.sphere.yield_limit)?;
+        question.barrier_yield = self.yield_limit("[barrier] yield", self.barrier.yield_limit)?;
+        question.elastic = limits.elastic;
+        let materials = &question.materials;
+        if question.barrier_yield.is_some() && !materials.is_empty() {
+            return Err(OptimizeFileError::YieldBesideMaterials);
+        }
+        let stated = [
+            ("[sphere] yield", question.sphere_yield.is_some()),
+            ("[barrier] yield", question.barrier_yield.is_some()),
+            (
+                "[[material]] yield",
+                materials.iter().any(|material| material.yield_limit.is_some()),
+            ),
+        ];
+        match (limits.elastic, stated.into_iter().find(|(_, stated)| *stated)) {
+            (true, None) => Err(OptimizeFileError::NoYield),
+            (false, Some((key, _))) => Err(OptimizeFileError::YieldAlone(key)),
+            _ => Ok(()),
+        }
+    }
+
+    /// How it is searched.
+    fn search_options(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+        let section = &self.genetic;
+        let names = match &section.objective {
+            None => vec![Objective::RestTime.name().to_owned()],
+            Some(Objectives::One(name)) => vec![name.clone()],
+            Some(Objectives::Several(names)) => names.clone(),
+        };
+        let objective = |name: &String| {
+            let known = Objective::ALL.map(|objective| (objective.name(), objective));
+            named("objective", Some(name), Objective::RestTime, &known)
+        };
+        question.objectives = names.iter().map(objective).collect::<Result<_, _>>()?;
+        let needs = |key: &'static str, there: bool, other: &'static str| match self.gives(&format!("[genetic] {key}"))
+            && !there
+        {
+            true => Err(OptimizeFileError::NoEffect { key, other }),
+            false => Ok(()),
+        };
+        let constrained = question.density.is_some() || question.elastic || !question.limits.is_empty();
+        let options = &mut question.genetic;
+        let count = |given: Option<u32>, usual: usize| given.map_or(usual, |given| given as usize);
+        options.population = count(section.population, options.population);
+        options.generations = count(section.generations, options.generations);
+        options.constraint_tolerance = section.constraint_tolerance.unwrap_or(options.constraint_tolerance);
+        needs("constraint_tolerance", question.density.is_some(), "[limits] density")?;
+        question.seed = section.seed.unwrap_or(question.seed);
+        if question.objectives.len() > 1 {
+            question.runs = count(section.runs, SEVERAL_RUNS);
+            options.generations = count(section.generations, SEVERAL_GENERATIONS);
+            for key in ONE_OBJECTIVE {
+                if self.gives(&format!("[genetic] {key}")) {
+                    return Err(OptimizeError::OneObjective(key).into());
+                }
+            }
+            return Ok(());
+        }
+        question.runs = count(section.runs, question.runs);
+        options.elite = count(section.elite, options.elite);
+        options.crossover_fraction = section.crossover_fraction.unwrap_or(options.crossover_fraction);
+        options.stall_generations = count(section.stall_generations, options.stall_generations);
+        options.function_tolerance = section.function_tolerance.unwrap_or(options.function_tolerance);
+        let bits = section.bits.unwrap_or(DEFAULT_BITS);
+        let coding = [("real", Coding::Real), ("bits", Coding::Bits(bits))];
+        options.coding = named("coding", section.coding.as_ref(), options.coding, &coding)?;
+        let of_bits = options.coding != Coding::Real;
+        needs("bits", of_bits, "coding = \"bits\"")?;
+        let usual = match of_bits {
+            true => (Crossover::Scattered, Mutation::BitFlips(DEFAULT_RATE)),
+            false => (options.crossover, options.mutation),
+        };
+        let ratio = section.crossover_ratio.unwrap_or(1.2);
+        let crossover = [
+            ("heuristic", Crossover::Heuristic(ratio)),
+            ("scattered", Crossover::Scattered),
+            ("one-point", Crossover::OnePoint),
+        ];
+        let usual_crossover = match usual.0 {
+            Crossover::Heuristic(_) => Crossover::Heuristic(ratio),
+            other => other,
+        };
+        options.crossover = named("crossover", section.crossover.as_ref(), usual_crossover, &crossover)?;
+        let heuristic = matches!(options.crossover, Crossover::Heuristic(_));
+        needs("crossover_ratio", heuristic, "crossover = \"heuristic\"")?;
+        let rate = section.mutation_rate.unwrap_or(DEFAULT_RATE);
+        let mutation = [
+            ("adaptive-feasible", Mutation::AdaptiveFeasible),
+            ("bit-flip", Mutation::BitFlips(rate)),
+        ];
+        let usual_mutation = match usual.1 {
+            Mutation::BitFlips(_) => Mutation::BitFlips(rate),
+            Mutation::AdaptiveFeasible => Mutation::AdaptiveFeasible,
+        };
+        options.mutation = named("mutation", section.mutation.as_ref(), usual_mutation, &mutation)?;
+        let flips = matches!(options.mutation, Mutation::BitFlips(_));
+        needs("mutation_rate", flips, "mutation = \"bit-flip\"")?;
+        let lagrangian = Penalty::AugmentedLagrangian {
+            initial: section.initial_penalty.unwrap_or(10.0),
+            factor: section.penalty_factor.unwrap_or(100.0),
+        };
+        let penalty = [
+            ("death", Penalty::Death),
+            ("feasible-first", Penalty::FeasibleFirst),
+            ("augmented-lagrangian", lagrangian),
+        ];
+        // No random design has just the density: death would leave nobody.
+        let usual = match question.density {
+            Some(_) => lagrangian,
+            None => Penalty::Death,
+        };
+        options.penalty = named("penalty", section.penalty.as_ref(), usual, &penalty)?;
+        let is_lagrangian = matches!(options.penalty, Penalty::AugmentedLagrangian { .. });
+        needs(
+            "penalty",
+            constrained,
+            "a constraint beyond the limits of the variables, in [limits]",
+        )?;
+        needs("initial_penalty", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
+        needs("penalty_factor", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
+        let tests = [("average", StallTest::Average), ("weighted", StallTest::Weighted)];
+        options.stall_test = named("stall_test", section.stall_test.as_ref(), options.stall_test, &tests)?;
+        Ok(())
+    }
+}
+
+/// Bits of a number, where they are not given.
+const DEFAULT_BITS: u32 = 16;
+
+/// How often a bit is turned over, where it is not given.
+const DEFAULT_RATE: f64 = 0.01;
+
+/// Runs of a search for a front, where they are not given.
+const SEVERAL_RUNS: usize = 10;
+
+/// Generations of one, where they are not given.
+const SEVERAL_GENERATIONS: usize = 100;
+
+/// What says nothing to a search for a front.
+const ONE_OBJECTIVE: [&str; 14] = [
+    "elite",
+    "crossover_fraction",
+    "crossover",
+    "crossover_ratio",
+    "mutation",
+    "mutation_rate",
+    "coding",
+    "bits",
+    "penalty",
+    "initial_penalty",
+    "penalty_factor",
+    "stall_generations",
+    "function_tolerance",
+    "stall_test",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(text: &str) -> Result<Question, OptimizeFileError> {
+        text.parse::<Problem>().unwrap().optimize()
+    }
+
+    #[test]
+    fn an_empty_file_is_the_papers_study() {
+        let (of_file, of_library) = (asked("").unwrap(), Question::default());
+        assert_eq!(
+            Question {
+                settings: of_library.settings,
+                ..of_file
+            },
+            of_library
+        );
+    }
+
+    #[test]
+    fn what_would_change_nothing_is_refused() {
+        for (text, words) in [
+            ("[limits]\nmass = [1, 2]\n[design]\nmass = 1", "[limits] mass"),
+            (
+                "[limits]\nmodulus = [1, 2]\n[[material]]\nname = \"A\"\nmodulus = 1e9",
+                "[[material]]",
+            ),
+            (
+                "[design]\nmodulus = 1e9\n[[material]]\nname = \"A\"\nmodulus = 1e9",
+                "[[material]]",
+            ),
+            ("[limits]\ndensity = 7850\n[design]\nradius = 0.01", "density"),
+            ("[limits]\nelastic = true", "yield limit"),
+            ("[sphere]\nyield = 1e9", "elastic"),
+            ("[genetic]\npenalty = \"death\"", "penalty"),
+            ("[genetic]\ninitial_penalty = 10", "initial_penalty"),
+            ("[genetic]\nbits = 8", "bits"),
+            ("[genetic]\nmutation_rate = 0.1", "bit-flip"),
+            ("[genetic]\nobjective = [\"mass\", \"rest_time\"]\nelite = 2", "NSGA-II"),
+            ("[genetic]\nobjective = \"rest\"", "unknown"),
+        ] {
+            let error = asked(text).expect_err(text).to_string();
+            assert!(error.contains(words), "{text}: {error}");
+        }
+        let error = asked("[genetic]\ncrossover = \"heuristics\"").unwrap_err();
+        assert_eq!(error.help().as_deref(), Some("did you mean \"heuristic\"?"));
+    }
+
+    #[test]
+    fn bits_have_operators_of_their_own() {
+        let options = asked("[genetic]\ncoding = \"bits\"").unwrap().genetic;
+        assert_eq!(options.coding, Coding::Bits(16));
+        assert_eq!(
+            (options.crossover, options.mutation),
+            (Crossover::Scattered, Mutation::BitFlips(0.01))
+        );
+        assert_eq!(options.check(), Ok(()));
+        let mixed = asked("[genetic]\ncoding = \"bits\"\ncrossover = \"heuristic\"").unwrap();
+        assert!(mixed.genetic.check().is_err());
+    }
+}

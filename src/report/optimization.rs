@@ -1,0 +1,870 @@
+//! A search for the best damper: what was asked, the best design beside the paper's, how far the runs agree, what else finds as much, and what
+//! decides; or the front of several objectives. The sentences follow from the numbers.
+
+use super::materials::{cell, chosen, head, in_words, percent};
+use super::{Block, Document, Heading};
+use crate::decimal::{decimal, significant};
+use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest, Stop};
+use crate::impact::{Model, Parameter, REST_FRACTION};
+use crate::optimize::{Design, Objective, Role, Sensitivity, Spread, Study, WITHIN};
+
+/// Rows of a front that are listed; JSON and tables of comma-separated values have all.
+const LISTED: usize = 24;
+
+/// Generations whose best value is listed.
+const GENERATIONS: [usize; 9] = [0, 1, 2, 5, 10, 20, 50, 100, 200];
+
+/// The document of a search.
+///
+/// ```
+/// use lindstedt::optimize::{Question, Watch, optimize};
+///
+/// let study = optimize(Question { runs: 1, ..Question::default() }, vec![], &Watch::default())?;
+/// let document = lindstedt::report::optimization(&study);
+/// assert!(lindstedt::export::text::document(&document, 120).contains("What decides"));
+/// # Ok::<(), lindstedt::optimize::OptimizeError>(())
+/// ```
+pub fn optimization(study: &Study) -> Document<'_> {
+    let mut sections = vec![asked(study)];
+    match study.question.objectives.len() {
+        1 => {
+            sections.push(best_design(study));
+            sections.push(agreement(study));
+            sections.extend(decision(study));
+        }
+        _ => sections.push(front(study)),
+    }
+    sections.push(optimization_sentences(study).into_iter().map(Block::Sentence).collect());
+    Document { sections }
+}
+
+/// `rest time, s`
+fn column(objective: Objective) -> Heading {
+    let (text, latex) = match objective {
+        Objective::RestTime => ("rest, s", "rest, s"),
+        Objective::DimensionlessRestTime => ("rest, 1/omega", "rest, $1/\\omega$"),
+        Objective::PeakForce => ("force, N", "force, N"),
+        Objective::PeakPressure => ("pressure, Pa", "pressure, Pa"),
+        Objective::Mass => ("mass, kg", "mass, kg"),
+        Objective::Impacts => ("impacts", "impacts"),
+    };
+    Heading { text, latex }
+}
+
+/// A value with its unit.
+fn with_unit(objective: Objective, value: f64) -> String {
+    format!("{} {}", decimal(value), objective.unit()).trim_end().to_owned()
+}
+
+/// `length`, or `material` beyond the numbers.
+fn name_of(study: &Study, index: usize) -> &'static str {
+    let variable = study.question.variables.get(index);
+    variable.map_or("material", |variable| variable.parameter.name())
+}
+
+/// What a design has for a variable.
+fn value_of(study: &Study, design: &Design, index: usize) -> String {
+    match study.question.variables.get(index) {
+        Some(variable) => cell(design.case.get(variable.parameter)),
+        None => material_of(study, design),
+    }
+}
+
+fn material_of(study: &Study, design: &Design) -> String {
+    let material = design.material.and_then(|number| study.question.materials.get(number));
+    material.map_or("-".to_owned(), |material| material.name.clone())
+}
+
+fn asked(study: &Study) -> Vec<Block<'_>> {
+    let question = &study.question;
+    let wishes: Vec<&str> = question
+        .objectives
+        .iter()
+        .map(|objective| objective.meaning())
+        .collect();
+    let runs = match question.runs {
+        1 => "one run".to_owned(),
+        runs => format!("{runs} runs"),
+    };
+    let search = match question.objectives.len() {
+        1 => "a genetic algorithm",
+        _ => "NSGA-II",
+    };
+    let mut blocks = vec![
+        Block::Heading(format!("The best damper by {runs} of {search}: the least of")),
+        Block::Note(wishes.join("; ")),
+    ];
+    let Some(best) = study.best() else {
+        return blocks;
+    };
+    let Model {
+        zeta,
+        alpha,
+        ref left,
+        ref right,
+        ..
+    } = best.design.model;
+    let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
+    let dry = if alpha == 0.0 { "" } else { " + alpha*sgn(x')" };
+    let (x, velocity) = match question.motion_of(&best.design.point) {
+        Some((_, start)) => (start.x, start.velocity),
+        None => (f64::NAN, f64::NAN),
+    };
+    blocks.push(Block::Note(format!(
+        "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
+        decimal(x),
+        decimal(velocity)
+    )));
+    let value = |name: &str, value, source| Block::Value {
+        name: name.into(),
+        value,
+        source,
+    };
+    blocks.extend(left.map(|left| value("xl", left, Some("the left barrier"))));
+    blocks.extend(right.map(|right| value("xc", right, None)));
+    blocks.push(Block::SiValue {
+        name: "g",
+        formula: None,
+        value: question.case.design.gravity,
+        unit: "m/s^2",
+        words: "gravity",
+    });
+    let default = ", by default: the paper prints none";
+    let said = |parameter| {
+        if question.defaults.contains(&parameter) {
+            default
+        } else {
+            ""
+        }
+    };
+    let damping = question.case.contact_damping;
+    blocks.push(Block::Note(format!(
+        "held fixed: {}{}{}",
+        in_words(damping),
+        question
+            .case
+            .at_speed
+            .map_or(String::new(), |speed| format!(" at the speed {}", decimal(speed))),
+        said(damping.form())
+    )));
+    if question.case.zeta != 0.0 || question.case.viscous.is_some() {
+        let forms = [
+            (Parameter::Viscous, question.case.viscous, "N s/m"),
+            (Parameter::Zeta, Some(question.case.zeta), ""),
+        ];
+        let given = match question.case.viscous {
+            Some(_) => Parameter::Viscous,
+            None => Parameter::Zeta,
+        };
+        blocks.push(Block::Note(chosen(given, forms) + said(Parameter::Zeta)));
+    }
+    if question.case.alpha != 0.0 || question.case.torque.is_some() {
+        let forms = [
+            (Parameter::Torque, question.case.torque, "N m"),
+            (Parameter::Alpha, Some(question.case.alpha), ""),
+        ];
+        let given = match question.case.torque {
+            Some(_) => Parameter::Torque,
+            None => Parameter::Alpha,
+        };
+        blocks.push(Block::Note(chosen(given, forms)));
+    }
+    for (parameter, unit) in [
+        (Parameter::Mass, "kg"),
+        (Parameter::Radius, "m"),
+        (Parameter::Length, "m"),
+        (Parameter::Modulus, "Pa"),
+    ] {
+        let varies = question
+            .variables
+            .iter()
+            .any(|variable| variable.parameter == parameter);
+        let of_material = parameter == Parameter::Modulus && !question.materials.is_empty();
+        if !varies && !of_material {
+            let value = cell(question.case.get(parameter));
+            blocks.push(Block::Note(format!(
+                "held fixed: {} = {value} {unit}",
+                parameter.name()
+            )));
+        }
+    }
+    blocks.push(Block::Note(format!(
+        "followed by closed forms until t = {}; rest: {} % of the amplitude of the first swing",
+        decimal(question.settings.duration),
+        decimal(100.0 * REST_FRACTION)
+    )));
+    for constraint in question.constraints() {
+        blocks.push(Block::Note(format!("constraint: {constraint}")));
+    }
+    blocks.extend(options(study).into_iter().map(Block::Sentence));
+    blocks
+}
+
+/// How it was searched.
+fn options(study: &Study) -> Vec<String> {
+    let question = &study.question;
+    let Options {
+        population,
+        elite,
+        crossover_fraction,
+        coding,
+        crossover,
+        mutation,
+        penalty,
+        generations,
+        stall_generations,
+        function_tolerance,
+        stall_test,
+        budget,
+        ..
+    } = question.genetic;
+    let (evaluations, integrated) = study.evaluations();
+    let mut words = vec![];
+    if question.objectives.len() == 1 {
+        let coding = match coding {
+            Coding::Real => "real numbers".to_owned(),
+            Coding::Bits(bits) => format!("{bits} bits a number"),
+        };
+        let crossover = match crossover {
+            Crossover::Heuristic(ratio) => format!("heuristic crossover of ratio {} kept feasible", decimal(ratio)),
+            Crossover::Scattered => "scattered crossover".to_owned(),
+            Crossover::OnePoint => "one-point crossover".to_owned(),
+        };
+        let mutation = match mutation {
+            Mutation::AdaptiveFeasible => "adaptive feasible mutation".to_owned(),
+            Mutation::BitFlips(rate) => format!("bit flips at {}", decimal(rate)),
+        };
+        let penalty = match penalty {
+            _ if question.constraints().is_empty() => "no constraint beyond the limits, so no penalty",
+            Penalty::Death => "death penalty",
+            Penalty::FeasibleFirst => "feasible designs first",
+            Penalty::AugmentedLagrangian { .. } => "augmented Lagrangian",
+        };
+        let penalty = match question.genetic.penalty {
+            Penalty::AugmentedLagrangian { initial, factor } if !question.constraints().is_empty() => format!(
+                "{penalty} of initial penalty {} and factor {}",
+                decimal(initial),
+                decimal(factor)
+            ),
+            _ => penalty.to_owned(),
+        };
+        words.push(format!(
+            "population {population}, {coding}, rank scaling, stochastic uniform selection, elite {elite}, {crossover} for the fraction {} of \
+             the others, {mutation} for the rest; {penalty}",
+            decimal(crossover_fraction)
+        ));
+        let test = match stall_test {
+            StallTest::Average => "the average change",
+            StallTest::Weighted => "the weighted average change",
+        };
+        words.push(format!(
+            "ends where {test} of the best value over {stall_generations} generations is {} or less, after {generations} generations at the \
+             latest",
+            decimal(function_tolerance)
+        ));
+    } else {
+        words.push(format!(
+            "population {population}, real numbers, {generations} generations, simulated binary crossover, polynomial mutation"
+        ));
+    }
+    if let Some(budget) = budget {
+        words.push(format!("no more than {budget} evaluations a run"));
+    }
+    words.push(format!(
+        "seed {}, run i with its i-th stream; {evaluations} designs followed, {integrated} of them integrated for want of a closed form",
+        question.seed
+    ));
+    words
+}
+
+/// The numbers of a design beside each other.
+fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
+    let mut rows: Vec<(Heading, String)> = [
+        Objective::RestTime,
+        Objective::DimensionlessRestTime,
+        Objective::Impacts,
+        Objective::PeakForce,
+        Objective::PeakPressure,
+    ]
+    .into_iter()
+    .map(|objective| (column(objective), cell(objective.value(design))))
+    .collect();
+    let plain = |text: &'static str, latex: &'static str| Heading { text, latex };
+    rows.push((plain("gamma", "$\\gamma$"), decimal(design.model.gamma)));
+    rows.push((
+        plain("mu/gamma", "$\\mu/\\gamma$"),
+        decimal(design.model.mu / design.model.gamma),
+    ));
+    let restitution = design.hardest.map(|contact| contact.restitution);
+    rows.push((plain("restitution", "restitution"), cell(restitution)));
+    if let Some(limit) = study.question.yield_limit(design) {
+        let pressure = Objective::PeakPressure.value(design);
+        rows.push((
+            plain("pressure/(1.6 Y)", "pressure/(1.6 Y)"),
+            cell(pressure.map(|pressure| pressure / (crate::impact::FIRST_YIELD * limit))),
+        ));
+    }
+    rows
+}
+
+fn best_design(study: &Study) -> Vec<Block<'_>> {
+    let Some(best) = study.best() else {
+        return vec![];
+    };
+    let units = |index: usize| {
+        let variable = study.question.variables.get(index);
+        variable.map_or("", |variable| variable.parameter.unit())
+    };
+    let mut rows: Vec<Vec<String>> = (0..best.design.point.len())
+        .map(|index| {
+            let limits = study.question.variables.get(index);
+            vec![
+                format!("{}, {}", name_of(study, index), units(index))
+                    .trim_end_matches(", ")
+                    .to_owned(),
+                value_of(study, &best.design, index),
+                study
+                    .papers
+                    .as_ref()
+                    .map_or("-".to_owned(), |papers| value_of(study, papers, index)),
+                cell(limits.map(|variable| variable.lower)),
+                cell(limits.map(|variable| variable.upper)),
+            ]
+        })
+        .collect();
+    let papers = study.papers.as_ref().map(|papers| quantities(study, papers));
+    for (index, (name, value)) in quantities(study, &best.design).into_iter().enumerate() {
+        let other = papers.as_ref().and_then(|papers| papers.get(index));
+        rows.push(vec![
+            name.text.to_owned(),
+            value,
+            other.map_or("-".to_owned(), |(_, value)| value.clone()),
+            String::new(),
+            String::new(),
+        ]);
+    }
+    let mut blocks = vec![
+        Block::Heading(
+            "The best design, and the paper's Table 5 under the same assumptions, both integrated".to_owned(),
+        ),
+        Block::Table {
+            head: head(&[
+                ("", ""),
+                ("best", "best"),
+                ("Table 5", "Table 5"),
+                ("limit from", "limit from"),
+                ("to", "to"),
+            ]),
+            rows,
+        },
+    ];
+    let off: Vec<f64> = study
+        .finalists
+        .iter()
+        .filter(|finalist| finalist.values[0].is_finite())
+        .map(|finalist| (finalist.by_chain[0] / finalist.values[0] - 1.0).abs())
+        .collect();
+    let worst = off.iter().copied().fold(0.0, f64::max);
+    let judged = match study.finalists.len() {
+        1 => "one design was judged again by integration; its closed form is".to_owned(),
+        count => format!(
+            "the best {count} different designs of the runs were judged again by integration; closed forms are at most"
+        ),
+    };
+    blocks.push(Block::Note(format!("{judged} {} off", percent(worst))));
+    if !best.feasible {
+        blocks.push(Block::Sentence(
+            "warning: by integration no design that was found keeps the constraints; closed forms say it does"
+                .to_owned(),
+        ));
+    }
+    blocks
+}
+
+fn agreement(study: &Study) -> Vec<Block<'_>> {
+    let row = |name: &str, evaluations: usize, spread: Option<Spread>| {
+        let of = |number: fn(Spread) -> f64| cell(spread.map(number));
+        vec![
+            name.to_owned(),
+            evaluations.to_string(),
+            of(|spread| spread.best),
+            of(|spread| spread.lower_quartile),
+            of(|spread| spread.median),
+            of(|spread| spread.upper_quartile),
+            of(|spread| spread.worst),
+        ]
+    };
+    let (evaluations, _) = study.evaluations();
+    let each = (evaluations as f64 / study.runs.len().max(1) as f64).round() as usize;
+    let mut rows = vec![row("genetic algorithm", each, study.spread())];
+    rows.extend(
+        study
+            .rivals
+            .iter()
+            .map(|rival| row(rival.name, rival.evaluations, rival.spread())),
+    );
+    let found = study.values().len();
+    let count = study.runs.len();
+    let with_value = match found == count {
+        true => format!("{count} runs each"),
+        false => format!(
+            "{count} runs each; of the genetic algorithm {found} found a design that rests and keeps the constraints"
+        ),
+    };
+    let curve = study.median_curve();
+    let shown: Vec<usize> = GENERATIONS
+        .into_iter()
+        .filter(|generation| generation + 1 < curve.len())
+        .chain(curve.len().checked_sub(1))
+        .collect();
+    let number = |value: f64| {
+        if value.is_finite() {
+            significant(value, 7)
+        } else {
+            "-".to_owned()
+        }
+    };
+    vec![
+        Block::Heading(format!(
+            "How far the runs agree, and what as many evaluations find otherwise: {}, {}, by closed forms",
+            study.objective().meaning(),
+            study.objective().unit()
+        )),
+        Block::Table {
+            head: head(&[
+                ("search", "search"),
+                ("evaluations", "evaluations"),
+                ("best", "best"),
+                ("lower quartile", "lower quartile"),
+                ("median", "median"),
+                ("upper quartile", "upper quartile"),
+                ("worst", "worst"),
+            ]),
+            rows,
+        },
+        Block::Note(with_value),
+        Block::Table {
+            head: head(&[
+                ("generation", "generation"),
+                ("best so far, median", "best so far, median"),
+            ]),
+            rows: shown
+                .into_iter()
+                .map(|generation| vec![generation.to_string(), number(curve[generation])])
+                .collect(),
+        },
+    ]
+}
+
+fn decision(study: &Study) -> Option<Vec<Block<'_>>> {
+    let decision = study.decision.as_ref()?;
+    let row = |sensitivity: &Sensitivity| {
+        let [from, to] = sensitivity.alone;
+        let range = sensitivity.range;
+        vec![
+            sensitivity.parameter.name().to_owned(),
+            decimal(sensitivity.value),
+            sensitivity
+                .elasticity
+                .map_or("-".to_owned(), |slope| significant(slope, 3)),
+            significant(from, 4),
+            significant(to, 4),
+            cell(range.map(|range| range[0])),
+            cell(range.map(|range| range[1])),
+            sensitivity.role.name().to_owned(),
+        ]
+    };
+    let mut blocks = vec![
+        Block::Heading("What decides: every variable alone, the others held at the best design".to_owned()),
+        Block::Table {
+            head: head(&[
+                ("variable", "variable"),
+                ("best", "best"),
+                ("elasticity", "elasticity"),
+                ("as good from", "as good from"),
+                ("to", "to"),
+                ("least", "least"),
+                ("greatest", "greatest"),
+                ("role", "role"),
+            ]),
+            rows: decision.sensitivities.iter().map(row).collect(),
+        },
+        Block::Note(
+            "elasticity: change of the objective in % for 1 % of the variable; as good: no more than 1 % worse"
+                .to_owned(),
+        ),
+        Block::Note(
+            "least and greatest: of the objective over the whole range between the limits, constraints aside"
+                .to_owned(),
+        ),
+    ];
+    if decision.materials.len() > 1 {
+        let rows = study.question.materials.iter().zip(&decision.materials);
+        blocks.push(Block::Table {
+            head: vec![
+                Heading {
+                    text: "material, the rest as it is best",
+                    latex: "material, the rest as it is best",
+                },
+                column(study.objective()),
+            ],
+            rows: rows
+                .map(|(material, value)| vec![material.name.clone(), cell(*value)])
+                .collect(),
+        });
+    }
+    Some(blocks)
+}
+
+fn front(study: &Study) -> Vec<Block<'_>> {
+    let question = &study.question;
+    let mut names: Vec<Heading> = question.objectives.iter().copied().map(column).collect();
+    let variables = question.variables.iter().map(|variable| {
+        let (text, latex) = match variable.parameter {
+            Parameter::Mass => ("m, kg", "$m$, kg"),
+            Parameter::Radius => ("R, m", "$R$, m"),
+            Parameter::Length => ("L, m", "$L$, m"),
+            _ => ("E, Pa", "$E$, Pa"),
+        };
+        Heading { text, latex }
+    });
+    names.extend(variables);
+    let materials = !question.materials.is_empty();
+    names.extend(materials.then_some(Heading {
+        text: "material",
+        latex: "material",
+    }));
+    let row = |values: Vec<String>, design: &Design| {
+        let numbers = question
+            .variables
+            .iter()
+            .map(|variable| cell(design.case.get(variable.parameter)));
+        let material = materials.then(|| material_of(study, design));
+        values
+            .into_iter()
+            .chain(numbers)
+            .chain(material)
+            .collect::<Vec<String>>()
+    };
+    let count = study.finalists.len();
+    let shown: Vec<usize> = match count > LISTED {
+        true => (0..LISTED).map(|place| place * (count - 1) / (LISTED - 1)).collect(),
+        false => (0..count).collect(),
+    };
+    let number = |value: &f64| cell(Some(*value).filter(|value| value.is_finite()));
+    let mut blocks = vec![
+        Block::Heading(format!(
+            "The front: {count} designs none of which is better than another in everything, integrated{}",
+            if shown.len() < count {
+                format!(", {} of them", shown.len())
+            } else {
+                String::new()
+            }
+        )),
+        Block::Table {
+            head: names,
+            rows: shown
+                .into_iter()
+                .map(|index| {
+                    let finalist = &study.finalists[index];
+                    row(finalist.values.iter().map(number).collect(), &finalist.design)
+                })
+                .collect(),
+        },
+    ];
+    if let Some(papers) = &study.papers {
+        let values: Vec<String> = question
+            .objectives
+            .iter()
+            .map(|objective| {
+                let value = objective
+                    .value(papers)
+                    .map_or("no value".to_owned(), |value| with_unit(*objective, value));
+                format!("{} {value}", objective.meaning())
+            })
+            .collect();
+        blocks.push(Block::Sentence(format!(
+            "the paper's Table 5 under the same assumptions: {}",
+            values.join(", ")
+        )));
+    }
+    blocks
+}
+
+/// `mass, radius and modulus`
+fn listed(names: &[&str]) -> String {
+    match names.split_last() {
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, names)) => format!("{} and {last}", names.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// What the numbers of a search say, in sentences.
+pub fn optimization_sentences(study: &Study) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if !study.complete {
+        sentences.push(format!(
+            "Stopped before the end: {} of {} runs are in this result, and what was left is missing.",
+            study.runs.len(),
+            study.question.runs
+        ));
+    }
+    match study.question.objectives.len() {
+        1 => {
+            sentences.extend(what_decides(study));
+            sentences.extend(the_unit(study));
+            sentences.extend(the_papers(study));
+            sentences.extend(the_rivals(study));
+            sentences.extend(the_generations(study));
+        }
+        _ => sentences.extend(the_front(study)),
+    }
+    sentences
+}
+
+fn what_decides(study: &Study) -> Vec<String> {
+    let Some(decision) = &study.decision else {
+        return vec![];
+    };
+    let objective = study.objective().meaning();
+    let of = |role: Role| {
+        let found = decision
+            .sensitivities
+            .iter()
+            .filter(move |sensitivity| sensitivity.role == role);
+        found.collect::<Vec<_>>()
+    };
+    let names = |found: &[&Sensitivity]| {
+        let names: Vec<&str> = found.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
+        listed(&names)
+    };
+    let (lower, upper) = (of(Role::Lower), of(Role::Upper));
+    let mut sentences = Vec::new();
+    let ends: Vec<String> = [(&lower, "lower"), (&upper, "upper")]
+        .into_iter()
+        .filter(|(found, _)| !found.is_empty())
+        .map(|(found, end)| format!("{} at the {end} limit", names(found)))
+        .collect();
+    if !ends.is_empty() {
+        sentences.push(format!(
+            "The optimum is a corner of the box, {}: the limit decides, not the search, and moving it moves the optimum.",
+            ends.join(", ")
+        ));
+    }
+    let flat = of(Role::Flat);
+    if !flat.is_empty() {
+        let changes: Vec<String> = flat
+            .iter()
+            .map(|sensitivity| match sensitivity.range {
+                Some([least, greatest]) => {
+                    format!(
+                        "{} {}",
+                        sensitivity.parameter.name(),
+                        percent((greatest - least) / least)
+                    )
+                }
+                None => sensitivity.parameter.name().to_owned(),
+            })
+            .collect();
+        let free = flat.iter().all(|sensitivity| sensitivity.alone == sensitivity.limits);
+        let but = if free { "" } else { " but where constraints end" };
+        sentences.push(format!(
+            "Flat directions: over the whole range, the others held, {objective} changes by less than 1 % ({}); what was found for {} says \
+             nothing{but}.",
+            changes.join(", "),
+            names(&flat)
+        ));
+    }
+    let trade = of(Role::Trade);
+    if !trade.is_empty() {
+        sentences.push(format!(
+            "A trade: {} between the limits, {objective} is worse on either side.",
+            names(&trade)
+        ));
+    }
+    let limited = of(Role::Limit);
+    if !limited.is_empty() {
+        sentences.push(format!(
+            "A constraint stops {}: without it {objective} would be less.",
+            names(&limited)
+        ));
+    }
+    if !decision.active.is_empty() {
+        sentences.push(format!(
+            "Constraints with no more than 1 % to spare: {}.",
+            decision.active.join("; ")
+        ));
+    }
+    let share = match decision.share {
+        0.0 => "too small a part of the box to be met by chance".to_owned(),
+        share => format!("{} of the box", percent(share)),
+    };
+    let extents: Vec<String> = study
+        .question
+        .variables
+        .iter()
+        .zip(&decision.extents)
+        .map(|(variable, [from, to])| {
+            format!(
+                "{} {} to {} {}",
+                variable.parameter.name(),
+                significant(*from, 3),
+                significant(*to, 3),
+                variable.parameter.unit()
+            )
+        })
+        .collect();
+    sentences.push(format!(
+        "Designs within {} % of the best are {share}: {}.",
+        decimal(100.0 * WITHIN),
+        extents.join(", ")
+    ));
+    sentences
+}
+
+fn the_unit(study: &Study) -> Option<String> {
+    let ends = study.decision.as_ref()?.ends?;
+    let pair = |[short, long]: [f64; 2]| [significant(short, 4), significant(long, 4)];
+    let ([short, long], [from, to], [at, until]) = (pair(ends.seconds), pair(ends.dimensionless), pair(ends.lengths));
+    let best = |[short, long]: [f64; 2]| if short < long { &at } else { &until };
+    let same = best(ends.seconds) == best(ends.dimensionless);
+    let verdict = match same {
+        true => "the unit does not move the optimum".to_owned(),
+        false => format!(
+            "in seconds the best length is {}, in 1/omega it is {}: the choice moves the optimum from one end to the other",
+            best(ends.seconds),
+            best(ends.dimensionless)
+        ),
+    };
+    Some(format!(
+        "The unit of the rest time: with the length at {at} and {until} m the best design rests after {short} and {long} s, or {from} and {to} \
+         in units of 1/omega = sqrt(L/g); {verdict}."
+    ))
+}
+
+fn the_papers(study: &Study) -> Option<String> {
+    let (papers, best) = (study.papers.as_ref()?, study.best()?);
+    let objective = study.objective();
+    let Some(value) = objective.value(papers) else {
+        return Some("The paper's Table 5 does not rest in the time allowed under these assumptions.".to_owned());
+    };
+    let least = best.values[0];
+    let outside: Vec<&str> = study
+        .question
+        .variables
+        .iter()
+        .zip(&papers.point)
+        .filter(|(variable, value)| !(variable.lower..=variable.upper).contains(value))
+        .map(|(variable, _)| variable.parameter.name())
+        .collect();
+    let place = match outside.is_empty() {
+        true => String::new(),
+        false => format!(" It lies outside these limits: {}.", listed(&outside)),
+    };
+    let far = value / least - 1.0;
+    let judged = match far <= WITHIN {
+        true if far < 0.0 && !outside.is_empty() => "better than any design between the limits",
+        true => "as good as the best",
+        false => "not the best under these assumptions, which the paper does not print",
+    };
+    Some(format!(
+        "The paper's Table 5 has {} {}, {} {} than the best design's {}: {judged}.{place}",
+        objective.meaning(),
+        with_unit(objective, value),
+        percent(far.abs()),
+        if far < 0.0 { "less" } else { "more" },
+        with_unit(objective, least)
+    ))
+}
+
+fn the_rivals(study: &Study) -> Option<String> {
+    let own = study.spread()?.median;
+    let said: Vec<String> = study
+        .rivals
+        .iter()
+        .filter_map(|rival| {
+            let apart = rival.spread()?.median / own - 1.0;
+            let words = match apart.abs() < 5e-7 {
+                true => "the same".to_owned(),
+                false => format!(
+                    "{} {}",
+                    percent(apart.abs()),
+                    if apart > 0.0 { "worse" } else { "better" }
+                ),
+            };
+            Some(format!("{} finds {words}", rival.name))
+        })
+        .collect();
+    match said.is_empty() {
+        true => None,
+        false => Some(format!(
+            "What the genetic algorithm is worth: with as many evaluations, in the median, {}.",
+            said.join(", ")
+        )),
+    }
+}
+
+fn the_generations(study: &Study) -> Option<String> {
+    let window = study.question.genetic.stall_generations;
+    let earliest = window + 1;
+    let stalled: Vec<usize> = study
+        .runs
+        .iter()
+        .filter(|run| run.stop == Stop::Stalled)
+        .map(|run| run.generations)
+        .collect();
+    let at_once = stalled.iter().filter(|generations| **generations == earliest).count();
+    let settled = study.settled(1e-3)?;
+    let when = match settled {
+        0 => "already in its random population".to_owned(),
+        generation => format!("from generation {generation} on"),
+    };
+    let count = study.runs.len();
+    let end = match (stalled.len(), at_once) {
+        (0, _) => "no run ended because the best value stood still".to_owned(),
+        (ended, at_once) => format!(
+            "{ended} of {count} runs ended because the best value stood still, {at_once} of them after {earliest} generations, the earliest that a \
+             window of {window} allows"
+        ),
+    };
+    Some(format!(
+        "Convergence: {end}; the median run was within 0.1 % of its end {when}. The paper's 51 generations are the earliest end with the usual \
+         window of 50: its best value hardly moved either."
+    ))
+}
+
+fn the_front(study: &Study) -> Vec<String> {
+    let extreme = |(index, objective): (usize, &Objective)| {
+        let least = study
+            .finalists
+            .iter()
+            .filter(|finalist| finalist.values[index].is_finite())
+            .min_by(|one, other| one.values[index].total_cmp(&other.values[index]))?;
+        let others: Vec<String> = study
+            .question
+            .objectives
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index)
+            .map(|(other, objective)| format!("{} {}", objective.meaning(), with_unit(*objective, least.values[other])))
+            .collect();
+        Some(format!(
+            "The least of {} is {}, with {}.",
+            objective.meaning(),
+            with_unit(*objective, least.values[index]),
+            others.join(", ")
+        ))
+    };
+    let mut sentences: Vec<String> = study
+        .question
+        .objectives
+        .iter()
+        .enumerate()
+        .filter_map(extreme)
+        .collect();
+    if study.finalists.len() == 1 {
+        sentences.push("One design is the best in everything: these wishes do not conflict.".to_owned());
+    }
+    sentences
+}

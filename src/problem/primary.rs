@@ -38,6 +38,16 @@ pub enum PrimaryFileError {
         /// The other one.
         other: &'static str,
     },
+    /// A number that cannot be.
+    #[error("[primary] {key} must be {wanted}, not {value}")]
+    Number {
+        /// The key.
+        key: &'static str,
+        /// What it may be.
+        wanted: &'static str,
+        /// What it says.
+        value: f64,
+    },
     /// Nothing moves.
     #[error("nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start")]
     AtRest,
@@ -161,6 +171,26 @@ impl PrimarySection {
             (None, Some(_)) => return alone("frequency", "force"),
             (None, None) if swept => return alone("frequency", "force"),
             _ => {}
+        }
+        let least = [
+            ("mass", Some(mass), f64::MIN_POSITIVE),
+            ("stiffness", Some(stiffness), f64::MIN_POSITIVE),
+            ("damping", self.damping, 0.0),
+            ("frequency", self.frequency, 0.0),
+            ("force", self.force, f64::MIN),
+            ("displacement", self.displacement, f64::MIN),
+            ("speed", self.speed, f64::MIN),
+        ];
+        let wrong = |value: f64, least: f64| !(value >= least && value.is_finite());
+        for (key, value, least) in least {
+            if let Some(value) = value.filter(|value| wrong(*value, least)) {
+                let wanted = match least {
+                    0.0 => "a number, 0 or more",
+                    least if least > 0.0 => "a positive number",
+                    _ => "a number",
+                };
+                return Err(PrimaryFileError::Number { key, wanted, value });
+            }
         }
         let time = units.time();
         Ok(Primary {

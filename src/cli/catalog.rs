@@ -1,8 +1,7 @@
 //! `lindstedt catalog`.
 
 use clap::Args;
-use lindstedt::catalog::{CATALOG, Entry, methods};
-use lindstedt::export::{json, latex};
+use lindstedt::export::{catalog, json};
 
 use super::{Common, Failure, Format, Outcome, json_text, whole};
 
@@ -20,11 +19,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::Usage("--tolerance: the catalogue has no verdict".to_owned()));
     }
     let text = match arguments.common.format {
-        Format::Text => CATALOG.iter().map(text).collect::<Vec<_>>().join("\n"),
-        Format::Latex => {
-            let items: Vec<String> = CATALOG.iter().map(item).collect();
-            format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
-        }
+        Format::Text => catalog::text(),
+        Format::Latex => catalog::latex(),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::catalog())?,
     };
@@ -35,62 +31,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         verdict: None,
         partial: false,
     })
-}
-
-fn text(entry: &Entry) -> String {
-    let mut lines = vec![
-        format!("{}: {}", entry.name, entry.title),
-        format!("  {}", entry.equation),
-        format!("  {}", entry.source),
-    ];
-    lines.extend(entry.published.map(|law| format!("  published: {law}")));
-    let (mut applying, mut refused): (Vec<&str>, Vec<(String, Vec<&str>)>) = (vec![], vec![]);
-    for (method, result) in methods(entry) {
-        let Err(refusal) = result else {
-            applying.push(method.name());
-            continue;
-        };
-        let reason = refusal.reason(method);
-        match refused.iter_mut().find(|known| known.0 == reason) {
-            Some(known) => known.1.push(method.name()),
-            None => refused.push((reason, vec![method.name()])),
-        }
-    }
-    lines.extend(wrapped("  by ", &applying, ""));
-    for (reason, names) in refused {
-        lines.extend(wrapped("  not by ", &names, &format!(": {reason}")));
-    }
-    lines.join("\n") + "\n"
-}
-
-/// Names after a beginning, broken into lines of about a hundred characters, and an end.
-fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
-    const WIDTH: usize = 100;
-    let mut lines = vec![start.to_owned()];
-    for (index, name) in names.iter().enumerate() {
-        let separator = if index + 1 < names.len() { ", " } else { end };
-        let full = lines.last().is_some_and(|line| line.len() + name.len() > WIDTH);
-        if full {
-            lines.push("    ".to_owned());
-        }
-        if let Some(line) = lines.last_mut() {
-            line.push_str(name);
-            line.push_str(separator);
-        }
-    }
-    if names.is_empty() {
-        vec![]
-    } else {
-        lines.iter().map(|line| line.trim_end().to_owned()).collect()
-    }
-}
-
-/// Equation and published law; titles and sources hold nothing that LaTeX reads as a command.
-fn item(entry: &Entry) -> String {
-    let law = entry.published.map(|law| {
-        let law = law.to_string();
-        format!(", published $ {} $", latex::typed(law.trim_end_matches(" + ...")))
-    });
-    let (equation, law) = (latex::typed(entry.equation), law.unwrap_or_default());
-    format!("\\item[{}] {}: $ {equation} ${law}", entry.name, entry.title)
 }

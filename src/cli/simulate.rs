@@ -339,6 +339,33 @@ fn motions(arguments: &Arguments, problem: &Problem) -> Result<(Vec<(Model, Star
     Ok((motions, settings(arguments, &asked)))
 }
 
+/// Beside each row the rest times of its motion without a barrier and with one that loses nothing.
+fn add_baseline(
+    rows: &mut [Summary],
+    motions: &[(Model, Start)],
+    settings: &Settings,
+    follow: impl Fn(&[(Model, Start)], &Settings) -> Result<Vec<Summary>, Failure>,
+) -> Result<(), Failure> {
+    let longer = Settings {
+        duration: BASELINE_DURATIONS * settings.duration,
+        ..*settings
+    };
+    let others = |change: fn(Model) -> Model| {
+        let changed: Vec<_> = motions.iter().map(|(model, start)| (change(*model), *start)).collect();
+        follow(&changed, &longer)
+    };
+    let without = others(|model| Model {
+        left: None,
+        right: None,
+        ..model
+    })?;
+    let lossless = others(|model| Model { mu: 0.0, ..model })?;
+    for (row, (without, lossless)) in rows.iter_mut().zip(without.iter().zip(&lossless)) {
+        row.baseline = Some([without.rest_time, lossless.rest_time]);
+    }
+    Ok(())
+}
+
 fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     if arguments.sweep.len() > 2 && arguments.common.plot.is_some() {
         return Err(Failure::Usage(
@@ -387,23 +414,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     };
     let mut rows: Vec<Summary> = follow(&motions, &settings)?;
     if arguments.baseline {
-        let longer = Settings {
-            duration: BASELINE_DURATIONS * settings.duration,
-            ..settings
-        };
-        let others = |change: fn(Model) -> Model| {
-            let changed: Vec<_> = motions.iter().map(|(model, start)| (change(*model), *start)).collect();
-            follow(&changed, &longer)
-        };
-        let without = others(|model| Model {
-            left: None,
-            right: None,
-            ..model
-        })?;
-        let lossless = others(|model| Model { mu: 0.0, ..model })?;
-        for (row, (without, lossless)) in rows.iter_mut().zip(without.iter().zip(&lossless)) {
-            row.baseline = Some([without.rest_time, lossless.rest_time]);
-        }
+        add_baseline(&mut rows, &motions, &settings, follow)?;
     }
     bar.finish_and_clear();
     let report = SweepReport {

@@ -21,15 +21,15 @@ use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
 use crate::impact::friction::FrictionStudy;
-use crate::impact::{Impact, ImpactComparison, MaterialStudy};
+use crate::impact::{Impact, ImpactComparison, MaterialStudy, Reading};
 use crate::mechanics::MechanismStudy;
 use crate::optimize::Study;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{Solution, Sum, long_fraction};
-use crate::verify::comparison::Comparison;
-use crate::verify::{DEFAULT_TOLERANCE, Verification};
+use crate::verify::comparison::{Comparison, Refused};
+use crate::verify::{DEFAULT_TOLERANCE, Verdict, Verification};
 
 /// A sum with its terms in order.
 pub(super) fn sum(sum: &Sum) -> String {
@@ -226,6 +226,29 @@ enum Rank {
     Verdict,
 }
 
+/// A relation, with zero on the left.
+fn zero_is(relation: &Sum) -> String {
+    let mut polynomial = Polynomial::zero();
+    for (monomial, number) in relation.terms() {
+        polynomial.add_term(monomial.clone(), number.clone());
+    }
+    format!("0 &= {}", expression(&Expr::from(&polynomial)))
+}
+
+/// A method that does not apply, and why.
+fn not_applicable(refused: &Refused) -> String {
+    format!("not applicable: {}: {}", refused.method.title(), refused.reason)
+}
+
+/// The verdict on every column.
+fn in_one_line(verdicts: &[(Reading, Verdict)]) -> String {
+    let each: Vec<String> = verdicts
+        .iter()
+        .map(|(reading, verdict)| format!("{} {}", reading.name(), verdict.name()))
+        .collect();
+    format!("verdict: {}", each.join(", "))
+}
+
 /// What has been written, and what waits for the end or for the next table.
 #[derive(Default)]
 struct Page {
@@ -253,13 +276,7 @@ impl Page {
             | Block::Closing(_)
             | Block::Shortcoming { .. } => {}
             Block::Law { left, right } => self.laws.push(format!("{} &= {}", expression(left), sum(right))),
-            Block::Relation(relation) => {
-                let mut polynomial = Polynomial::zero();
-                for (monomial, number) in relation.terms() {
-                    polynomial.add_term(monomial.clone(), number.clone());
-                }
-                self.rows.push(format!("0 &= {}", expression(&Expr::from(&polynomial))));
-            }
+            Block::Relation(relation) => self.rows.push(zero_is(relation)),
             Block::Equality { left, right } => {
                 self.rows.push(format!("{} &= {}", expression(left), expression(right)));
             }
@@ -289,21 +306,11 @@ impl Page {
             } => self.comment(Rank::Note, comparison::truth(equation, frequency)),
             Block::Methods { rows, at, .. } => self.table(&comparison::methods(rows, at)),
             Block::Facts(facts) => {
-                for (name, value) in facts {
-                    self.comment(Rank::Remark, format!("{name}: {value}"));
-                }
+                let facts = facts.iter().map(|(name, value)| format!("{name}: {value}"));
+                self.comments(Rank::Remark, facts);
             }
-            Block::Refused(refused) => {
-                for refused in *refused {
-                    let (title, reason) = (refused.method.title(), &refused.reason);
-                    self.comment(Rank::Note, format!("not applicable: {title}: {reason}"));
-                }
-            }
-            Block::TrueMotion(lines) => {
-                for line in *lines {
-                    self.comment(Rank::Note, line.clone());
-                }
-            }
+            Block::Refused(refused) => self.comments(Rank::Note, refused.iter().map(not_applicable)),
+            Block::TrueMotion(lines) => self.comments(Rank::Note, lines.iter().cloned()),
             Block::Reading { reading, .. } => self.rows.push(impact::reading(*reading)),
             Block::Fitted {
                 fitted,
@@ -327,18 +334,16 @@ impl Page {
                 ..
             } => self.rows.push(impact::si_value(name, *formula, *value, unit)),
             Block::SiQuantities { columns, rows } => self.table(&impact::si_quantities(columns, rows)),
-            Block::Verdicts { verdicts, .. } => {
-                let each: Vec<String> = verdicts
-                    .iter()
-                    .map(|(reading, verdict)| format!("{} {}", reading.name(), verdict.name()))
-                    .collect();
-                self.comment(Rank::Verdict, format!("verdict: {}", each.join(", ")));
-            }
+            Block::Verdicts { verdicts, .. } => self.comment(Rank::Verdict, in_one_line(verdicts)),
         }
     }
 
     fn comment(&mut self, rank: Rank, words: String) {
         self.comments.push((rank, words));
+    }
+
+    fn comments(&mut self, rank: Rank, lines: impl Iterator<Item = String>) {
+        lines.for_each(|words| self.comment(rank, words));
     }
 
     fn table(&mut self, table: &str) {

@@ -5,6 +5,7 @@
 //! results themselves. Out goes text in
 //! one format. What is shown was chosen before: a format chooses only its layout.
 
+pub mod catalog;
 #[cfg(feature = "plot")]
 pub mod figure;
 pub mod friction;

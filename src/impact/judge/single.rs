@@ -185,15 +185,7 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
         true => Some(way_back(swing, barrier, exit, &at_scale(options, scale))?),
         false => None,
     };
-    // Counted from the barrier: the energy at release is the kinetic energy at touch.
-    let potential = |to: f64| integrate_smooth(restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral);
-    let released = potential(release)?;
-    let drift = largest_change(&approach, released, |gone| potential(release + gone))?.max(match &back {
-        None => largest_change(&contact, released, |depth| {
-            Ok(potential(barrier + depth)? + stiffness * work(elastic_force, depth)?)
-        })?,
-        Some(back) => largest_change(back, 0.5 * exit.v * exit.v, |gone| potential(barrier - gone))?,
-    });
+    let energy_drift = energy_drift(collision, &approach, &contact, back.as_ref())?;
     Ok(TrueImpact {
         touch,
         deepest: seen(deepest),
@@ -207,8 +199,37 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
         approach,
         contact,
         back,
-        energy_drift: drift / released.abs(),
+        energy_drift,
     })
+}
+
+/// The largest change of the energy along a motion, over that of the release; a contact that loses some is left out, its way back not.
+fn energy_drift(
+    collision: &Collision,
+    approach: &Trajectory,
+    contact: &Trajectory,
+    back: Option<&Trajectory>,
+) -> Result<f64, TrueImpactError> {
+    let &Collision {
+        release,
+        barrier,
+        stiffness,
+        restoring_force,
+        elastic_force,
+        ..
+    } = collision;
+    // Counted from the barrier: the energy at release is the kinetic energy at touch.
+    let potential = |to: f64| integrate_smooth(restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral);
+    let released = potential(release)?;
+    let exit = contact.end();
+    let flight = largest_change(approach, released, |gone| potential(release + gone))?;
+    let rest = match back {
+        None => largest_change(contact, released, |depth| {
+            Ok(potential(barrier + depth)? + stiffness * work(elastic_force, depth)?)
+        })?,
+        Some(back) => largest_change(back, 0.5 * exit.v * exit.v, |gone| potential(barrier - gone))?,
+    };
+    Ok(flight.max(rest) / released.abs())
 }
 
 /// The same, with what may be neglected beside this size.

@@ -52,6 +52,24 @@ impl WithSimd for Evaluation<'_> {
     }
 }
 
+/// The places of the next group, from the longer of the two queues: how many they are, and which series they want.
+fn next_group(flights: &mut Vec<usize>, contacts: &mut Vec<usize>) -> ([usize; LANES], usize, Equation) {
+    let (queue, equation) = if flights.len() >= contacts.len() {
+        (flights, Equation::Flight)
+    } else {
+        (contacts, Equation::Contact)
+    };
+    let mut group = [0; LANES];
+    let mut count = 0;
+    while count < LANES
+        && let Some(place) = queue.pop()
+    {
+        group[count] = place;
+        count += 1;
+    }
+    (group, count, equation)
+}
+
 /// Follows every run to its end, and hands each over as it ends, with its number. All have the same tolerance.
 pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(usize, Runner)) {
     let arch = Arch::new();
@@ -85,19 +103,7 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
                 }
             }
         }
-        let (queue, equation) = if flights.len() >= contacts.len() {
-            (&mut flights, Equation::Flight)
-        } else {
-            (&mut contacts, Equation::Contact)
-        };
-        let mut group = [0; LANES];
-        let mut count = 0;
-        while count < LANES
-            && let Some(place) = queue.pop()
-        {
-            group[count] = place;
-            count += 1;
-        }
+        let (group, count, equation) = next_group(&mut flights, &mut contacts);
         let Some(last) = count.checked_sub(1) else {
             break;
         };

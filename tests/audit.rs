@@ -404,3 +404,129 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
         "{words}"
     );
 }
+
+/// Whatever a file holds, it is read or refused, and what is read is judged.
+#[test]
+fn no_file_of_claims_breaks_the_program() {
+    let mut state = 12_345_u64;
+    let mut next = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let sections: Vec<&str> = [PAPER, FREQUENCIES]
+        .iter()
+        .flat_map(|text| text.split("\n[[claim]]\n").skip(1))
+        .collect();
+    let words = [
+        "1e400",
+        "-1",
+        "0",
+        "\"\"",
+        "\"x\"",
+        "[]",
+        "{}",
+        "true",
+        "nan",
+        "\"<\"",
+        "\"1/0\"",
+        "\"gamma\"",
+        "\"rest_time\"",
+        "\"%\"",
+    ];
+    let (mut read, mut refused) = (0, 0);
+    for _ in 0..1500 {
+        let own = sections[next(sections.len())];
+        let mut lines: Vec<String> = own.lines().map(str::to_owned).collect();
+        for _ in 0..=next(2) {
+            let number = next(lines.len());
+            match next(4) {
+                0 => drop(lines.remove(number)),
+                1 => {
+                    let other = sections[next(sections.len())].lines().nth(next(6)).unwrap_or_default();
+                    lines.insert(number, other.to_owned());
+                }
+                2 => {
+                    if let Some((key, _)) = lines[number].clone().split_once(" = ") {
+                        lines[number] = format!("{key} = {}", words[next(words.len())]);
+                    }
+                }
+                _ => {
+                    let cut = next(lines[number].len() + 1);
+                    lines[number].truncate(cut);
+                }
+            }
+            if lines.is_empty() {
+                lines.push(String::new());
+            }
+        }
+        let text = format!(
+            "[values]\nA = 1.5\nxc = 0.323\ng = 9.81\nL = 0.0681\n[[claim]]\n{}",
+            lines.join("\n")
+        );
+        match text.parse::<Claims>() {
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+            // What would take long is left to the time limit of the program.
+            Ok(claims) if claims.claims.iter().any(|claim| claim.unknown.is_some()) => {}
+            Ok(claims) => {
+                let found = audit(claims);
+                assert!(found.findings.iter().all(|finding| !finding.claim.entries.is_empty()));
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 100 && refused > 300, "{read} read, {refused} refused");
+}
+
+#[test]
+fn an_equation_of_motion_follows_from_its_energies() {
+    let of = |parts: &str, printed: &str| {
+        let text = format!("[[claim]]\nid = \"one\"\nquantity = \"motion\"\n{parts}\nprinted = \"{printed}\"");
+        audit(claims(&text)).findings.swap_remove(0)
+    };
+    for (parts, printed) in [
+        (
+            "kinetic = \"m*L^2*x'^2/2\"\npotential = \"-m*g*L*cos(x)\"",
+            "x'' + g/L*sin(x) = 0",
+        ),
+        (
+            "kinetic = \"x'^2/2\"\nforce = \"-c*x' + F*cos(Omega*t)\"",
+            "x'' + c*x' = F*cos(Omega*t)",
+        ),
+        // A bead on a rotating hoop, and a mass that grows with its place.
+        (
+            "kinetic = \"m*r^2*(x'^2 + w^2*sin(x)^2)/2\"\npotential = \"-m*g*r*cos(x)\"",
+            "x'' + g/r*sin(x) - w^2*sin(x)*cos(x)",
+        ),
+        (
+            "kinetic = \"(1 + x^2)*x'^2/2\"\npotential = \"x^2/2\"",
+            "x'' + (x*x'^2 + x)/(1 + x^2)",
+        ),
+    ] {
+        assert_eq!(of(parts, printed).verdict, Verdict::Reproduced, "{printed}");
+    }
+    let wrong = of(
+        "kinetic = \"m*L^2*x'^2/2\"\npotential = \"-m*g*L*cos(x)\"",
+        "x'' + g*L*sin(x) = 0",
+    );
+    assert_eq!(wrong.verdict, Verdict::Inconsistent);
+    assert!(
+        wrong
+            .evidence
+            .iter()
+            .any(|words| words.contains("derived, but not printed: `g*sin(x)/L`")),
+        "{:?}",
+        wrong.evidence
+    );
+    let none = of("kinetic = \"m*L^2/2\"", "x'' = 0");
+    assert_eq!(none.verdict, Verdict::NotReproducible);
+    assert!(
+        none.evidence[0].contains("no square of the velocity"),
+        "{:?}",
+        none.evidence
+    );
+}

@@ -157,6 +157,15 @@ pub enum Quantity {
     },
     /// A formula, the same as the printed one for every value of its symbols.
     Identity(Expr),
+    /// The equation of motion of the coordinate x, x'' first, that follows from energies and a force.
+    Motion {
+        /// The kinetic energy.
+        kinetic: Expr,
+        /// The potential energy.
+        potential: Expr,
+        /// The generalised force.
+        force: Expr,
+    },
     /// How a formula changes from entry to entry.
     Trend(Expr),
     /// How many coordinates an equation has: letters with two primes.
@@ -269,7 +278,7 @@ impl Quantity {
             | Self::Identity(formula)
             | Self::Trend(formula)
             | Self::Coordinates(formula) => *formula = other.clone(),
-            Self::Coefficient { .. } | Self::Law { .. } | Self::Settings(_) | Self::Nothing => {}
+            Self::Coefficient { .. } | Self::Law { .. } | Self::Motion { .. } | Self::Settings(_) | Self::Nothing => {}
         }
     }
 }

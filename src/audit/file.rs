@@ -130,6 +130,9 @@ struct Section {
     says: String,
     quantity: Option<Text>,
     formula: Option<Text>,
+    kinetic: Option<Text>,
+    potential: Option<Text>,
+    force: Option<Text>,
     of: Option<Text>,
     term: Option<Text>,
     equation: Option<Text>,
@@ -181,12 +184,13 @@ struct Suppose {
 }
 
 /// The quantities that are no names of numbers.
-const KINDS: [&str; 8] = [
+const KINDS: [&str; 9] = [
     "value",
     "coefficient",
     "law",
     "taylor",
     "identity",
+    "motion",
     "trend",
     "coordinates",
     "options",
@@ -202,9 +206,10 @@ fn keys_of(kind: &str) -> Vec<&'static str> {
         "law" => &["of"],
         "taylor" => &["formula", "order"],
         "identity" => &["formula", "values"],
+        "motion" => &["kinetic", "potential", "force", "values"],
         "coordinates" => &["formula"],
         "options" => &["settings"],
-        "" => &["values"],
+        "" => &[],
         "value" | "trend" => &[
             "formula",
             "linearisation",
@@ -217,7 +222,7 @@ fn keys_of(kind: &str) -> Vec<&'static str> {
         _ => &["linearisation", "values", "entries", "unknown", "tolerance", "rounding"],
     };
     let of_a_law: &[&str] = match kind {
-        "taylor" | "identity" | "coordinates" | "options" | "" => &[],
+        "taylor" | "identity" | "motion" | "coordinates" | "options" | "" => &[],
         _ => &OF_A_LAW,
     };
     let of_a_number: &[&str] = match kind {
@@ -251,7 +256,7 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
     check_keys(section, kind)?;
     // In a formula the names of the file stay letters.
     let mut values = match kind {
-        "identity" | "law" | "taylor" | "coefficient" | "coordinates" => BTreeMap::new(),
+        "identity" | "motion" | "law" | "taylor" | "coefficient" | "coordinates" => BTreeMap::new(),
         _ => shared.clone(),
     };
     if let Some(own) = &section.values {
@@ -302,6 +307,7 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
         note: section.note.clone(),
     };
     check_names(section, &claim)?;
+    check_values(section, &claim)?;
     Ok(claim)
 }
 
@@ -332,8 +338,11 @@ fn kind(section: &Section) -> Found<&str> {
 /// Refuses what this quantity would not read.
 fn check_keys(section: &Section, kind: &str) -> Found<()> {
     let span = |text: &Option<Text>| text.as_ref().map(Spanned::span);
-    let given: [(&str, Option<Range<usize>>); 16] = [
+    let given: [(&str, Option<Range<usize>>); 19] = [
         ("formula", span(&section.formula)),
+        ("kinetic", span(&section.kinetic)),
+        ("potential", span(&section.potential)),
+        ("force", span(&section.force)),
         ("of", span(&section.of)),
         ("term", span(&section.term)),
         ("equation", span(&section.equation)),
@@ -372,7 +381,7 @@ fn check_keys(section: &Section, kind: &str) -> Found<()> {
             ("values", subjects.values.is_empty()),
         ];
         let odd = tried.iter().find(|(key, none)| !none && !known.contains(key));
-        let is_number = known.contains(&"values") && !matches!(kind, "" | "identity");
+        let is_number = known.contains(&"values") && !matches!(kind, "" | "identity" | "motion");
         let odd_number = [("pi", subjects.pi.is_empty()), ("formula", subjects.formula.is_empty())];
         let odd_number = odd_number.iter().find(|(_, none)| !none && !is_number);
         if let Some((key, _)) = odd.or(odd_number) {
@@ -454,6 +463,11 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
             },
         },
         "identity" => Quantity::Identity(formula()?),
+        "motion" => Quantity::Motion {
+            kinetic: expression(&needed("kinetic", &section.kinetic)?)?,
+            potential: section.potential.as_ref().map_or(Ok(Expr::zero()), expression)?,
+            force: section.force.as_ref().map_or(Ok(Expr::zero()), expression)?,
+        },
         "coordinates" => Quantity::Coordinates(formula()?),
         "options" => Quantity::Settings(settings(section)?),
         name => Quantity::Value(Expr::symbol(name)),
@@ -593,7 +607,7 @@ fn stated(kind: &str, text: &Text) -> Found<Stated> {
             let right = text.get_ref().rsplit('=').next().unwrap_or_default();
             Ok(Stated::Formula(parsed(right, text.span())?))
         }
-        "taylor" | "identity" => Ok(Stated::Formula(equal_to_zero(text)?)),
+        "taylor" | "identity" | "motion" => Ok(Stated::Formula(equal_to_zero(text)?)),
         _ => match Printed::read(text.get_ref()) {
             Some(printed) => Ok(Stated::Number(printed)),
             None => helped(
@@ -732,6 +746,7 @@ fn used(claim: &Claim) -> BTreeSet<Symbol> {
         for name in formula.symbols() {
             if found.insert(name) {
                 formulas.extend(tables.iter().filter_map(|table| table.get(&name).cloned()));
+                formulas.extend(asked_by(name, claim.question.equation.as_ref()).map(Expr::from));
             }
         }
     }
@@ -811,7 +826,7 @@ fn check_names(section: &Section, claim: &Claim) -> Found<()> {
         );
     }
     match (&claim.unknown, &section.unknown) {
-        (Some(unknown), Some(text)) if !used.contains(&unknown.name) && !depends(&used, unknown.name) => mistake(
+        (Some(unknown), Some(text)) if !used.contains(&unknown.name) => mistake(
             text.span(),
             format!("the unknown `{}` does not occur in the claim", unknown.name),
         ),
@@ -819,16 +834,65 @@ fn check_names(section: &Section, claim: &Claim) -> Found<()> {
     }
 }
 
-/// Whether one of the computed numbers among these names needs that one.
-fn depends(used: &BTreeSet<Symbol>, name: Symbol) -> bool {
-    let needs = |used: &Symbol| {
-        let entry = NAMES.iter().find(|entry| entry.0 == used.name());
-        entry.is_some_and(|entry| {
-            let mut words = entry.1.split(", ");
-            entry.1.starts_with("equation") || words.any(|word| word == name.name())
-        })
+/// The names that a computed number needs.
+fn asked_by<'a>(name: Symbol, equation: Option<&'a Oscillator>) -> impl Iterator<Item = Symbol> + 'a {
+    let needs = NAMES.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
+    let words = needs.into_iter().flat_map(|needs| needs.split(", "));
+    let own = words.filter(|word| !word.is_empty() && !word.contains("equation") && !word.contains(' '));
+    let of_a_law = needs.is_some_and(|needs| needs.starts_with("equation"));
+    // An impact has the parameters of its swing, and the amplitude of a law has either letter.
+    let parameters = equation
+        .filter(|_| needs.is_some())
+        .into_iter()
+        .flat_map(|equation| &equation.parameters);
+    let letter = of_a_law.then(|| Symbol::new("a"));
+    own.map(Symbol::new).chain(parameters.copied()).chain(letter)
+}
+
+/// Refuses values of a claim that nothing asks for.
+fn check_values(section: &Section, claim: &Claim) -> Found<()> {
+    let quantity = &claim.question.quantity;
+    let mut used = used(claim);
+    let formulas = match quantity {
+        Quantity::Identity(formula) => vec![formula],
+        Quantity::Motion {
+            kinetic,
+            potential,
+            force,
+        } => vec![kinetic, potential, force],
+        _ => vec![],
     };
-    used.iter().any(needs)
+    if !formulas.is_empty() {
+        let printed = claim.entries.iter().filter_map(|entry| match &entry.stated {
+            Stated::Formula(printed) => Some(printed),
+            _ => None,
+        });
+        let all = formulas
+            .into_iter()
+            .chain(printed)
+            .chain(claim.question.values.values());
+        used.extend(all.flat_map(Expr::symbols));
+        used.extend(used.clone().into_iter().map(Symbol::coordinate));
+    }
+    if let Some(within) = &section.within {
+        for end in within.get_ref() {
+            used.extend(number(end, within.span())?.symbols());
+        }
+    }
+    let own = section.values.as_ref().map(Spanned::get_ref);
+    let rows = section.entries.iter().flat_map(|rows| rows.get_ref());
+    let tables = own.into_iter().chain(rows.map(|row| &row.get_ref().values));
+    let supposed = section.suppose.iter().flat_map(|suppose| &suppose.get_ref().values);
+    for (name, value) in tables.chain(supposed).flatten() {
+        let symbol = symbol(name, value.span())?;
+        if !used.contains(&symbol) && *quantity != Quantity::Nothing {
+            return mistake(
+                value.span(),
+                format!("nothing in claim `{}` asks for `{name}`: leave it out", claim.id),
+            );
+        }
+    }
+    Ok(())
 }
 
 fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {

@@ -11,7 +11,7 @@ use super::claim::{Quantity, Question};
 use super::{identity, options};
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Monomial, Polynomial, Rational};
-use crate::expr::{CompiledFunction, Expr, Node};
+use crate::expr::{CompiledFunction, Expr, ExprError, Node};
 use crate::impact::{
     ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing, ThreePhases, course, hertz,
     three_phases,
@@ -205,6 +205,13 @@ impl<'a> Evaluator<'a> {
                 Ok(Computed::Formula(Expr::sum(parts)))
             }
             Quantity::Identity(formula) => identity::with_definitions(formula, &values)
+                .map(Computed::Formula)
+                .map_err(Lack::Refused),
+            Quantity::Motion {
+                kinetic,
+                potential,
+                force,
+            } => motion([kinetic, potential, force], &values)
                 .map(Computed::Formula)
                 .map_err(Lack::Refused),
             Quantity::Coordinates(formula) => {
@@ -515,6 +522,26 @@ impl Scope<'_, '_> {
     }
 }
 
+/// d/dt dT/dx' - dT/dx + dV/dx - Q over the coefficient of x'', with these definitions.
+fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Expr, String> {
+    let words = |error: ExprError| error.to_string();
+    let [kinetic, potential, force] = parts.map(|part| identity::with_definitions(part, definitions));
+    let (kinetic, potential, force) = (kinetic?, potential?, force?);
+    let kinetic = identity::without_squares_of_sines(&kinetic).map_err(words)?;
+    let x = Symbol::new("x");
+    let slope = |energy: &Expr, name: Symbol| energy.differentiate(name).map_err(words);
+    let momentum = slope(&kinetic, x.derivative())?;
+    let rate = identity::time_derivative(&momentum).map_err(words)?;
+    let forces = &(&slope(&potential, x)? - &slope(&kinetic, x)?) - &force;
+    let whole = (&rate + &forces).expand().map_err(words)?;
+    let acceleration = x.derivative().derivative();
+    let inertia = slope(&whole, acceleration)?;
+    if inertia.is_zero() {
+        return Err("the kinetic energy has no square of the velocity x'".to_owned());
+    }
+    Expr::divide(&whole, &inertia).map_err(words)
+}
+
 /// How long a motion is followed to its rest, in units of 1/omega.
 const LONGEST: f64 = 2000.0;
 
@@ -560,7 +587,7 @@ fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, Lack> {
 }
 
 /// A formula with this value in place of pi.
-fn with_pi(formula: &Expr, pi: &Expr) -> Result<Expr, crate::expr::ExprError> {
+fn with_pi(formula: &Expr, pi: &Expr) -> Result<Expr, ExprError> {
     formula.fold(|node, children: &[Expr]| match node.node() {
         Node::Pi => Ok(pi.clone()),
         _ if children.is_empty() => Ok(node.clone()),

@@ -5,8 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::exact::rational::to_f64;
-use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
+use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::symbol::Symbol;
 
 /// How two expressions differ.
@@ -112,34 +111,8 @@ pub(super) fn with_definitions(expr: &Expr, definitions: &BTreeMap<Symbol, Expr>
     }
 }
 
-/// The same written out with no square of a sine in it: sin^2 + cos^2 = 1.
-///
-/// # Errors
-/// An expression too large to be written out.
-pub(super) fn without_squares_of_sines(expr: &Expr) -> Result<Expr, ExprError> {
-    let changed = expr.expand()?.fold(|node, children: &[Expr]| {
-        let node = node.with_children(children)?;
-        let (base, exponent) = node.base_and_exponent();
-        let (Node::Function(Function::Sin, arguments), Some(power)) = (base.node(), exponent.as_number()) else {
-            return Ok(node);
-        };
-        let power = to_f64(power);
-        if power < 2.0 || power.fract() != 0.0 || power > 100.0 {
-            return Ok(node);
-        }
-        let cosine = arguments[0].cos()?;
-        let square = &Expr::one() - &cosine.integer_power(2)?;
-        let (pairs, odd) = ((power / 2.0).floor(), power % 2.0);
-        Ok(Expr::product([
-            square.integer_power(pairs as i64)?,
-            base.integer_power(odd as i64)?,
-        ]))
-    })?;
-    changed.expand()
-}
-
 /// The rate of change along any motion x(t).
-pub(super) fn time_derivative(expr: &Expr) -> Result<Expr, ExprError> {
+fn time_derivative(expr: &Expr) -> Result<Expr, ExprError> {
     let x = Symbol::new("x");
     let mut terms = vec![expr.differentiate(Symbol::new("t"))?];
     for moving in [x, x.derivative()] {

@@ -12,10 +12,12 @@ use super::{identity, options};
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Node};
+use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
     ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing, ThreePhases, course, hertz,
     three_phases,
 };
+use crate::mechanics::Mechanism;
 use crate::method::numbers::frequency_squared_of;
 use crate::method::solve;
 use crate::oscillator::Oscillator;
@@ -26,7 +28,7 @@ use crate::values::Values;
 use crate::verify::{DEFAULT_TOLERANCE, judge, needed_values};
 
 /// What the program computes by name, beside the values that a file gives: the name, what it needs, what it is.
-pub const NAMES: [(&str, &str, &str); 26] = [
+pub const NAMES: [(&str, &str, &str); 29] = [
     ("frequency", "equation, its parameters, A", "omega by the method"),
     (
         "true_frequency",
@@ -115,6 +117,21 @@ pub const NAMES: [(&str, &str, &str); 26] = [
         "rest_time_without_barrier",
         "A, zeta, alpha",
         "the same without a barrier",
+    ),
+    (
+        "primary_rest_time",
+        "mass_ratio, kappa, delta, y0, xc, gamma, mu, zeta, alpha",
+        "rest time of the main mass with pendulum and barrier, by simulation",
+    ),
+    (
+        "primary_rest_time_locked",
+        "mass_ratio, kappa, delta",
+        "the same with the pendulum locked",
+    ),
+    (
+        "primary_rest_time_without",
+        "mass_ratio, kappa, delta",
+        "the same without the pendulum",
     ),
     (
         "stall_generation",
@@ -363,6 +380,17 @@ impl Scope<'_, '_> {
             "hertz_factor" => Ok(hertz::duration_factor()),
             "rest_time" => self.rest_time(true),
             "rest_time_without_barrier" => self.rest_time(false),
+            "primary_rest_time" => self.primary_rest_time(),
+            "primary_rest_time_locked" | "primary_rest_time_without" => {
+                let others = self.primary()?.others();
+                let alone = match name {
+                    "primary_rest_time_locked" => others.locked,
+                    _ => others.without,
+                };
+                alone
+                    .rest_time
+                    .ok_or_else(|| Lack::Refused("the main mass alone never rests".to_owned()))
+            }
             // The best value of so many generations ago is needed beside that of now.
             "stall_generation" => {
                 let [window] = self.numbers(["window"])?;
@@ -493,6 +521,52 @@ impl Scope<'_, '_> {
             .ok_or_else(|| Lack::Refused("there is no impact".to_owned()))
     }
 
+    /// A main mass that nothing drives.
+    fn primary(&mut self) -> Result<Primary, Lack> {
+        let [mass, stiffness, damping] = self.numbers(["mass_ratio", "kappa", "delta"])?;
+        Ok(Primary {
+            mass,
+            stiffness,
+            damping,
+            force: 0.0,
+            frequency: 0.0,
+        })
+    }
+
+    fn primary_rest_time(&mut self) -> Result<f64, Lack> {
+        let names = [
+            "mass_ratio",
+            "kappa",
+            "delta",
+            "y0",
+            "xc",
+            "gamma",
+            "mu",
+            "zeta",
+            "alpha",
+        ];
+        let [_, _, _, displacement, barrier, gamma, mu, zeta, alpha] = self.numbers(names)?;
+        let model = Model {
+            zeta,
+            alpha,
+            gamma,
+            mu,
+            right: Some(barrier),
+            ..Model::default()
+        };
+        let case = PrimaryCase {
+            primary: self.primary()?,
+            model,
+            start: [0.0, 0.0, displacement, 0.0],
+        };
+        let settings = PrimarySettings {
+            duration: LONGEST_OF_A_MAIN_MASS,
+            ..PrimarySettings::default()
+        };
+        let motion = simulate_primary(case, &settings).map_err(|error| refused(&error))?;
+        motion.rest_time().map_err(|reason| refused(&reason))
+    }
+
     fn rest_time(&mut self, with_barrier: bool) -> Result<f64, Lack> {
         let barrier = match with_barrier {
             true => Some(self.numbers(["xc", "gamma", "mu", "A", "zeta", "alpha"])?),
@@ -522,28 +596,31 @@ impl Scope<'_, '_> {
     }
 }
 
-/// d/dt dT/dx' - dT/dx + dV/dx - Q over the coefficient of x'', with these definitions.
+/// The equation of motion of x that follows from these energies and this force, over what stands before x''.
 fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Expr, String> {
-    let words = |error: ExprError| error.to_string();
     let [kinetic, potential, force] = parts.map(|part| identity::with_definitions(part, definitions));
-    let (kinetic, potential, force) = (kinetic?, potential?, force?);
-    let kinetic = identity::without_squares_of_sines(&kinetic).map_err(words)?;
     let x = Symbol::new("x");
-    let slope = |energy: &Expr, name: Symbol| energy.differentiate(name).map_err(words);
-    let momentum = slope(&kinetic, x.derivative())?;
-    let rate = identity::time_derivative(&momentum).map_err(words)?;
-    let forces = &(&slope(&potential, x)? - &slope(&kinetic, x)?) - &force;
-    let whole = (&rate + &forces).expand().map_err(words)?;
-    let acceleration = x.derivative().derivative();
-    let inertia = slope(&whole, acceleration)?;
-    if inertia.is_zero() {
-        return Err("the kinetic energy has no square of the velocity x'".to_owned());
-    }
-    Expr::divide(&whole, &inertia).map_err(words)
+    let mechanism = Mechanism {
+        coordinates: vec![x],
+        kinetic: kinetic?,
+        potential: potential?,
+        dissipation: Expr::zero(),
+        forces: BTreeMap::from([(x, force?)]),
+    };
+    let equations = mechanism.equations().map_err(|error| error.to_string())?;
+    let words = |error: ExprError| error.to_string();
+    let left = &equations.left[0];
+    let inertia = left.differentiate(x.derivative().derivative()).map_err(words)?;
+    Expr::divide(left, &inertia)
+        .and_then(|left| left.expand())
+        .map_err(words)
 }
 
 /// How long a motion is followed to its rest, in units of 1/omega.
 const LONGEST: f64 = 2000.0;
+
+/// How long a main mass is followed.
+const LONGEST_OF_A_MAIN_MASS: f64 = 1000.0;
 
 /// The numbers of an impact in the order of [`ThreePhases::quantities`].
 const QUANTITIES_OF_AN_IMPACT: [&str; 5] = ["_time_to_contact", "_speed", "_penetration", "_duration", "_period"];

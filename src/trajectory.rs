@@ -7,7 +7,8 @@
 //! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h.) In: coordinates, their accelerations, numbers for every
 //! parameter, a start, a duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a mechanism has
 //! energies, and the same by the other integrator to judge it. Power series go first; where they end, as at a root or a touch that
-//! is no power series in time, Runge-Kutta takes the whole motion.
+//! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, holds the only coordinate there is, it
+//! stays until the force on it is more than friction bears.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Integrator, Options, Path, System, SystemError};
+use crate::system::{End, Event, Integrator, Options, Path, System, SystemError};
 
 /// What is followed, from where, and how long.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +56,8 @@ pub struct Trajectory {
     pub integrator: Integrator,
     /// The balance of energy; nothing where there is no energy.
     pub balance: Option<Balance>,
-    path: Path,
+    pieces: Vec<Piece>,
+    reason: End,
 }
 
 /// The energy at the end, beside that of the start and the work in between.
@@ -211,11 +213,11 @@ impl Course {
         let first = self.clone().follow_by(Integrator::Taylor);
         // A start without a series, or a series that ends, may still be followed by evaluation alone.
         match first {
-            Ok(motion) if motion.path.reason() != End::Singular => Ok(motion),
+            Ok(motion) if motion.reason != End::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
                 let second = self.follow_by(Integrator::RungeKutta);
                 match (&first, &second) {
-                    (Ok(one), Ok(other)) if one.path.end() >= other.path.end() => first,
+                    (Ok(one), Ok(other)) if one.end() >= other.end() => first,
                     (Ok(_), Err(_)) => first,
                     _ => second,
                 }
@@ -261,16 +263,137 @@ impl Course {
             step_limit: self.step_limit,
             interrupt: self.interrupt,
         };
-        let path = system.solve(0.0, &start, self.duration, &[], &options)?;
-        let balance = balance(&self, &path);
-        Ok(Trajectory {
+        let mut pieces = Vec::new();
+        let (mut from, mut state) = (0.0, start);
+        let reason = loop {
+            let path = system.solve(from, &state, self.duration, &[], &options)?;
+            let (end, reason) = (path.end(), path.reason());
+            let last = path.at(end);
+            pieces.push(Piece::Moving(path));
+            let (End::Sticks, Some(last)) = (reason, last) else {
+                break reason;
+            };
+            let Some(until) = self.held_until(end, &last, &values, &options)? else {
+                break reason;
+            };
+            // At the very end of a hold nothing pulls yet, and it would be held again: the motion grows with the cube of the time, so
+            // that a delay d leaves an error of d^2.
+            let until = (until + DELAY * self.duration).min(self.duration);
+            state = last;
+            state[1] = 0.0;
+            pieces.push(Piece::Held {
+                state: state.clone(),
+                from: end,
+                until,
+            });
+            // A hold without length, or too many of them, lead nowhere.
+            if until >= self.duration || until <= end || pieces.len() > MOST_PIECES {
+                break if until >= self.duration {
+                    End::Reached
+                } else {
+                    End::Sticks
+                };
+            }
+            from = until;
+        };
+        let mut motion = Trajectory {
             course: self,
             integrator,
-            balance,
-            path,
+            balance: None,
+            pieces,
+            reason,
+        };
+        motion.balance = motion.account();
+        Ok(motion)
+    }
+
+    /// How long dry friction holds the only coordinate that there is, from a time on: until the acceleration on one side of rest leads
+    /// away from it. Nothing where it is not held.
+    fn held_until(
+        &self,
+        from: f64,
+        state: &[f64],
+        values: &BTreeMap<Symbol, f64>,
+        options: &Options,
+    ) -> Result<Option<f64>, TrajectoryError> {
+        let ([place, velocity], [x, ..]) = (self.rates.states.as_slice(), state) else {
+            return Ok(None);
+        };
+        let accelerations = [1, -1].map(|side| on_side(&self.rates.right[1], *velocity, side));
+        let [forward, backward] = accelerations;
+        let (forward, backward) = (forward?, backward?);
+        let mut numbers = values.clone();
+        numbers.extend([(*place, *x), (*velocity, 0.0)]);
+        let at = |expression: &Expr| {
+            let mut numbers = numbers.clone();
+            numbers.insert(Symbol::new("t"), from);
+            expression.evaluate(&numbers)
+        };
+        let is_held = at(&forward).is_ok_and(|rate| rate <= 0.0) && at(&backward).is_ok_and(|rate| rate >= 0.0);
+        if !is_held {
+            return Ok(None);
+        }
+        if from >= self.duration {
+            return Ok(Some(from));
+        }
+        let nothing = fresh("nothing", &numbers.keys().copied().collect::<Vec<_>>());
+        let clock = System::new(&[nothing], Symbol::new("t"), &[Expr::zero()], &numbers)?;
+        let events = [Event::stop(forward), Event::stop(backward)];
+        let path = clock.solve(from, &[0.0], self.duration, &events, options)?;
+        Ok(match path.reason() {
+            End::Reached | End::Event(_) => Some(path.end()),
+            _ => None,
         })
     }
 }
+
+/// An expression with the sign of a velocity that is about to be positive, or negative, and the velocity zero.
+fn on_side(expression: &Expr, velocity: Symbol, side: i64) -> Result<Expr, ExprError> {
+    let toward: BTreeMap<Symbol, Expr> = [(velocity, Expr::from(side))].into();
+    let at_rest = expression.fold(|expr, children: &[Expr]| match expr.node() {
+        Node::Function(Function::Sign, arguments) if arguments[0].symbols().contains(&velocity) => {
+            Expr::function(Function::Sign, vec![arguments[0].substitute_all(&toward)?])
+        }
+        _ => expr.with_children(children),
+    })?;
+    at_rest.substitute(velocity, &Expr::zero())
+}
+
+/// What a motion is made of.
+#[derive(Clone, Debug)]
+enum Piece {
+    /// As the equations say.
+    Moving(Path),
+    /// At rest where dry friction holds it.
+    Held {
+        /// Coordinate and velocity, and the work so far.
+        state: Vec<f64>,
+        from: f64,
+        until: f64,
+    },
+}
+
+impl Piece {
+    fn end(&self) -> f64 {
+        match self {
+            Self::Moving(path) => path.end(),
+            Self::Held { until, .. } => *until,
+        }
+    }
+
+    fn at(&self, time: f64) -> Option<Vec<f64>> {
+        match self {
+            Self::Moving(path) => path.at(time),
+            Self::Held { state, .. } => Some(state.clone()),
+        }
+    }
+}
+
+/// How much longer a hold lasts than it must, over the duration.
+const DELAY: f64 = 1e-9;
+
+/// So often may a motion be held.
+const MOST_PIECES: usize = 20_000;
 
 /// `u^(p/q) H(v)` as `(u^2)^(p/2q) H(v)`: the force of a contact begins with a root, and a step may look a little way across its
 /// touch before it is found. Where the gate is open nothing changes; without a gate nothing is touched, for there the root has no value.
@@ -296,51 +419,65 @@ fn gated_roots(expression: &Expr) -> Result<Expr, ExprError> {
     })
 }
 
-/// The account of the energy along a path.
-fn balance(course: &Course, path: &Path) -> Option<Balance> {
-    let [energy, _] = course.energy.as_ref()?;
-    let at = |time: f64| {
-        let state = path.at(time)?;
-        let mut values = course.values.clone();
-        values.insert(Symbol::new("t"), time);
-        values.extend(course.rates.states.iter().copied().zip(state.iter().copied()));
-        Some((energy.evaluate(&values).ok()?, *state.last()?))
-    };
-    let (start, _) = at(0.0)?;
-    let (end, work) = at(path.end())?;
-    let (mut astray, mut moved) = (0.0_f64, 0.0_f64);
-    for index in 0..=ACCOUNTS {
-        let (now, work) = at(path.end() * f64::from(index) / f64::from(ACCOUNTS))?;
-        astray = astray.max((now - start - work).abs());
-        moved = moved.max(now.abs()).max(work.abs());
-    }
-    Some(Balance {
-        start,
-        end,
-        work,
-        residual: if moved > 0.0 { astray / moved } else { 0.0 },
-    })
-}
-
 impl Trajectory {
+    /// The account of the energy.
+    fn account(&self) -> Option<Balance> {
+        let [energy, _] = self.course.energy.as_ref()?;
+        let at = |time: f64| {
+            let state = self.all_at(time)?;
+            let mut values = self.course.values.clone();
+            values.insert(Symbol::new("t"), time);
+            values.extend(self.course.rates.states.iter().copied().zip(state.iter().copied()));
+            Some((energy.evaluate(&values).ok()?, *state.last()?))
+        };
+        let (start, _) = at(0.0)?;
+        let (end, work) = at(self.end())?;
+        let (mut astray, mut moved) = (0.0_f64, 0.0_f64);
+        for index in 0..=ACCOUNTS {
+            let (now, work) = at(self.end() * f64::from(index) / f64::from(ACCOUNTS))?;
+            astray = astray.max((now - start - work).abs());
+            moved = moved.max(now.abs()).max(work.abs());
+        }
+        Some(Balance {
+            start,
+            end,
+            work,
+            residual: if moved > 0.0 { astray / moved } else { 0.0 },
+        })
+    }
+
+    /// The states and the work so far; nothing outside of the motion.
+    fn all_at(&self, time: f64) -> Option<Vec<f64>> {
+        let place = self.pieces.partition_point(|piece| piece.end() < time);
+        self.pieces.get(place)?.at(time)
+    }
+
+    /// Where dry friction holds it: from when until when.
+    pub fn held(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.pieces.iter().filter_map(|piece| match piece {
+            Piece::Held { from, until, .. } => Some([*from, *until]),
+            Piece::Moving(_) => None,
+        })
+    }
+
     /// The time at which it ends.
     pub fn end(&self) -> f64 {
-        self.path.end()
+        self.pieces.last().map_or(0.0, Piece::end)
     }
 
     /// Why it ends there.
     pub fn reason(&self) -> End {
-        self.path.reason()
+        self.reason
     }
 
     /// Whether it was followed as long as asked.
     pub fn is_complete(&self) -> bool {
-        self.path.reason() == End::Reached
+        self.reason == End::Reached
     }
 
     /// Coordinates, then velocities; nothing outside of the motion.
     pub fn at(&self, time: f64) -> Option<Vec<f64>> {
-        let mut state = self.path.at(time)?;
+        let mut state = self.all_at(time)?;
         state.truncate(self.course.rates.states.len());
         Some(state)
     }

@@ -393,3 +393,43 @@ fn a_derived_equation_is_handed_on() {
     let course = Course::of_equation(&Oscillator::parse(&equation).unwrap());
     assert_eq!(course.parameters(), vec![Symbol::new("L"), Symbol::new("g")]);
 }
+
+/// Dry friction that sticks and lets go, held against the simulator of equation (7), which has its own way of doing it.
+#[test]
+fn a_driven_motion_sticks_and_lets_go() {
+    use lindstedt::impact::{Integrator as Route, Model, Settings, Start, simulate};
+    let equation = "x'' + alpha*sgn(x') + sin(x) - beta*sin(eta*t)*cos(x) = 0";
+    for (alpha, beta, eta) in [(0.3, 0.5, 0.35), (0.2, 0.25, 0.8), (0.5, 0.9, 0.3), (0.1, 0.05, 1.1)] {
+        let model = Model {
+            alpha,
+            beta,
+            frequency_ratio: eta,
+            right: None,
+            ..Model::default()
+        };
+        let settings = Settings {
+            duration: 80.0,
+            ..Settings::default()
+        };
+        let truth = simulate(&model, Start { x: 0.6, velocity: 0.0 }, Route::Taylor, &settings).expect("a motion");
+        let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+        course.values = [("alpha", alpha), ("beta", beta), ("eta", eta)]
+            .map(|(name, value)| (Symbol::new(name), value))
+            .into();
+        course.begin("x".into(), 0.6).expect("a state");
+        course.duration = 80.0;
+        let motion = course.follow().expect("a motion");
+        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+        for index in 0..=800 {
+            let t = 0.1 * f64::from(index);
+            let (x, _) = truth.path.at(t).expect("a state");
+            let own = motion.at(t).expect("a state")[0];
+            assert!((own - x).abs() < 1e-8, "{alpha} {beta} {eta} at {t}: {own} {x}");
+        }
+        assert!(
+            motion.held().count() > 2 || beta < alpha,
+            "{:?}",
+            motion.held().collect::<Vec<_>>()
+        );
+    }
+}

@@ -9,6 +9,9 @@ use crate::expr::Expr;
 use crate::system::Integrator;
 use crate::trajectory::{Trajectory, in_words};
 
+/// The most times of rest that are listed.
+const MOST_HELD: usize = 6;
+
 /// The rows of the table where no samples are asked for.
 const ROWS: u32 = 20;
 
@@ -101,6 +104,20 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         "until",
         format!("t = {}, {}", decimal(motion.end()), in_words(motion.reason())),
     ));
+    let held: Vec<String> = motion
+        .held()
+        .take(MOST_HELD)
+        .map(|[from, until]| format!("{} to {}", decimal(from), decimal(until)))
+        .collect();
+    let more = motion.held().count().saturating_sub(MOST_HELD);
+    if !held.is_empty() {
+        let more = if more == 0 {
+            String::new()
+        } else {
+            format!(", and {more} times more")
+        };
+        facts.push(("held by friction", format!("t = {}{more}", held.join(", "))));
+    }
     if let Some(balance) = motion.balance {
         facts.push(("energy at the start", decimal(balance.start)));
         facts.push(("energy at the end", decimal(balance.end)));

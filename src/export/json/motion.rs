@@ -34,6 +34,8 @@ pub struct MotionDocument {
     pub energy: Option<EnergyAccount>,
     /// The largest difference from the other integrator, over the largest displacement; null where it was not asked for.
     pub difference: Option<f64>,
+    /// Where dry friction holds it at rest: from when until when.
+    pub held: Vec<[f64; 2]>,
     /// Why it ends where it does.
     pub stopped: String,
     /// Whether it was followed as long as asked.
@@ -119,6 +121,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
             residual: balance.residual,
         }),
         difference: report.judge.map(|judge| motion.difference(judge)),
+        held: motion.held().collect(),
         stopped: in_words(motion.reason()).to_owned(),
         complete: motion.is_complete(),
     }

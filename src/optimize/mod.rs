@@ -20,7 +20,7 @@
 //! let study = optimize(question, vec![], &Watch::default())?;
 //! let best = study.best().ok_or("a design that rests")?;
 //! assert!(best.design.point[2] < 0.031); // the shortest pendulum rests soonest, in seconds
-//! # Ok::<(), lindstedt::optimize::OptimizeError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod decision;

@@ -734,7 +734,7 @@ fn asked(question: &Question) -> Result<Value, RecordError> {
 /// let study = optimize(question.clone(), vec![], &Watch::default())?;
 /// let text = record_head(&question)? + &record_line(&study.runs[1])? + "{\"number\": 0, \"fou";
 /// let (runs, whole) = read_record(&text, &question)?;
-/// assert_eq!((&runs[..], whole), (&study.runs[1..], text.len() - 17));
+/// assert_eq!((&runs[..], whole), (&study.runs[1..], text.len() - 18));
 /// assert_eq!(optimize(question, runs, &Watch::default())?, study);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -6,7 +6,7 @@ use super::document::{Pendulum, PrimarySection};
 use super::simulate::{Simulate, SimulateError};
 use super::{Problem, ProblemError};
 use crate::impact::hertz::Design;
-use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings};
+use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings};
 use crate::impact::{Start, Units};
 
 /// A main mass with its pendulum, and how to follow them.
@@ -110,13 +110,10 @@ impl Problem {
         let (model, Start { x, velocity }) = asked.case.motion().map_err(SimulateError::from)?;
         let design = self.design().map_err(ProblemError::from).map_err(SimulateError::from)?;
         let units = asked.units.unwrap_or(in_si(&design));
-        let primary = section.primary(&units, swept)?;
-        let start = [
-            x,
-            velocity,
-            section.displacement.unwrap_or(0.0) / units.length,
-            section.speed.unwrap_or(0.0) / units.speed(),
-        ];
+        let main_mass = section.main_mass(swept)?;
+        let primary = main_mass.primary(&units);
+        let [displacement, speed] = main_mass.start(&units);
+        let start = [x, velocity, displacement, speed];
         if primary.force == 0.0 && start.iter().all(|value| *value == 0.0) {
             return Err(PrimaryFileError::AtRest);
         }
@@ -140,7 +137,7 @@ impl Problem {
                 } else {
                     usual.phase_limit
                 },
-                interrupt: usual.interrupt,
+                ..usual
             },
             units,
         })
@@ -161,8 +158,11 @@ fn in_si(design: &Design) -> Units {
 }
 
 impl PrimarySection {
-    /// R = M/m, kappa = k L/(m g), delta = (c/m) sqrt(L/g), f = F/(m g), eta = Omega sqrt(L/g).
-    fn primary(&self, units: &Units, swept: bool) -> Result<Primary, PrimaryFileError> {
+    /// The main mass that it describes; a `sweep` gives the frequency of the force.
+    ///
+    /// # Errors
+    /// A key that is missing, alone, or no such number.
+    pub(super) fn main_mass(&self, swept: bool) -> Result<MainMass, PrimaryFileError> {
         let mass = self.mass.ok_or(PrimaryFileError::Missing("mass"))?;
         let stiffness = self.stiffness.ok_or(PrimaryFileError::Missing("stiffness"))?;
         let alone = |key, other| Err(PrimaryFileError::Alone { key, other });
@@ -192,13 +192,14 @@ impl PrimarySection {
                 return Err(PrimaryFileError::Number { key, wanted, value });
             }
         }
-        let time = units.time();
-        Ok(Primary {
-            mass: mass / units.mass,
-            stiffness: stiffness * units.length / units.force(),
-            damping: self.damping.unwrap_or(0.0) / units.mass * time,
-            force: self.force.unwrap_or(0.0) / units.force(),
-            frequency: self.frequency.unwrap_or(0.0) * time,
+        Ok(MainMass {
+            mass,
+            stiffness,
+            damping: self.damping.unwrap_or(0.0),
+            displacement: self.displacement.unwrap_or(0.0),
+            speed: self.speed.unwrap_or(0.0),
+            force: self.force.unwrap_or(0.0),
+            frequency: self.frequency.unwrap_or(0.0),
         })
     }
 }

@@ -5,6 +5,7 @@
 //! states that the last one left, exactly.
 
 use super::super::model::Side;
+use super::super::simulation::REST_FRACTION;
 use super::equations::{ACCOUNTS, Equations};
 use super::path::{Piece, PrimaryPath, PrimaryState};
 use super::{PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings, PrimaryStop};
@@ -45,6 +46,9 @@ pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result
             break PrimaryStop::PhaseLimit;
         }
         run.phases += 1;
+        if settings.stop_at_rest && run.is_at_rest() {
+            break PrimaryStop::AtRest;
+        }
         let before = run.t;
         let reason = match run.regime {
             Regime::Free(direction) => run.fly(direction)?,
@@ -397,6 +401,19 @@ impl<'a> Run<'a> {
                 self.turns.push((t, y(&state)));
             }
         }
+    }
+
+    /// Whether all energy there is could not lift the main mass to a tenth of its start: half of that, so that turning points below it
+    /// have been seen.
+    fn is_at_rest(&self) -> bool {
+        let [.., y, speed] = self.case.start;
+        let primary = &self.case.primary;
+        let first = y.hypot(speed * (primary.mass / primary.stiffness).sqrt());
+        let level = 0.5 * REST_FRACTION * first;
+        primary.force == 0.0
+            && first > 0.0
+            && self.turns.len() > 2
+            && self.case.energy(self.state) < 0.5 * primary.stiffness * level * level
     }
 
     /// The account at the end of a phase.

@@ -21,6 +21,7 @@ mod equations;
 mod follow;
 mod linear;
 mod path;
+mod si;
 mod sweep;
 
 use thiserror::Error;
@@ -33,6 +34,7 @@ use crate::system::SystemError;
 pub use follow::simulate_primary;
 pub use linear::{Alone, Others};
 pub use path::PrimaryState;
+pub use si::MainMass;
 pub use sweep::{PrimaryRow, sweep_primary};
 
 use path::PrimaryPath;
@@ -72,6 +74,8 @@ pub struct PrimarySettings {
     pub tolerance: f64,
     /// Phases, flights and contacts together, after which it ends.
     pub phase_limit: usize,
+    /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its start.
+    pub stop_at_rest: bool,
     /// Who may ask it to end.
     pub interrupt: Interrupt,
 }
@@ -83,6 +87,7 @@ impl Default for PrimarySettings {
             duration: 200.0,
             tolerance: 1e-15,
             phase_limit: 100_000,
+            stop_at_rest: false,
             interrupt: Interrupt::default(),
         }
     }
@@ -135,6 +140,9 @@ pub enum PrimaryStop {
     /// At the time asked for.
     #[error("at the end of the duration")]
     Duration,
+    /// At rest, where that was to be the end.
+    #[error("at rest")]
+    AtRest,
     /// After as many phases as were allowed.
     #[error("after as many flights and contacts as were allowed")]
     PhaseLimit,
@@ -267,7 +275,7 @@ impl PrimaryMotion {
 
     /// Whether it was followed as long as asked.
     pub fn is_complete(&self) -> bool {
-        self.stop == PrimaryStop::Duration
+        matches!(self.stop, PrimaryStop::Duration | PrimaryStop::AtRest)
     }
 
     /// The times at which the phases begin, where a curve has its corners.

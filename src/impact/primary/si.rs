@@ -1,0 +1,47 @@
+//! The main mass in SI units, and its numbers in those of a pendulum.
+//!
+//! ```text
+//! R = M/m,  kappa = k L/(m g),  delta = (c/m) sqrt(L/g),  f = F/(m g),  eta = Omega sqrt(L/g)
+//! y = displacement/L,  y' = speed/sqrt(g L)
+//! ```
+
+use super::Primary;
+use crate::impact::Units;
+
+/// A main mass as it is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MainMass {
+    /// M, kg, without the pendulum.
+    pub mass: f64,
+    /// The stiffness of its spring, N/m.
+    pub stiffness: f64,
+    /// The coefficient of its dashpot, N s/m.
+    pub damping: f64,
+    /// Where it begins, m.
+    pub displacement: f64,
+    /// How fast it begins, m/s.
+    pub speed: f64,
+    /// The amplitude of the force on it, N.
+    pub force: f64,
+    /// The angular frequency of that force, rad/s.
+    pub frequency: f64,
+}
+
+impl MainMass {
+    /// Its numbers beside this pendulum.
+    pub fn primary(&self, units: &Units) -> Primary {
+        let time = units.time();
+        Primary {
+            mass: self.mass / units.mass,
+            stiffness: self.stiffness * units.length / units.force(),
+            damping: self.damping / units.mass * time,
+            force: self.force / units.force(),
+            frequency: self.frequency * time,
+        }
+    }
+
+    /// Its displacement and velocity at the start.
+    pub fn start(&self, units: &Units) -> [f64; 2] {
+        [self.displacement / units.length, self.speed / units.speed()]
+    }
+}

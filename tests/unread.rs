@@ -49,7 +49,7 @@ const MECHANISM: &str = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 92] = [
+const LINES: [(&str, &str, &str); 93] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -166,6 +166,11 @@ const LINES: [(&str, &str, &str); 92] = [
     ("[limits] max_peak_force", "[limits]\nmax_peak_force = 200", ""),
     ("[limits] max_peak_pressure", "[limits]\nmax_peak_pressure = 1e9", ""),
     ("[limits] max_impacts", "[limits]\nmax_impacts = 12", ""),
+    (
+        "[limits] max_primary_rest_time",
+        "[primary]\nmass = 0.5\nstiffness = 50\ndamping = 2\ndisplacement = 0.01\n[limits]\nmax_primary_rest_time = 20",
+        "",
+    ),
     ("[genetic] objective", "[genetic]\nobjective = \"mass\"", ""),
     ("[genetic] population", "[genetic]\npopulation = 20", ""),
     ("[genetic] generations", "[genetic]\ngenerations = 2", ""),

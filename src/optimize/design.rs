@@ -4,6 +4,7 @@
 
 use super::question::Question;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
+use crate::impact::primary::{PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
     Case, Integrator, Model, NoRest, Parameter, Settings, SimulationError, Start, Units, course, hertz,
 };
@@ -47,6 +48,8 @@ pub struct Design {
     pub impacts: usize,
     /// The hardest of them; nothing where none was, or nobody asked for it.
     pub hardest: Option<HardestContact>,
+    /// When the main mass rests, s; nothing where it never does, or nobody asked for it.
+    pub primary_rest_time: Option<f64>,
     /// Whether it was integrated.
     pub integrated: bool,
 }
@@ -126,8 +129,29 @@ impl Question {
             rest_time: followed.rest_time,
             impacts: followed.impacts.len(),
             hardest,
+            primary_rest_time: self.primary_rest_time(model, &units),
             integrated,
         })
+    }
+
+    /// When the main mass rests that carries this pendulum, s: always by integration, for it has no chain. The pendulum hangs at rest when
+    /// the main mass is let go.
+    fn primary_rest_time(&self, model: Model, units: &Units) -> Option<f64> {
+        let main_mass = self.main_mass?;
+        let [displacement, speed] = main_mass.start(units);
+        let case = PrimaryCase {
+            primary: main_mass.primary(units),
+            model,
+            start: [0.0, 0.0, displacement, speed],
+        };
+        let settings = PrimarySettings {
+            duration: self.settings.duration,
+            stop_at_rest: true,
+            interrupt: self.settings.interrupt,
+            ..PrimarySettings::default()
+        };
+        let motion = simulate_primary(case, &settings).ok()?;
+        Some(motion.rest_time().ok()? * units.time())
     }
 
     /// The paper's Table 5 as a point of this box, in it or not; nothing where materials are tried.

@@ -17,6 +17,8 @@ pub enum Objective {
     Mass,
     /// The contacts until it rests.
     Impacts,
+    /// The rest time of the main mass that carries the pendulum, in seconds.
+    PrimaryRestTime,
 }
 
 /// Name, unit, meaning and value of an objective.
@@ -24,13 +26,14 @@ type Row = (&'static str, &'static str, &'static str, fn(&Design) -> Option<f64>
 
 impl Objective {
     /// Every objective, in the order of the documentation.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::RestTime,
         Self::DimensionlessRestTime,
         Self::PeakForce,
         Self::PeakPressure,
         Self::Mass,
         Self::Impacts,
+        Self::PrimaryRestTime,
     ];
 
     fn row(self) -> Row {
@@ -58,6 +61,9 @@ impl Objective {
             }),
             Self::Impacts => ("impacts", "", "the contacts until it rests", |design| {
                 Some(design.impacts as f64)
+            }),
+            Self::PrimaryRestTime => ("primary_rest_time", "s", "the rest time of the main mass", |design| {
+                design.primary_rest_time
             }),
         }
     }
@@ -87,9 +93,17 @@ impl Objective {
         matches!(self, Self::PeakForce | Self::PeakPressure)
     }
 
+    /// Whether it is one of the main mass.
+    pub fn is_of_main_mass(self) -> bool {
+        self == Self::PrimaryRestTime
+    }
+
     /// Whether it is a rest time.
     pub fn is_rest_time(self) -> bool {
-        matches!(self, Self::RestTime | Self::DimensionlessRestTime)
+        matches!(
+            self,
+            Self::RestTime | Self::DimensionlessRestTime | Self::PrimaryRestTime
+        )
     }
 
     /// The objective of this name.

@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::design::{Design, Route};
 use super::objective::Objective;
 use crate::genetic::{Evaluation, Options, OptionsError, Space, SpaceError};
+use crate::impact::primary::MainMass;
 use crate::impact::{
     Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter, Settings, default_lambda,
 };
@@ -60,6 +61,8 @@ pub struct Question {
     pub sphere_yield: Option<f64>,
     /// The yield limit of the barrier, Pa, where one is stated and no materials are tried.
     pub barrier_yield: Option<f64>,
+    /// The main mass that carries the pendulum, where its rest counts.
+    pub main_mass: Option<MainMass>,
     /// How long and how closely motions are followed.
     pub settings: Settings,
     /// The genetic algorithm.
@@ -94,6 +97,7 @@ impl Default for Question {
             elastic: false,
             sphere_yield: None,
             barrier_yield: None,
+            main_mass: None,
             settings: Settings {
                 duration: DEFAULT_DURATION,
                 ..Settings::default()

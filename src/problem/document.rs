@@ -174,6 +174,8 @@ pub struct LimitsSection {
     pub max_peak_pressure: Option<f64>,
     /// The most contacts until rest.
     pub max_impacts: Option<f64>,
+    /// The longest rest time of the main mass, s.
+    pub max_primary_rest_time: Option<f64>,
 }
 
 /// `[lower, upper]`.

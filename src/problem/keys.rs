@@ -47,7 +47,7 @@ impl fmt::Display for Reader {
 const MECHANISM: [Reader; 5] = [Derive, Compare, Impact, Trajectory, Lagrange];
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 92] = [
+pub const KEYS: [(&str, &[Reader]); 93] = [
     ("equation", &[Derive, Compare, Impact, Simulate, Trajectory]),
     ("method", &[Derive, Impact]),
     ("order", &[Derive, Impact]),
@@ -61,11 +61,11 @@ pub const KEYS: [(&str, &[Reader]); 92] = [
     ("[lagrangian] dissipation", &MECHANISM),
     ("[lagrangian] forces", &MECHANISM),
     ("[units]", &MECHANISM),
-    ("[primary] mass", &[Simulate]),
-    ("[primary] stiffness", &[Simulate]),
-    ("[primary] damping", &[Simulate]),
-    ("[primary] displacement", &[Simulate]),
-    ("[primary] speed", &[Simulate]),
+    ("[primary] mass", &[Simulate, Optimize]),
+    ("[primary] stiffness", &[Simulate, Optimize]),
+    ("[primary] damping", &[Simulate, Optimize]),
+    ("[primary] displacement", &[Simulate, Optimize]),
+    ("[primary] speed", &[Simulate, Optimize]),
     ("[primary] force", &[Simulate]),
     ("[primary] frequency", &[Simulate]),
     ("[pendulum] amplitude", &[Impact, Simulate, Materials, Optimize]),
@@ -123,6 +123,7 @@ pub const KEYS: [(&str, &[Reader]); 92] = [
     ("[limits] max_peak_force", &[Optimize]),
     ("[limits] max_peak_pressure", &[Optimize]),
     ("[limits] max_impacts", &[Optimize]),
+    ("[limits] max_primary_rest_time", &[Optimize]),
     ("[genetic] objective", &[Optimize]),
     ("[genetic] population", &[Optimize]),
     ("[genetic] generations", &[Optimize]),

@@ -6,7 +6,10 @@
 use thiserror::Error;
 
 use super::simulate::refuse_two_forms;
-use super::{DesignError, MaterialsFileError, Objectives, Problem, ProblemError, Reader, SimulateError, UnreadKey};
+use super::{
+    DesignError, MaterialsFileError, Objectives, PrimaryFileError, Problem, ProblemError, Reader, SimulateError,
+    UnreadKey,
+};
 use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
 use crate::optimize::{Limit, Objective, OptimizeError, Question, TABLE_4, Variable};
@@ -59,6 +62,18 @@ pub enum OptimizeFileError {
     /// A yield limit of what has one of its own.
     #[error("`[barrier] yield` changes nothing beside [[material]]: give each material its `yield`")]
     YieldBesideMaterials,
+    /// A main mass that is not there.
+    #[error("the rest time of the main mass needs [primary]: its mass, stiffness and displacement")]
+    NoMainMass,
+    /// A main mass that nobody asks for.
+    #[error(
+        "[primary] changes nothing here: make \"primary_rest_time\" an objective in [genetic], or limit it by `max_primary_rest_time` in \
+         [limits]"
+    )]
+    MainMassAlone,
+    /// A main mass that is none.
+    #[error(transparent)]
+    Primary(#[from] PrimaryFileError),
     /// A name that is none.
     #[error("[genetic] {key} = \"{name}\" is unknown: choose one of {}", .known.join(", "))]
     Unknown {
@@ -88,6 +103,7 @@ impl OptimizeFileError {
         match self {
             Self::Simulate(error) => error.help(),
             Self::Materials(error) => error.help(),
+            Self::Primary(error) => error.help(),
             Self::Unknown { name, known, .. } => {
                 nearest(name, known.iter().copied()).map(|name| format!("did you mean \"{name}\"?"))
             }
@@ -176,6 +192,7 @@ impl Problem {
         self.boundaries(&mut question)?;
         self.kept(&mut question)?;
         self.search_options(&mut question)?;
+        self.carried(&mut question)?;
         Ok(question)
     }
 
@@ -233,6 +250,7 @@ impl Problem {
             (Objective::PeakForce, limits.max_peak_force),
             (Objective::PeakPressure, limits.max_peak_pressure),
             (Objective::Impacts, limits.max_impacts),
+            (Objective::PrimaryRestTime, limits.max_primary_rest_time),
         ];
         question.limits = of
             .into_iter()
@@ -273,6 +291,30 @@ impl Problem {
             (false, Some((key, _))) => Err(OptimizeFileError::YieldAlone(key)),
             _ => Ok(()),
         }
+    }
+
+    /// What carries the pendulum, where its rest counts.
+    fn carried(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+        let limited = question.limits.iter().map(|limit| limit.objective);
+        let counts = question
+            .objectives
+            .iter()
+            .copied()
+            .chain(limited)
+            .any(Objective::is_of_main_mass);
+        match (&self.primary, counts) {
+            (None, false) => {}
+            (None, true) => return Err(OptimizeFileError::NoMainMass),
+            (Some(_), false) => return Err(OptimizeFileError::MainMassAlone),
+            (Some(section), true) => {
+                let main_mass = section.main_mass(false)?;
+                if main_mass.displacement == 0.0 && main_mass.speed == 0.0 {
+                    return Err(PrimaryFileError::AtRest.into());
+                }
+                question.main_mass = Some(main_mass);
+            }
+        }
+        Ok(())
     }
 
     /// How it is searched.

@@ -47,6 +47,7 @@ fn column(objective: Objective) -> Heading {
         Objective::PeakPressure => ("pressure, Pa", "pressure, Pa"),
         Objective::Mass => ("mass, kg", "mass, kg"),
         Objective::Impacts => ("impacts", "impacts"),
+        Objective::PrimaryRestTime => ("main mass, s", "main mass, s"),
     };
     Heading { text, latex }
 }
@@ -193,6 +194,16 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
         decimal(question.settings.duration),
         decimal(100.0 * REST_FRACTION)
     )));
+    if let Some(of) = question.main_mass {
+        blocks.push(Block::Note(format!(
+            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s with the pendulum hanging at rest; integrated",
+            decimal(of.mass),
+            decimal(of.stiffness),
+            decimal(of.damping),
+            decimal(of.displacement),
+            decimal(of.speed)
+        )));
+    }
     for constraint in question.constraints() {
         blocks.push(Block::Note(format!("constraint: {constraint}")));
     }
@@ -289,6 +300,10 @@ fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
     .into_iter()
     .map(|objective| (column(objective), cell(objective.value(design))))
     .collect();
+    if study.question.main_mass.is_some() {
+        let objective = Objective::PrimaryRestTime;
+        rows.push((column(objective), cell(objective.value(design))));
+    }
     let plain = |text: &'static str, latex: &'static str| Heading { text, latex };
     rows.push((plain("gamma", "$\\gamma$"), decimal(design.model.gamma)));
     rows.push((

@@ -64,6 +64,8 @@ pub struct Asked {
     pub sphere_yield: Option<f64>,
     /// That of the barrier, in Pa; null likewise.
     pub barrier_yield: Option<f64>,
+    /// The main mass that carries the pendulum; null where its rest does not count.
+    pub main_mass: Option<MainMassDocument>,
     /// What is held fixed.
     pub held_fixed: HeldFixed,
     /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's, which prints none.
@@ -315,10 +317,28 @@ pub struct Design {
     pub peak_pressure: Option<f64>,
     /// The coefficient of restitution of the fastest contact, dimensionless; null where there is none.
     pub restitution: Option<f64>,
+    /// The rest time of the main mass, in seconds; null where it never rests, or none counts.
+    pub primary_rest_time: Option<f64>,
     /// The stiffness of the contact by equation (8), dimensionless.
     pub gamma: f64,
     /// mu/gamma, dimensionless.
     pub mu_over_gamma: f64,
+}
+
+/// A main mass on spring and dashpot, let go with the pendulum hanging at rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "MainMass")]
+pub struct MainMassDocument {
+    /// Its mass without the pendulum, in kg.
+    pub mass: f64,
+    /// The stiffness of its spring, in N/m.
+    pub stiffness: f64,
+    /// The coefficient of its dashpot, in N s/m.
+    pub damping: f64,
+    /// Where it begins, in m.
+    pub displacement: f64,
+    /// How fast it begins, in m/s.
+    pub speed: f64,
 }
 
 /// What decides the best design.
@@ -453,6 +473,7 @@ fn design(study: &Study, design: &optimize::Design) -> Design {
         peak_force: design.hardest.map(|contact| contact.force),
         peak_pressure: design.hardest.map(|contact| contact.pressure),
         restitution: design.hardest.map(|contact| contact.restitution),
+        primary_rest_time: design.primary_rest_time,
         gamma: design.model.gamma,
         mu_over_gamma: design.model.mu / design.model.gamma,
     }
@@ -541,6 +562,13 @@ impl Asked {
             elastic: question.elastic,
             sphere_yield: question.sphere_yield,
             barrier_yield: question.barrier_yield,
+            main_mass: question.main_mass.map(|of| MainMassDocument {
+                mass: of.mass,
+                stiffness: of.stiffness,
+                damping: of.damping,
+                displacement: of.displacement,
+                speed: of.speed,
+            }),
             held_fixed: HeldFixed {
                 amplitude: case.amplitude,
                 start: case.start,

@@ -47,6 +47,7 @@ pub fn optimization(study: &Study) -> String {
             Objective::ALL
                 .into_iter()
                 .filter(|objective| !question.objectives.contains(objective))
+                .filter(|objective| question.main_mass.is_some() || !objective.is_of_main_mass())
                 .map(|objective| (objective.name().to_owned(), unit(objective.unit()))),
         ),
     }
@@ -97,7 +98,8 @@ pub fn optimization(study: &Study) -> String {
         }
         let others = Objective::ALL
             .into_iter()
-            .filter(|objective| !question.objectives.contains(objective));
+            .filter(|objective| !question.objectives.contains(objective))
+            .filter(|objective| question.main_mass.is_some() || !objective.is_of_main_mass());
         fields.extend(others.map(|objective| number(objective.value(design))));
         row(fields);
     }

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
 #[cfg(feature = "plot")]
 use crate::decimal::decimal;
+#[cfg(feature = "plot")]
 use crate::impact::Units;
 use crate::impact::primary::PrimaryRow;
 use crate::report::PrimaryReport;

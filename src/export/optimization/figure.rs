@@ -39,6 +39,7 @@ fn axis(objective: Objective) -> &'static str {
         Objective::PeakPressure => "peak pressure (Pa)",
         Objective::Mass => "mass (kg)",
         Objective::Impacts => "impacts until rest",
+        Objective::PrimaryRestTime => "rest time of the main mass (s)",
     }
 }
 

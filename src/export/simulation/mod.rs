@@ -12,6 +12,7 @@ pub mod figure;
 mod latex;
 mod text;
 
+#[cfg(feature = "json")]
 pub(in crate::export) use chain::phases;
 pub use columns::{Column, columns};
 pub use csv::{simulation as csv, sweep as sweep_csv};

@@ -12,9 +12,11 @@
 
 use std::collections::BTreeMap;
 
+use num_traits::Zero;
 use thiserror::Error;
 
-use crate::exact::rational::ratio;
+use crate::exact::Rational;
+use crate::exact::rational::{Integer, ratio};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
@@ -244,12 +246,17 @@ impl Course {
             return Err(TrajectoryError::Duration(self.duration));
         }
         let mut states = self.rates.states.clone();
-        let mut right: Vec<Expr> = self.rates.right.iter().map(gated_roots).collect::<Result<_, _>>()?;
+        let mut right: Vec<Expr> = self
+            .rates
+            .right
+            .iter()
+            .map(|right| gated_roots(right, &self.values))
+            .collect::<Result<_, _>>()?;
         let mut start = self.start.clone();
         if let Some([_, power]) = &self.energy {
             let taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
             states.push(fresh("work", &taken));
-            right.push(gated_roots(power)?);
+            right.push(gated_roots(power, &self.values)?);
             start.push(0.0);
         }
         let values: BTreeMap<Symbol, f64> = needed
@@ -316,9 +323,13 @@ impl Course {
         values: &BTreeMap<Symbol, f64>,
         options: &Options,
     ) -> Result<Option<f64>, TrajectoryError> {
-        let ([place, velocity], [x, ..]) = (self.rates.states.as_slice(), state) else {
+        let ([place, velocity], [x, speed, ..]) = (self.rates.states.as_slice(), state) else {
             return Ok(None);
         };
+        // A motion that stays on another corner, as on a belt that runs, is not at rest.
+        if speed.abs() > AT_REST * (1.0 + x.abs()) {
+            return Ok(None);
+        }
         let accelerations = [1, -1].map(|side| on_side(&self.rates.right[1], *velocity, side));
         let [forward, backward] = accelerations;
         let (forward, backward) = (forward?, backward?);
@@ -351,7 +362,7 @@ impl Course {
 fn on_side(expression: &Expr, velocity: Symbol, side: i64) -> Result<Expr, ExprError> {
     let toward: BTreeMap<Symbol, Expr> = [(velocity, Expr::from(side))].into();
     let at_rest = expression.fold(|expr, children: &[Expr]| match expr.node() {
-        Node::Function(Function::Sign, arguments) if arguments[0].symbols().contains(&velocity) => {
+        Node::Function(Function::Sign, arguments) if arguments[0].as_symbol() == Some(velocity) => {
             Expr::function(Function::Sign, vec![arguments[0].substitute_all(&toward)?])
         }
         _ => expr.with_children(children),
@@ -392,31 +403,77 @@ impl Piece {
 /// How much longer a hold lasts than it must, over the duration.
 const DELAY: f64 = 1e-9;
 
+/// A speed that rounding leaves of rest.
+const AT_REST: f64 = 1e-9;
+
 /// So often may a motion be held.
 const MOST_PIECES: usize = 20_000;
 
-/// `u^(p/q) H(v)` as `(u^2)^(p/2q) H(v)`: the force of a contact begins with a root, and a step may look a little way across its
-/// touch before it is found. Where the gate is open nothing changes; without a gate nothing is touched, for there the root has no value.
-fn gated_roots(expression: &Expr) -> Result<Expr, ExprError> {
-    let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
+/// `u^(p/q) H(v)`, q even, as `(u^2)^(p/2q) H(v)` where u is zero with v: the force of a contact begins with such a root, and a step may
+/// look a little way across its touch before it is found. Where the gate is open nothing changes; a root without its own gate is left alone,
+/// for where u is negative it has no value.
+fn gated_roots(expression: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Expr, ExprError> {
     let half = Expr::number(ratio(1, 2));
+    let even = |exponent: &Rational| (exponent.denom() % Integer::from(2)).is_zero();
     expression.fold(|expr, children: &[Expr]| {
-        if !(matches!(expr.node(), Node::Product(..)) && children.iter().any(is_gate)) {
+        let gates: Vec<&Expr> = children
+            .iter()
+            .filter_map(|child| match child.node() {
+                Node::Function(Function::Step, arguments) => arguments.first(),
+                _ => None,
+            })
+            .collect();
+        if !matches!(expr.node(), Node::Product(..)) || gates.is_empty() {
             return expr.with_children(children);
         }
         let open = |factor: &Expr| {
-            factor.fold(|expr, children: &[Expr]| match (expr.node(), children) {
-                (Node::Power(_, exponent), [base, _])
-                    if exponent.as_number().is_some_and(|exponent| !exponent.is_integer()) =>
-                {
-                    Expr::power(&base.integer_power(2)?, &(exponent * &half))
+            factor.fold(|expr, children: &[Expr]| {
+                let (Node::Power(_, exponent), [base, _]) = (expr.node(), children) else {
+                    return expr.with_children(children);
+                };
+                let mut gated = false;
+                for gate in gates.iter().filter(|_| exponent.as_number().is_some_and(even)) {
+                    gated = gated || is_open_with(base, gate, values)?;
                 }
-                _ => expr.with_children(children),
+                match gated {
+                    true => Expr::power(&base.integer_power(2)?, &(exponent * &half)),
+                    false => expr.with_children(children),
+                }
             })
         };
         let factors: Result<Vec<Expr>, ExprError> = children.iter().map(open).collect();
         expr.with_children(&factors?)
     })
+}
+
+/// Whether a base is a positive number times the argument of a gate, or times its sine: zero where the gate opens, and positive behind it.
+fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<bool, ExprError> {
+    let is_number = |expr: &Expr| expr.symbols().iter().all(|name| values.contains_key(name));
+    let positive = |expr: &Expr| expr.evaluate(values).is_ok_and(|value| value > 0.0);
+    let in_proportion = |one: &Expr, other: &Expr| -> Result<bool, ExprError> {
+        let Some(name) = other.symbols().into_iter().find(|name| !values.contains_key(name)) else {
+            return Ok(false);
+        };
+        let (above, below) = (one.differentiate(name)?, other.differentiate(name)?);
+        if below.is_zero() || !is_number(&above) || !is_number(&below) {
+            return Ok(false);
+        }
+        let ratio = Expr::divide(&above, &below)?;
+        Ok(positive(&ratio) && (one - &(&ratio * other)).expand()?.is_zero())
+    };
+    if in_proportion(base, gate)? {
+        return Ok(true);
+    }
+    let (number, factors) = base.factors();
+    let (numbers, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| is_number(factor));
+    let before = Expr::product([Expr::number(number)].into_iter().chain(numbers.into_iter().cloned()));
+    match rest.as_slice() {
+        [wave] => match wave.node() {
+            Node::Function(Function::Sin, arguments) => Ok(positive(&before) && in_proportion(&arguments[0], gate)?),
+            _ => Ok(false),
+        },
+        _ => Ok(false),
+    }
 }
 
 impl Trajectory {
@@ -508,7 +565,7 @@ pub fn in_words(end: End) -> &'static str {
         End::Event(_) => "at an event",
         End::StepLimit => "after as many steps as were allowed",
         End::Singular => "where a state or its rate has no value, or no next step",
-        End::Sticks => "at rest on a corner, where dry friction holds it",
+        End::Sticks => "on a corner that the rates on both sides lead back to, where it is not followed",
         End::Interrupted => "interrupted",
     }
 }

@@ -347,6 +347,8 @@ fn what_is_no_mechanism_is_refused() {
         (&["x", "x"], "m*x'^2/2", "0", "twice"),
         (&[], "0", "0", "1 to 8 coordinates"),
         (&["x", "y"], "m*(x' + y')^2/2", "0", "singular"),
+        (&["x"], "m*x'^2/2", "k*H(x - 1)", "jumps with `H(-1 + x)`"),
+        (&["x"], "m*(1 + H(x))*x'^2/2", "0", "jumps"),
         (&["t"], "m*t^2/2", "0", "`t` cannot be a coordinate"),
         (&["x"], "m*x'", "k*x^2", "singular"),
     ] {
@@ -432,4 +434,51 @@ fn a_driven_motion_sticks_and_lets_go() {
             motion.held().collect::<Vec<_>>()
         );
     }
+}
+
+/// Kept by hand: a root is opened by its own gate alone, an energy may have steps that vanish where they begin, masses of either sign
+/// have a mass matrix, and rigid motions are no growth.
+#[test]
+fn corners_of_mechanisms() {
+    let follow = |equation: &str, start: f64, until: f64| {
+        let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+        course.begin("x".into(), start).expect("a state");
+        course.duration = until;
+        course.follow().expect("a motion")
+    };
+    let gated = follow("x'' + x^(1/3)*H(1 - x) = 0", 0.5, 10.0);
+    let plain = follow("x'' + x^(1/3) = 0", 0.5, 10.0);
+    let [gated, plain] = [&gated, &plain].map(|motion| motion.at(motion.end().min(10.0)).expect("a state")[0]);
+    assert!((gated - plain).abs() < 1e-6, "{gated} {plain}");
+    // Without a gate of its own a root has no value, and the motion ends there.
+    assert!(!follow("x'' + 1 + sqrt(x)*H(1 - x) = 0", 0.5, 10.0).is_complete());
+    let stop = Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + c*(x - a)^2*H(x - a)/2").unwrap();
+    assert_eq!(stop.equations().unwrap().left[0].to_string().matches("H(").count(), 2);
+    let crossed = Mechanism::parse(&["x", "y"], "m*x'*y'", "k*x*y").unwrap();
+    let accelerations = crossed.equations().unwrap().accelerations().unwrap();
+    assert_same(&accelerations[0], &expression("-k*x/m"));
+    // Three masses in a chain that is free at both ends, with dashpots: one rigid motion.
+    let mut chain = Mechanism::parse(
+        &["x", "y", "z"],
+        "150*x'^2 + 20*y'^2 + 125*z'^2",
+        "10000*(x - y)^2 + 90000*(y - z)^2",
+    )
+    .unwrap();
+    chain.dissipation = expression("750*(x' - y')^2 + 100*(y' - z')^2");
+    let equations = chain.equations().unwrap();
+    let rest = &equilibria(&equations).unwrap()[0];
+    let modes = Modes::at(&equations, rest).unwrap().numbers(&BTreeMap::new()).unwrap();
+    assert!(modes.iter().all(|mode| mode.growth <= 0.0), "{modes:?}");
+    assert_eq!((modes[0].frequency, modes[0].growth), (0.0, 0.0));
+    // Anywhere along a rod: the swing depends on where, and says so.
+    let rod = Mechanism::parse(&["s", "x"], "m*s'^2/2 + (I + m*s^2)*x'^2/2", "-M*g*L*cos(x)").unwrap();
+    let equations = rod.equations().unwrap();
+    let rest = &equilibria(&equations).unwrap()[0];
+    assert_eq!(Modes::at(&equations, rest).unwrap().taken_at_zero, [Symbol::new("s")]);
+    // Duffing's spring rests at zero.
+    let duffing = Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + b*x^4/4")
+        .unwrap()
+        .equations()
+        .unwrap();
+    assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
 }

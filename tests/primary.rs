@@ -480,3 +480,70 @@ fn what_cannot_be_followed_is_said() {
     .expect("a part");
     assert_eq!(short.stop, PrimaryStop::PhaseLimit);
 }
+
+/// From rest or with speed on a barrier's surface, and pressed against it: by hand and Runge-Kutta, as above.
+#[test]
+fn a_start_on_a_barrier_is_a_start_in_contact() {
+    let primary = Primary {
+        mass: 5.0,
+        stiffness: 10.0,
+        damping: 0.1,
+        ..MASS
+    };
+    for (place, start) in [
+        (0.0, [0.0, 0.0, 0.2, 0.0]),
+        (0.0, [0.0, 0.0, -0.2, 0.0]),
+        (0.2, [0.2, 0.5, 0.0, 0.0]),
+        (-0.2, [-0.2, 0.0, 0.1, 0.0]),
+    ] {
+        let model = Model {
+            gamma: 2000.0,
+            mu: 300.0,
+            zeta: 0.01,
+            right: Some(place),
+            ..FREE
+        };
+        let motion = follow(PrimaryCase { primary, model, start }, 10.0);
+        let g = "(-sin(x) - 2*zeta*v - (gamma + mu*v)*((x - c)^2)^(3/4)*H(x - c))";
+        let h = "(v^2*sin(x) - delta*u - kappa*y)";
+        let p = format!("(({h} - {g}*cos(x))/(R + sin(x)^2))");
+        let read = |text: &str| -> Expr { parse_expression(text).expect("an expression") };
+        let right = [read("v"), read(&format!("{g} - {p}*cos(x)")), read("u"), read(&p)];
+        let numbers: BTreeMap<Symbol, f64> = [
+            ("R", primary.mass),
+            ("kappa", primary.stiffness),
+            ("delta", primary.damping),
+            ("gamma", model.gamma),
+            ("mu", model.mu),
+            ("zeta", model.zeta),
+            ("c", place),
+        ]
+        .map(|(name, value)| (Symbol::new(name), value))
+        .into();
+        let states = ["x", "v", "y", "u"].map(Symbol::new);
+        let system = System::new(&states, "t".into(), &right, &numbers).expect("a system");
+        let options = Options {
+            integrator: Route::RungeKutta,
+            tolerance: 1e-12,
+            ..Options::default()
+        };
+        let path = system.solve(0.0, &start, 10.0, &[], &options).expect("a path");
+        for index in 0..=100 {
+            let t = 0.1 * f64::from(index);
+            let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));
+            assert!(
+                (own.x - other[0]).abs() < 1e-6,
+                "{place} {start:?} at {t}: {} {}",
+                own.x,
+                other[0]
+            );
+            assert!(
+                (own.y - other[2]).abs() < 1e-6,
+                "{place} {start:?} at {t}: {} {}",
+                own.y,
+                other[2]
+            );
+        }
+        assert!(motion.impacts.iter().all(|impact| impact.speed_in >= 0.0));
+    }
+}

@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Interrupt;
-use lindstedt::export::{json, primary, text};
+use lindstedt::export::{json, primary, significant, text};
 use lindstedt::impact::Units;
 use lindstedt::impact::primary::{PrimaryRow, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary};
 use lindstedt::impact::sweep::Axis;
@@ -36,6 +36,10 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     match asked.sweep {
         [] => one(problem, asked),
         [axis] if axis.name() == "frequency" => many(problem, asked, axis),
+        [_, _, ..] => Err(Failure::Usage(
+            "a main mass is swept over the frequency of its force alone: give one --sweep, frequency=5:20:61, in rad/s"
+                .to_owned(),
+        )),
         [axis, ..] => Err(Failure::Usage(format!(
             "a main mass is swept over the frequency of its force alone, not over `{}`: --sweep frequency=5:20:61, in rad/s",
             axis.name()
@@ -72,8 +76,17 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     Ok(Outcome {
         result: whole(text),
         picture,
-        note: (!motion.is_complete())
-            .then(|| format!("warning: stopped early, what there is is kept: {}", motion.stop)),
+        note: match (motion.is_complete(), motion.energy.residual <= ENERGY_TOLERANCE) {
+            (false, _) => Some(format!(
+                "warning: stopped early, what there is is kept: {}",
+                motion.stop
+            )),
+            (true, false) => Some(format!(
+                "warning: {} of the largest energy is not accounted for: do not trust this motion",
+                significant(motion.energy.residual, 2)
+            )),
+            (true, true) => None,
+        },
         verdict: Some(Verdict::of(kept && motion.is_complete())),
         partial: !motion.is_complete(),
     })

@@ -1,10 +1,10 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
-use lindstedt::export::{json, text, trajectory};
+use lindstedt::export::{json, significant, text, trajectory};
 use lindstedt::expr::parse_expression;
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, TrajectoryReport};
-use lindstedt::system::{End, Integrator};
+use lindstedt::system::Integrator;
 use lindstedt::trajectory::{Course, Trajectory, TrajectoryError, in_words};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
@@ -65,17 +65,30 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     let broken = [Some(&motion), judge.as_ref()]
         .into_iter()
         .flatten()
-        .find(|motion| !motion.is_complete() && motion.reason() != End::Sticks);
+        .find(|motion| !motion.is_complete());
+    let allowed = common.tolerance.unwrap_or(TOLERANCE);
+    let doubtful = match (motion.balance, &judge) {
+        (Some(balance), _) if balance.residual > TOLERANCE => Some(format!(
+            "warning: {} of the largest energy is not accounted for: do not trust this motion",
+            significant(balance.residual, 2)
+        )),
+        (_, Some(judge)) if motion.difference(judge) > TOLERANCE => Some(format!(
+            "warning: the two integrators differ by {} of the largest displacement: do not trust this motion so far",
+            significant(motion.difference(judge), 2)
+        )),
+        _ => None,
+    };
     Ok(Outcome {
         result: whole(text),
         picture,
-        note: broken.map(|motion| {
-            format!(
+        note: match broken {
+            Some(motion) => Some(format!(
                 "warning: stopped early, what there is is kept: {}",
                 in_words(motion.reason())
-            )
-        }),
-        verdict: Some(verdict(&motion, judge.as_ref(), common.tolerance.unwrap_or(TOLERANCE))),
+            )),
+            None => doubtful,
+        },
+        verdict: Some(verdict(&motion, judge.as_ref(), allowed)),
         partial: broken.is_some(),
     })
 }

@@ -190,10 +190,11 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
         ),
     ];
     let caption = format!(
-        "Main mass {} times the pendulum, its own frequency {} times that of the pendulum; {} impacts.",
+        "Main mass {} times the pendulum, its own frequency {} times that of the pendulum; {} impact{}.",
         decimal(primary.mass),
         decimal((primary.stiffness / primary.mass).sqrt()),
-        motion.impacts.len()
+        motion.impacts.len(),
+        if motion.impacts.len() == 1 { "" } else { "s" }
     );
     figure(&panels, &caption)
 }

@@ -264,7 +264,13 @@ pub fn dimension(expression: &Expr, units: &BTreeMap<Symbol, Dimension>, part: &
         },
         Node::Function(Function::Absolute, _) => Ok(below.first().cloned().unwrap_or_default()),
         Node::Function(Function::Sign | Function::Step, _) => Ok(Dimension::none()),
-        Node::Function(Function::Maximum | Function::Minimum, arguments) => odd_one_out(arguments, below, &part()),
+        // Zero is zero in any unit.
+        Node::Function(Function::Maximum | Function::Minimum, arguments) => {
+            let kept = arguments.iter().zip(below).filter(|(argument, _)| !argument.is_zero());
+            let (arguments, below): (Vec<Expr>, Vec<Dimension>) =
+                kept.map(|(one, other)| (one.clone(), other.clone())).unzip();
+            odd_one_out(&arguments, &below, &part())
+        }
         Node::Function(..) => match below.iter().find(|argument| !argument.is_none()) {
             None => Ok(Dimension::none()),
             Some(found) => Err(UnitError::Argument {

@@ -83,6 +83,24 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
             });
         }
     }
+    // What does not follow linearly may still rest at zero.
+    let zero: BTreeMap<Symbol, Expr> = coordinates.iter().map(|name| (*name, Expr::zero())).collect();
+    let rests = |force: &Expr| force.substitute_all(&zero).and_then(|force| simplified(&force));
+    if found.is_empty()
+        && forces
+            .iter()
+            .all(|force| rests(force).is_ok_and(|force| force.is_zero()))
+    {
+        found.push(Rest {
+            places: coordinates.iter().map(|_| Place::At(Expr::zero())).collect(),
+            condition: None,
+        });
+    }
+    let mut add = |rest: Rest| {
+        if !found.contains(&rest) {
+            found.push(rest);
+        }
+    };
     if let ([angle], [force]) = (coordinates.as_slice(), forces.as_slice())
         && let Some(cosine) = tilted(*angle, force)?
     {

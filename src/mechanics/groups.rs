@@ -330,7 +330,15 @@ impl Scaling<'_> {
                 Role::Other => Symbol::new(&format!("{wanted}{counted}")),
                 _ => Symbol::new(wanted),
             };
-            let taken: Vec<Symbol> = self.taken.iter().copied().chain(self.symbols()).collect();
+            // Names of parameters that are used for units, or have been replaced, stay theirs: definitions are written with them.
+            let parameters = equations.parameters();
+            let taken: Vec<Symbol> = self
+                .taken
+                .iter()
+                .copied()
+                .chain(self.symbols())
+                .chain(parameters)
+                .collect();
             // A parameter that is replaced by the group leaves its name to it.
             let name = match product.symbols().len() == 1 && product.as_symbol() == Some(own) {
                 true => own,
@@ -473,7 +481,7 @@ impl Role {
             _ if time => Self::Excitation,
             _ if has(Function::Step) && velocity => Self::ContactDamping,
             _ if has(Function::Step) => Self::Contact,
-            _ if has(Function::Sign) => Self::Dry,
+            _ if matches!(before.node(), Node::Function(Function::Sign, _)) => Self::Dry,
             _ => Self::Other,
         }
     }

@@ -13,7 +13,7 @@ use num_traits::{One, Zero};
 use super::trigonometry::simplified;
 use super::{MechanicsError, Mechanism, linear};
 use crate::exact::Rational;
-use crate::expr::{Expr, ExprError};
+use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
 /// Equations of motion, one for each coordinate.
@@ -81,6 +81,61 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsErr
         equations.divisors.push(divisor);
     }
     Ok(equations)
+}
+
+/// A step or a sign by which an energy jumps: one beside which no factor vanishes with its argument.
+pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
+    let steps = |expr: &Expr| expr.contains_function(Function::Step) || expr.contains_function(Function::Sign);
+    // What is still to be looked at, with the factors that stand beside it.
+    let mut open: Vec<(Expr, Vec<Expr>)> = vec![(energy.clone(), vec![])];
+    while let Some((expr, beside)) = open.pop() {
+        match expr.node() {
+            Node::Function(Function::Step | Function::Sign, arguments) => {
+                let of_motion = arguments[0]
+                    .symbols()
+                    .into_iter()
+                    .any(|name| coordinates.contains(&name.coordinate()));
+                if of_motion && !beside.iter().any(|factor| vanishes_with(factor, &arguments[0])) {
+                    return Some(expr);
+                }
+            }
+            Node::Product(_, factors) => {
+                for (index, factor) in factors.iter().enumerate().filter(|(_, factor)| steps(factor)) {
+                    let others = factors.iter().enumerate().filter(|(other, _)| *other != index);
+                    let beside = beside.iter().cloned().chain(others.map(|(_, factor)| factor.clone()));
+                    open.push((factor.clone(), beside.collect()));
+                }
+            }
+            _ => open.extend(
+                expr.children()
+                    .filter(|child| steps(child))
+                    .map(|child| (child.clone(), beside.clone())),
+            ),
+        }
+    }
+    None
+}
+
+/// Whether a factor is zero where u is: a positive power of u, of its sine, or of a multiple of them.
+fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
+    let (base, exponent) = factor.base_and_exponent();
+    let positive = exponent
+        .as_number()
+        .is_some_and(|exponent| *exponent > Rational::zero());
+    let same = |expression: &Expr| {
+        let multiple = |name: Symbol| {
+            let (above, below) = (expression.differentiate(name).ok()?, u.differentiate(name).ok()?);
+            let ratio = Expr::divide(&above, &below).ok()?;
+            Some(!ratio.is_zero() && !ratio.contains(name) && (expression - &(&ratio * u)).expand().ok()?.is_zero())
+        };
+        expression == u || u.symbols().into_iter().any(|name| multiple(name) == Some(true))
+    };
+    let of_wave = match base.node() {
+        Node::Function(Function::Sin | Function::Absolute, arguments) => same(&arguments[0]),
+        Node::Function(Function::Maximum | Function::Minimum, _) => true,
+        _ => false,
+    };
+    positive && (same(&base) || of_wave)
 }
 
 impl Equations {

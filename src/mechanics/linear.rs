@@ -1,4 +1,4 @@
-//! Matrices of expressions: elimination without a choice of pivots, for mass matrices are positive definite.
+//! Matrices of expressions: elimination with the first pivot that is not zero, which of a positive mass matrix is always the next.
 
 use super::MechanicsError;
 use crate::expr::{Expr, ExprError};
@@ -16,9 +16,12 @@ pub(super) fn solution(
     let mut rows: Vec<Vec<Expr>> = matrix.to_vec();
     let mut right = right.to_vec();
     for pivot in 0..size {
-        if super::trigonometry::simplified(&rows[pivot][pivot]).is_ok_and(|pivot| pivot.is_zero()) {
+        let is_zero = |entry: &Expr| super::trigonometry::simplified(entry).is_ok_and(|entry| entry.is_zero());
+        let Some(first) = (pivot..size).find(|row| !is_zero(&rows[*row][pivot])) else {
             return Err(singular());
-        }
+        };
+        rows.swap(pivot, first);
+        right.swap(pivot, first);
         let (above, below) = rows.split_at_mut(pivot + 1);
         let (above_right, below_right) = right.split_at_mut(pivot + 1);
         for (row, value) in below.iter_mut().zip(below_right) {

@@ -102,6 +102,17 @@ pub enum MechanicsError {
     /// The accelerations do not follow.
     #[error("the kinetic energy `{0}` does not determine every acceleration: its mass matrix is singular")]
     Singular(Expr),
+    /// An energy that jumps.
+    #[error(
+        "the {part} jumps with `{jump}`: the force of a jump is no function; let the term vanish where it begins, such as \
+         k*(x - a)^2*H(x - a)"
+    )]
+    Jump {
+        /// Which.
+        part: String,
+        /// The step or sign.
+        jump: Expr,
+    },
     /// A force on something that is no coordinate.
     #[error("there is a force on `{0}`, which is no coordinate")]
     ForceOnNothing(Symbol),
@@ -200,6 +211,11 @@ impl Mechanism {
                     _ => "energies and forces depend on coordinates, velocities and time alone",
                 };
                 return Err(MechanicsError::Derivative { part, name, why });
+            }
+        }
+        for (part, energy) in self.parts().take(2) {
+            if let Some(jump) = lagrange::jump(energy, &self.coordinates) {
+                return Err(MechanicsError::Jump { part, jump });
             }
         }
         for coordinate in &self.coordinates {

@@ -13,7 +13,7 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use thiserror::Error;
 
 use super::equilibrium::undriven;
-use super::{Equations, MechanicsError, Rest, trigonometry::simplified};
+use super::{Equations, MechanicsError, Place, Rest, trigonometry::simplified};
 use crate::expr::{EvaluationError, Expr, ExprError, Function};
 use crate::symbol::Symbol;
 
@@ -26,6 +26,8 @@ pub struct Modes {
     pub damping: Vec<Vec<Expr>>,
     /// K there.
     pub stiffness: Vec<Vec<Expr>>,
+    /// The coordinates that may be anywhere and on whose place the modes depend: they are taken at 0.
+    pub taken_at_zero: Vec<Symbol>,
 }
 
 /// A way of swinging, or of leaving.
@@ -72,6 +74,14 @@ impl Modes {
     pub fn at(equations: &Equations, rest: &Rest) -> Result<Self, MechanicsError> {
         let coordinates = &equations.coordinates;
         let mut place = rest.values(coordinates);
+        let anywhere: Vec<Symbol> = coordinates
+            .iter()
+            .zip(&rest.places)
+            .filter_map(|(name, place)| (*place == Place::Anywhere).then_some(*name))
+            .collect();
+        for name in &anywhere {
+            place.remove(name);
+        }
         let here = |expression: &Expr, place: &BTreeMap<Symbol, Expr>| simplified(&expression.substitute_all(place)?);
         let mut forces = Vec::new();
         for rest in &equations.rest {
@@ -93,10 +103,19 @@ impl Modes {
         };
         let row = |row: &Vec<Expr>| row.iter().map(|entry| here(entry, &place)).collect();
         let mass: Result<Vec<Vec<Expr>>, ExprError> = equations.mass.iter().map(row).collect();
+        let mut matrices = [mass?, slopes(&|name| name.derivative())?, slopes(&|name| name)?];
+        let depends = |name: &Symbol| matrices.iter().flatten().flatten().any(|entry| entry.contains(*name));
+        let taken_at_zero: Vec<Symbol> = anywhere.into_iter().filter(depends).collect();
+        let zero: BTreeMap<Symbol, Expr> = taken_at_zero.iter().map(|name| (*name, Expr::zero())).collect();
+        for entry in matrices.iter_mut().flatten().flatten() {
+            *entry = here(entry, &zero)?;
+        }
+        let [mass, damping, stiffness] = matrices;
         Ok(Self {
-            mass: mass?,
-            damping: slopes(&|name| name.derivative())?,
-            stiffness: slopes(&|name| name)?,
+            mass,
+            damping,
+            stiffness,
+            taken_at_zero,
         })
     }
 
@@ -162,6 +181,9 @@ impl Modes {
 /// A value that is rounding beside the largest is none.
 const ROUNDING: f64 = 1e-13;
 
+/// How far rounding splits a double zero, over the largest value.
+const SPLIT: f64 = 1e-6;
+
 /// K u = omega^2 M u by M = L L^T: symmetric in w = L^T u.
 fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Vec<Mode> {
     let lower = mass.l();
@@ -211,11 +233,29 @@ fn damped(mass: &Cholesky<f64, nalgebra::Dyn>, damping: &DMatrix<f64>, stiffness
         .copy_from(&-mass.solve(damping));
     let found = first_order.complex_eigenvalues();
     let largest = found.iter().map(|value| value.norm()).fold(0.0, f64::max);
-    let kept = found.iter().filter(|value| value.im >= 0.0);
-    let clean = |part: f64| if part.abs() <= ROUNDING * largest { 0.0 } else { part };
+    // A rigid motion is a double zero of the equations, which rounding splits into two of its root: as many of the smallest as the
+    // stiffness has such motions are zero.
+    let stiff = stiffness.clone().singular_values();
+    let rigid = stiff.iter().filter(|value| **value <= ROUNDING * stiff.max()).count();
+    let mut sizes: Vec<f64> = found.iter().map(|value| value.norm()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let split = sizes
+        .iter()
+        .take(2 * rigid)
+        .copied()
+        .filter(|size| *size <= SPLIT * largest)
+        .fold(ROUNDING * largest, f64::max);
+    let kept = found.iter().filter(|value| value.im >= 0.0 || value.norm() <= split);
+    let clean = |part: f64, norm: f64| {
+        if norm <= split || part.abs() <= ROUNDING * largest {
+            0.0
+        } else {
+            part
+        }
+    };
     let mode = |value: &nalgebra::Complex<f64>| Mode {
-        frequency: clean(value.im),
-        growth: clean(value.re),
+        frequency: clean(value.im, value.norm()),
+        growth: clean(value.re, value.norm()),
         shape: None,
     };
     kept.map(mode).collect()

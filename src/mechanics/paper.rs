@@ -40,11 +40,11 @@ const PRINTED_SCALED: &str =
 /// gamma and beta of equation (8), with omega^2 = g/L.
 const PRINTED_GROUPS: [(&str, &str); 2] = [("gamma", "4*l^(5/2)*E*sqrt(R)/(3*g*m*L)"), ("beta", "Ae*Omega^2/g")];
 
-/// The paper's mechanism: a pendulum on a driven pivot that meets an elastic barrier, with viscous and dry friction. The contact acts
-/// on the lever l; Ae is the amplitude A of the pivot, mu4 the mu of equation (4) without its omega^2 = g/L put in.
+/// The paper's mechanism: a pendulum on a driven pivot that meets an elastic barrier, with viscous and dry friction. Hertz's force
+/// acts on the lever l, the damping of equation (4) is a torque; Ae is the amplitude A of the pivot, mu4 the mu of equation (4).
 pub fn pendulum() -> Mechanism {
     let read = |text: &str| text.parse::<Expr>().unwrap_or_else(|_| Expr::zero());
-    let contact = format!("-H(x - xc)*l*({CONTACT_FORCE} + {CONTACT_DAMPING})");
+    let contact = format!("-H(x - xc)*(l*{CONTACT_FORCE} + {CONTACT_DAMPING})");
     Mechanism {
         coordinates: vec![Symbol::new("x")],
         kinetic: read(KINETIC),
@@ -69,8 +69,8 @@ pub fn units() -> BTreeMap<Symbol, Dimension> {
         ("E", [1, -1, -2]),
         ("c", [1, 2, -1]),
         ("F", [1, 2, -2]),
-        // A force over omega x'.
-        ("mu4", [1, 1, 0]),
+        // A torque over omega x': that is what equations (5) and (7) make of it.
+        ("mu4", [1, 2, 0]),
     ]
     .map(|(name, exponents)| (Symbol::new(name), Dimension::of(exponents)))
     .into()
@@ -126,20 +126,21 @@ pub fn findings() -> Result<Vec<Finding>, PaperError> {
             Err(error) => error.to_string(),
         },
     });
-    for (equation, printed) in [("(3)", CONTACT_FORCE), ("(4)", CONTACT_DAMPING)] {
+    for (equation, printed, unit, words) in [
+        ("(3)", CONTACT_FORCE, [1, 1, -2], "a force"),
+        (
+            "(4)",
+            CONTACT_DAMPING,
+            [1, 2, -2],
+            "a torque, if mu is measured in kg m^2 as equations (5) and (7) need it",
+        ),
+    ] {
         let found = dimension(&read(printed), &all, "contact")?;
-        let newton = Dimension::of([1, 1, -2]);
         findings.push(Finding {
             equation,
             printed: printed.to_owned(),
-            agrees: Some(found == newton),
-            words: match equation {
-                "(4)" => format!(
-                    "a force, {found}, if mu is measured in {}",
-                    units.get(&Symbol::new("mu4")).cloned().unwrap_or_default()
-                ),
-                _ => format!("a force, {found}"),
-            },
+            agrees: Some(found == Dimension::of(unit)),
+            words: format!("{words}: {found}"),
         });
     }
     findings.push(equation_of_motion(&equations, &all)?);

@@ -101,7 +101,7 @@ impl MechanismQuestion {
 /// let study = study(MechanismQuestion::of_paper())?;
 /// let groups = study.groups.ok_or("no units")??;
 /// let names: Vec<&str> = groups.groups.iter().map(|group| group.name.name()).collect();
-/// assert_eq!(names, ["xc", "eta", "zeta", "alpha", "beta", "gamma", "mu"]);
+/// assert_eq!(names, ["xc", "eta", "zeta", "alpha", "mu", "beta", "gamma"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> {
@@ -124,7 +124,8 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
             value.is_ok_and(|value| value.abs() <= 1.0)
         });
         let needed = modes.parameters();
-        let known = !question.values.is_empty() && needed.iter().all(|name| question.values.contains_key(name));
+        let known = (needed.is_empty() || !question.values.is_empty())
+            && needed.iter().all(|name| question.values.contains_key(name));
         let numbers = (known && exists).then(|| modes.numbers(&question.values));
         rests.push(RestStudy { rest, modes, numbers });
     }

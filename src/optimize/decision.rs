@@ -118,9 +118,11 @@ impl Decision {
         let probe = Probe {
             question,
             space,
-            integrated: question
-                .follow(best, Route::Chain, false)
-                .is_ok_and(|design| design.integrated),
+            fewer: match question.follow(best, Route::Chain, false) {
+                _ if question.main_mass.is_some() => 100,
+                Ok(design) if design.integrated => 10,
+                _ => 1,
+            },
         };
         let level = probe.value(best).unwrap_or(f64::INFINITY) * (1.0 + WITHIN);
         let sensitivities: Vec<Sensitivity> = (0..question.variables.len())
@@ -167,8 +169,8 @@ impl Decision {
 struct Probe<'a> {
     question: &'a Question,
     space: &'a Space,
-    /// Whether they have no closed forms, so that fewer must do.
-    integrated: bool,
+    /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold with a main mass, which has none.
+    fewer: usize,
 }
 
 impl Probe<'_> {
@@ -225,7 +227,7 @@ impl Probe<'_> {
     /// Values from the best one to a limit, closer together near the smaller where the range has decades.
     fn way(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let decades = (to / from).abs().max((from / to).abs()) > 10.0;
-        let steps = if self.integrated { STEPS / 4 } else { STEPS };
+        let steps = if self.fewer > 1 { STEPS / 4 } else { STEPS };
         (1..=steps).map(move |step| {
             let part = f64::from(step) / f64::from(steps);
             match decades {
@@ -335,7 +337,7 @@ impl Probe<'_> {
         let mut points = Vec::new();
         let mut shares = [0.0; 2];
         let whole = self.space.bounds();
-        let drawn = DRAWN.map(|count| if self.integrated { count / 10 } else { count });
+        let drawn = DRAWN.map(|count| count / self.fewer);
         for (turn, bounds) in [whole, near].into_iter().enumerate() {
             let Ok(space) = Space::new(bounds.to_vec()) else {
                 continue;

@@ -106,10 +106,7 @@ pub const KEYS: [(&str, &[Reader]); 93] = [
     ("[barrier] poisson", &[Impact]),
     ("[barrier] yield", &[Impact, Optimize]),
     ("[run] duration", &[Simulate, Materials, Trajectory, Optimize]),
-    (
-        "[run] integrator_tolerance",
-        &[Impact, Simulate, Materials, Trajectory, Optimize],
-    ),
+    ("[run] integrator_tolerance", &[Impact, Simulate, Materials, Optimize]),
     ("[run] step_limit", &[Impact, Simulate, Materials, Trajectory, Optimize]),
     ("[[material]]", &[Materials, Optimize]),
     ("[limits] mass", &[Optimize]),
@@ -174,6 +171,12 @@ pub enum UnreadKey {
         /// Those that read it.
         others: String,
     },
+    /// A key that the same command reads, but not beside what else the file has.
+    #[error("`{key}` says nothing beside the equation, the mechanism or the main mass of the file: leave it out")]
+    Beside {
+        /// The key, with its section.
+        key: String,
+    },
     /// A pendulum and its barrier where an equation is wanted.
     #[error(
         "the file describes a pendulum and a barrier and has no `equation` for `{0}`: use `lindstedt impact` or \
@@ -201,6 +204,11 @@ impl Problem {
             if self.gives(key) && !readers.contains(&reader) {
                 let mut names: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
                 names.dedup();
+                let own = format!("`{reader}`");
+                names.retain(|name| *name != own);
+                if names.is_empty() {
+                    return Err(UnreadKey::Beside { key: key.to_owned() });
+                }
                 return Err(UnreadKey::Key {
                     key: key.to_owned(),
                     reader,

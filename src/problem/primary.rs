@@ -6,7 +6,7 @@ use super::document::{Pendulum, PrimarySection};
 use super::simulate::{Simulate, SimulateError};
 use super::{Problem, ProblemError};
 use crate::impact::hertz::Design;
-use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings};
+use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimarySettings};
 use crate::impact::{Start, Units};
 
 /// A main mass with its pendulum, and how to follow them.
@@ -48,6 +48,11 @@ pub enum PrimaryFileError {
         /// What it says.
         value: f64,
     },
+    /// A tolerance that would change nothing.
+    #[error(
+        "`[run] integrator_tolerance` changes nothing beside [primary], which is followed to rounding accuracy: leave it out"
+    )]
+    Tolerance,
     /// Nothing moves.
     #[error("nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start")]
     AtRest,
@@ -69,8 +74,17 @@ impl PrimaryFileError {
     }
 }
 
-/// How long both are followed where the file does not say, in units of 1/omega.
-const USUAL_DURATION: f64 = 300.0;
+/// How long both are followed where the file does not say, in units of 1/omega: until the main mass would have rested with the damper
+/// locked and without, within reason.
+fn long_enough(primary: &Primary) -> f64 {
+    const USUAL: f64 = 300.0;
+    const LONGEST: f64 = 3000.0;
+    let others = primary.others();
+    let rests = [others.locked.rest_time, others.without.rest_time]
+        .into_iter()
+        .flatten();
+    rests.fold(USUAL, |longest, rest| longest.max(1.2 * rest)).min(LONGEST)
+}
 
 impl Problem {
     /// The main mass of the file with its pendulum, in the units of equation (7). The pendulum hangs at rest unless the file says
@@ -89,6 +103,9 @@ impl Problem {
     /// ```
     pub fn primary_case(&self, swept: bool) -> Result<PrimaryProblem, PrimaryFileError> {
         let section = self.primary.unwrap_or_default();
+        if self.gives("[run] integrator_tolerance") {
+            return Err(PrimaryFileError::Tolerance);
+        }
         if self.given.iter().any(|key| key.starts_with("[excitation]")) {
             return Err(PrimaryFileError::Driven);
         }
@@ -122,15 +139,9 @@ impl Problem {
         Ok(PrimaryProblem {
             case: PrimaryCase { primary, model, start },
             settings: PrimarySettings {
-                duration: if given("duration") {
-                    self.run.duration
-                } else {
-                    USUAL_DURATION
-                },
-                tolerance: if given("integrator_tolerance") {
-                    self.run.integrator_tolerance
-                } else {
-                    usual.tolerance
+                duration: match given("duration") {
+                    true => self.run.duration,
+                    false => long_enough(&primary),
                 },
                 phase_limit: if given("step_limit") {
                     usize::try_from(self.run.step_limit).unwrap_or(usize::MAX)

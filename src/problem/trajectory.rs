@@ -78,17 +78,11 @@ impl Problem {
         if !(run.duration > 0.0 && run.duration.is_finite()) {
             return Err(SimulateError::Duration(run.duration).into());
         }
-        if !(1e-15..=0.01).contains(&run.integrator_tolerance) {
-            return Err(SimulateError::Tolerance(run.integrator_tolerance).into());
-        }
         if run.step_limit == 0 || run.step_limit > MOST_STEPS {
             return Err(SimulateError::StepLimit(run.step_limit).into());
         }
         course.duration = run.duration;
         course.step_limit = usize::try_from(run.step_limit).unwrap_or(usize::MAX);
-        if self.gives("[run] integrator_tolerance") {
-            course.tolerance = run.integrator_tolerance;
-        }
         Ok(course)
     }
 }

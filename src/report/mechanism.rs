@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::{Block, Document};
 use crate::decimal::decimal;
 use crate::derivation::Line;
-use crate::expr::Expr;
+use crate::expr::{Expr, Function};
 use crate::mechanics::paper::Finding;
 use crate::mechanics::{Groups, MechanismStudy, Mode, NoGroups, Place, RestStudy};
 use crate::symbol::Symbol;
@@ -27,7 +27,7 @@ pub fn mechanism(study: &MechanismStudy) -> Document<'_> {
             "without [units] no term is checked, and there are no dimensionless groups".to_owned(),
         )],
         Some(Err(error)) => vec![checked(), Block::Note(no_groups(error))],
-        Some(Ok(groups)) => dimensionless(groups, &study.equations.coordinates),
+        Some(Ok(groups)) => dimensionless(groups, study),
     });
     if !study.findings.is_empty() {
         sections.push(findings(study));
@@ -84,6 +84,13 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         true => "No place of rest was found".to_owned(),
         false => "Places of rest, and small swings about them; others are not ruled out".to_owned(),
     })];
+    let left_out =
+        |expression: &Expr| expression.contains(Symbol::new("t")) || expression.contains_function(Function::Step);
+    if study.equations.rest.iter().any(left_out) {
+        blocks.push(Block::Note(
+            "of the equations without the terms in t and without contacts, H(..): where those act there is no such rest".to_owned(),
+        ));
+    }
     for rest in &study.rests {
         blocks.push(Block::Note(place(rest, coordinates)));
         if let Ok(Some(square)) = rest.modes.square() {
@@ -139,7 +146,17 @@ fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
     let places: Vec<String> = coordinates.iter().zip(&rest.rest.places).map(place).collect();
     let condition = rest.rest.condition.as_ref();
     let condition = condition.map_or(String::new(), |cosine| format!(", where |{cosine}| < 1"));
-    format!("{}{condition}", places.join(", "))
+    let zero: Vec<String> = rest
+        .modes
+        .taken_at_zero
+        .iter()
+        .map(|name| format!("{name} = 0"))
+        .collect();
+    let zero = match zero.is_empty() {
+        true => String::new(),
+        false => format!("; the modes, which depend on it, at {}", zero.join(", ")),
+    };
+    format!("{}{condition}{zero}", places.join(", "))
 }
 
 fn mode_in_words(mode: &Mode, coordinates: &[Symbol]) -> String {
@@ -173,7 +190,8 @@ fn no_groups(error: &NoGroups) -> String {
     format!("no dimensionless groups: {error}")
 }
 
-fn dimensionless<'a>(groups: &'a Groups, coordinates: &[Symbol]) -> Vec<Block<'a>> {
+fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block<'a>> {
+    let coordinates = &study.equations.coordinates;
     let names: Vec<&str> = groups.units.iter().map(|name| name.name()).collect();
     let most = groups.parameters - groups.rank;
     let found = groups.groups.len();
@@ -194,7 +212,11 @@ fn dimensionless<'a>(groups: &'a Groups, coordinates: &[Symbol]) -> Vec<Block<'a
         )),
     ];
     if let Ok(square) = Expr::divide(&Expr::one(), &groups.time).and_then(|rate| rate.integer_power(2)) {
-        blocks.push(Block::Note(format!("time in units of 1/omega, omega^2 = {square}")));
+        let name = match study.question.mechanism.parameters().contains(&Symbol::new("omega")) {
+            true => String::new(),
+            false => format!(", 1/omega with omega^2 = {square}"),
+        };
+        blocks.push(Block::Note(format!("time in units of {}{name}", groups.time)));
     }
     for (coordinate, length) in coordinates
         .iter()
@@ -229,7 +251,7 @@ fn findings(study: &MechanismStudy) -> Vec<Block<'_>> {
         .findings
         .iter()
         .map(|finding| Block::Detail(format!("{} {}", finding.equation, finding.printed)));
-    let mut blocks = vec![Block::Heading("The paper's equations, as printed".to_owned())];
+    let mut blocks = vec![Block::Heading("The paper's equations, in these letters".to_owned())];
     blocks.extend(printed);
     blocks.push(Block::Entries {
         heading: "What becomes of them",

@@ -177,6 +177,7 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
         let words = match (alone.rest_time, alone.amplitude) {
             (Some(time), _) => [decimal(time), seconds(time)],
             (None, Some(amplitude)) => [decimal(amplitude), decimal(amplitude * report.units.length)],
+            (None, None) if alone.frequency == 0.0 => ["creeps".to_owned(), String::new()],
             (None, None) => ["none".to_owned(), String::new()],
         };
         let [first, second] = words;

@@ -178,6 +178,16 @@ impl Equations {
         Ok((system, torque))
     }
 
+    /// x'' away from the barriers, as a number; dry friction acts in this direction.
+    pub(super) fn acceleration(&self, t: f64, state: [f64; 4], direction: f64) -> Result<f64, PrimaryError> {
+        let [torque, _] = self.friction(direction);
+        let rate = self.put(&self.accelerations[0], &[("P", Expr::zero()), ("G", torque)])?;
+        let mut values = self.clone_numbers();
+        values.insert(Symbol::new("t"), t);
+        values.extend(["x", "x'", "y", "y'"].map(Symbol::new).into_iter().zip(state));
+        Ok(rate.evaluate(&values).unwrap_or(f64::NAN))
+    }
+
     /// The torque that friction must hold, as a number.
     pub(super) fn torque(&self, t: f64, x: f64, contact: f64, [y, speed]: [f64; 2]) -> f64 {
         let mut values = self.clone_numbers();

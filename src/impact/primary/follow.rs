@@ -139,10 +139,10 @@ impl<'a> Run<'a> {
             largest: energy.abs(),
             astray: 0.0,
         };
-        run.regime = match run.direction(0.0) {
-            Some(direction) => Regime::Free(direction),
-            None => Regime::Held,
-        };
+        match run.direction(0.0) {
+            Some(direction) => run.set_off(direction)?,
+            None => run.regime = Regime::Held,
+        }
         Ok(run)
     }
 
@@ -158,6 +158,27 @@ impl<'a> Run<'a> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let torque = self.equations.torque(self.t, x, contact, [y, speed]);
         (torque.abs() > self.case.model.alpha).then(|| torque.signum())
+    }
+
+    /// On in this direction: into the barrier on whose surface it stands, where it moves or is pushed that way, else free.
+    fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
+        self.regime = Regime::Free(direction);
+        let PrimaryState { x, velocity, y, speed } = self.state;
+        for side in [Side::Left, Side::Right] {
+            if x != self.place(side) {
+                continue;
+            }
+            let push = match velocity == 0.0 {
+                true => self
+                    .equations
+                    .acceleration(self.t, [x, velocity, y, speed], direction)?,
+                false => velocity,
+            };
+            if side.sign() * push > 0.0 {
+                self.enter(side, direction);
+            }
+        }
+        Ok(())
     }
 
     fn options(&self) -> Options {
@@ -210,19 +231,22 @@ impl<'a> Run<'a> {
         if let End::Event(event) = reason {
             match sides.get(event.wrapping_sub(1)) {
                 Some(side) => self.enter(*side, direction),
-                None => self.turn_back(0.0),
+                None => self.turn_back(0.0)?,
             }
         }
         Ok(reason)
     }
 
     /// At rest for a moment: on in the other direction, or held.
-    fn turn_back(&mut self, contact: f64) {
+    fn turn_back(&mut self, contact: f64) -> Result<(), PrimaryError> {
         self.state.velocity = 0.0;
-        self.regime = match self.direction(contact) {
-            Some(direction) => Regime::Free(direction),
-            None => Regime::Held,
-        };
+        match self.direction(contact) {
+            Some(direction) => self.set_off(direction),
+            None => {
+                self.regime = Regime::Held;
+                Ok(())
+            }
+        }
     }
 
     fn enter(&mut self, side: Side, direction: f64) {
@@ -301,7 +325,7 @@ impl<'a> Run<'a> {
             End::Event(2) => self.t = self.settings.duration,
             End::Event(3) => {
                 let push = -side.sign() * self.case.model.contact(w * w, 0.0);
-                self.turn_back(push);
+                self.turn_back(push)?;
                 if let Regime::Free(direction) = self.regime {
                     self.regime = Regime::Contact(side, direction);
                 }
@@ -379,10 +403,10 @@ impl<'a> Run<'a> {
         self.t = end;
         if let End::Event(event) = reason {
             let direction = if event == 1 { 1.0 } else { -1.0 };
-            self.regime = match inside {
-                Some((side, _)) => Regime::Contact(side, direction),
-                None => Regime::Free(direction),
-            };
+            match inside {
+                Some((side, _)) => self.regime = Regime::Contact(side, direction),
+                None => self.set_off(direction)?,
+            }
         }
         Ok(reason)
     }

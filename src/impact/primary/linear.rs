@@ -44,8 +44,18 @@ impl Primary {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;
         let driven = self.force != 0.0;
-        let reactance = self.stiffness - mass * self.frequency * self.frequency;
-        let amplitude = self.force.abs() / reactance.hypot(self.damping * self.frequency);
+        let inertia = mass * self.frequency * self.frequency;
+        let reactance = self.stiffness - inertia;
+        // What is left of two equal numbers is rounding: resonance without damping has no long run.
+        let reactance = match reactance.abs() <= 8.0 * f64::EPSILON * inertia {
+            true => 0.0,
+            false => reactance,
+        };
+        let amplitude = match self.frequency == 0.0 {
+            // f sin(0) drives nothing.
+            true => 0.0,
+            false => self.force.abs() / reactance.hypot(self.damping * self.frequency),
+        };
         Alone {
             mass,
             frequency: square.max(0.0).sqrt(),
@@ -92,11 +102,9 @@ impl PrimaryMotion {
     /// Why there is none.
     pub fn rest_time(&self) -> Result<f64, NoRest> {
         let [.., y, speed] = self.case.start;
-        let first = match (speed == 0.0, self.turns.first()) {
-            (true, _) => y.abs(),
-            (false, Some((_, turn))) => turn.abs().max(y.abs()),
-            (false, None) => y.abs(),
-        };
+        let primary = &self.case.primary;
+        // A start with speed is that of a swing that was larger before: the envelope begins at the start.
+        let first = y.hypot(speed * (primary.mass / primary.stiffness).sqrt());
         if first == 0.0 {
             return Err(NoRest::NoAmplitude);
         }

@@ -98,12 +98,9 @@ impl Objective {
         self == Self::PrimaryRestTime
     }
 
-    /// Whether it is a rest time.
+    /// Whether it is the rest time of the pendulum, in either unit.
     pub fn is_rest_time(self) -> bool {
-        matches!(
-            self,
-            Self::RestTime | Self::DimensionlessRestTime | Self::PrimaryRestTime
-        )
+        matches!(self, Self::RestTime | Self::DimensionlessRestTime)
     }
 
     /// The objective of this name.

@@ -3,6 +3,10 @@
 //! In: the text of a file. Out: [`Claims`], or the first mistake with its line and a caret below its place. A key that would say nothing
 //! to its claim is refused by name.
 
+mod keys;
+mod names;
+mod values;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::str::FromStr;
@@ -10,21 +14,23 @@ use std::str::FromStr;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown, Verdict};
-use super::printed::{Printed, Rounding};
-use super::quantity::{NAMES, is_a_name};
+use super::claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown};
+use super::printed::Printed;
 use super::{Claims, MOST_COMBINATIONS, identity, options};
-use crate::catalog;
 use crate::decimal::decimal;
 use crate::exact::Rational;
-use crate::expr::{Expr, ParseError, excerpt, parse_expression};
-use crate::impact::Rule;
+use crate::expr::{Expr, excerpt};
 use crate::method::Options;
-use crate::oscillator::Oscillator;
 use crate::problem::{LARGEST_FILE, Order, ProblemError, in_words};
-use crate::solution::{AmplitudeConvention, Method};
 use crate::spelling::nearest;
 use crate::symbol::Symbol;
+
+use keys::{check_keys, kind};
+use names::{check_names, check_values};
+use values::{
+    convention, equal_to_zero, equation, expression, method, number, parsed, rounding, rule, symbol, table, tolerance,
+    verdict,
+};
 
 /// Why a file has no claims that can be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -183,55 +189,6 @@ struct Suppose {
     values: Vec<Table>,
 }
 
-/// The quantities that are no names of numbers.
-const KINDS: [&str; 9] = [
-    "value",
-    "coefficient",
-    "law",
-    "taylor",
-    "identity",
-    "motion",
-    "trend",
-    "coordinates",
-    "options",
-];
-
-/// Keys that some quantities read and others do not.
-const OF_A_LAW: [&str; 6] = ["equation", "method", "order", "small", "amplitude", "taylor"];
-
-/// The keys of the question that a quantity reads.
-fn keys_of(kind: &str) -> Vec<&'static str> {
-    let own: &[&str] = match kind {
-        "coefficient" => &["of", "term"],
-        "law" => &["of"],
-        "taylor" => &["formula", "order"],
-        "identity" => &["formula", "values"],
-        "motion" => &["kinetic", "potential", "force", "values"],
-        "coordinates" => &["formula"],
-        "options" => &["settings"],
-        "" => &[],
-        "value" | "trend" => &[
-            "formula",
-            "linearisation",
-            "values",
-            "entries",
-            "unknown",
-            "tolerance",
-            "rounding",
-        ],
-        _ => &["linearisation", "values", "entries", "unknown", "tolerance", "rounding"],
-    };
-    let of_a_law: &[&str] = match kind {
-        "taylor" | "identity" | "motion" | "coordinates" | "options" | "" => &[],
-        _ => &OF_A_LAW,
-    };
-    let of_a_number: &[&str] = match kind {
-        "coefficient" | "coordinates" => &["tolerance", "rounding"],
-        _ => &[],
-    };
-    [own, of_a_law, of_a_number].concat()
-}
-
 fn read(document: Document) -> Found<Option<Claims>> {
     let values = table(&document.values)?;
     let mut ids: BTreeSet<String> = BTreeSet::new();
@@ -309,92 +266,6 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
     check_names(section, &claim)?;
     check_values(section, &claim)?;
     Ok(claim)
-}
-
-/// The quantity: one of [`KINDS`], a name of a number, or nothing where only what is missing is told.
-fn kind(section: &Section) -> Found<&str> {
-    let Some(quantity) = &section.quantity else {
-        return match section.needs.is_empty() {
-            false => Ok(""),
-            true => helped(
-                section.id.span(),
-                format!("claim `{}` has no quantity", section.id.get_ref()),
-                format!("give `quantity`: {}, or a number such as paper_speed", KINDS.join(", ")),
-            ),
-        };
-    };
-    let name = quantity.get_ref().as_str();
-    if KINDS.contains(&name) || is_a_name(name) {
-        return Ok(name);
-    }
-    let known = KINDS.into_iter().chain(NAMES.iter().map(|entry| entry.0));
-    let help = match nearest(name, known) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("give {}, or a number such as paper_speed", KINDS.join(", ")),
-    };
-    helped(quantity.span(), format!("unknown quantity `{name}`"), help)
-}
-
-/// Refuses what this quantity would not read.
-fn check_keys(section: &Section, kind: &str) -> Found<()> {
-    let span = |text: &Option<Text>| text.as_ref().map(Spanned::span);
-    let given: [(&str, Option<Range<usize>>); 19] = [
-        ("formula", span(&section.formula)),
-        ("kinetic", span(&section.kinetic)),
-        ("potential", span(&section.potential)),
-        ("force", span(&section.force)),
-        ("of", span(&section.of)),
-        ("term", span(&section.term)),
-        ("equation", span(&section.equation)),
-        ("method", span(&section.method)),
-        ("order", section.order.as_ref().map(Spanned::span)),
-        ("small", span(&section.small)),
-        ("amplitude", span(&section.amplitude)),
-        ("taylor", section.taylor.as_ref().map(Spanned::span)),
-        ("linearisation", span(&section.linearisation)),
-        ("values", section.values.as_ref().map(Spanned::span)),
-        ("settings", section.settings.as_ref().map(Spanned::span)),
-        ("entries", section.entries.as_ref().map(Spanned::span)),
-        ("tolerance", section.tolerance.as_ref().map(Spanned::span)),
-        ("rounding", span(&section.rounding)),
-        ("unknown", span(&section.unknown)),
-    ];
-    let known = keys_of(kind);
-    for (key, span) in given {
-        if let Some(span) = span.filter(|_| !known.contains(&key)) {
-            let words = match kind {
-                "" => "a claim without a quantity".to_owned(),
-                kind => format!("the quantity `{kind}`"),
-            };
-            return mistake(span, format!("`{key}` says nothing to {words}: leave it out"));
-        }
-    }
-    if let Some(suppose) = &section.suppose {
-        let subjects = suppose.get_ref();
-        let tried = [
-            ("rounding", subjects.rounding.is_empty()),
-            ("method", subjects.method.is_empty()),
-            ("order", subjects.order.is_empty()),
-            ("taylor", subjects.taylor.is_empty()),
-            ("amplitude", subjects.amplitude.is_empty()),
-            ("linearisation", subjects.linearisation.is_empty()),
-            ("values", subjects.values.is_empty()),
-        ];
-        let odd = tried.iter().find(|(key, none)| !none && !known.contains(key));
-        let is_number = known.contains(&"values") && !matches!(kind, "" | "identity" | "motion");
-        let odd_number = [("pi", subjects.pi.is_empty()), ("formula", subjects.formula.is_empty())];
-        let odd_number = odd_number.iter().find(|(_, none)| !none && !is_number);
-        if let Some((key, _)) = odd.or(odd_number) {
-            return mistake(
-                suppose.span(),
-                format!("to suppose another `{key}` says nothing to the quantity `{kind}`: leave it out"),
-            );
-        }
-    }
-    match (&section.within, &section.unknown) {
-        (Some(within), None) => mistake(within.span(), "`within` needs the name of an `unknown`"),
-        _ => Ok(()),
-    }
 }
 
 /// What is computed.
@@ -724,298 +595,4 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
         .into_iter()
         .filter(|subject: &Vec<Supposition>| !subject.is_empty())
         .collect())
-}
-
-/// The names that a question uses, through the values that they are made of.
-fn used(claim: &Claim) -> BTreeSet<Symbol> {
-    let mut formulas: Vec<Expr> = match &claim.question.quantity {
-        Quantity::Value(formula) | Quantity::Trend(formula) => vec![formula.clone()],
-        _ => vec![],
-    };
-    let mut tables = vec![claim.question.values.clone()];
-    for supposition in claim.suppositions.iter().flatten() {
-        match supposition {
-            Supposition::Formula(formula, _) => formulas.push(formula.clone()),
-            Supposition::Values(values) => tables.push(values.iter().cloned().collect()),
-            _ => {}
-        }
-    }
-    tables.extend(claim.entries.iter().map(|entry| entry.values.clone()));
-    let mut found = BTreeSet::new();
-    while let Some(formula) = formulas.pop() {
-        for name in formula.symbols() {
-            if found.insert(name) {
-                formulas.extend(tables.iter().filter_map(|table| table.get(&name).cloned()));
-                formulas.extend(asked_by(name, claim.question.equation.as_ref()).map(Expr::from));
-            }
-        }
-    }
-    found
-}
-
-/// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks for.
-fn check_names(section: &Section, claim: &Claim) -> Found<()> {
-    if !matches!(claim.question.quantity, Quantity::Value(_) | Quantity::Trend(_)) {
-        return Ok(());
-    }
-    let used = used(claim);
-    let place = section
-        .formula
-        .as_ref()
-        .or(section.quantity.as_ref())
-        .unwrap_or(&section.id)
-        .span();
-    let given = |name: Symbol| {
-        let supposed = claim.suppositions.iter().flatten().any(|one| match one {
-            Supposition::Values(values) => values.iter().any(|(known, _)| *known == name),
-            _ => false,
-        });
-        let values = std::iter::once(&claim.question.values).chain(claim.entries.iter().map(|entry| &entry.values));
-        supposed || values.into_iter().any(|values| values.contains_key(&name))
-    };
-    let names = || NAMES.iter().map(|entry| entry.0);
-    for name in &used {
-        let is_open = !given(*name) && !is_a_name(name.name()) && name.name().contains('_');
-        if let Some(near) = nearest(name.name(), names()).filter(|_| is_open) {
-            return helped(
-                place,
-                format!("`{name}` has no value and is no number that is computed"),
-                format!("did you mean `{near}`?"),
-            );
-        }
-    }
-    let asks = |wanted: &dyn Fn(&str) -> bool| used.iter().any(|name| is_a_name(name.name()) && wanted(name.name()));
-    let of_a_law = |name: &str| ["frequency", "true_frequency", "max_deviation"].contains(&name);
-    let of_an_impact = |name: &str| {
-        !of_a_law(name)
-            && ["paper_", "energy_", "true_", "line_"]
-                .iter()
-                .any(|head| name.starts_with(head))
-    };
-    if asks(&of_a_law) && section.equation.is_none() {
-        return helped(
-            place,
-            format!(
-                "claim `{}` has no equation that a frequency could be derived from",
-                claim.id
-            ),
-            "give equation = \"x'' + sin(x) = 0\", or a name of the catalogue",
-        );
-    }
-    let keys = [
-        section.equation.as_ref().map(|text| ("equation", text.span())),
-        section.method.as_ref().map(|text| ("method", text.span())),
-        section.order.as_ref().map(|order| ("order", order.span())),
-        section.small.as_ref().map(|text| ("small", text.span())),
-        section.amplitude.as_ref().map(|text| ("amplitude", text.span())),
-        section.taylor.as_ref().map(|degree| ("taylor", degree.span())),
-    ];
-    if let (Some((key, span)), false) = (
-        keys.into_iter().flatten().next(),
-        asks(&of_a_law) || asks(&of_an_impact),
-    ) {
-        return mistake(
-            span,
-            format!("`{key}` says nothing here: the formula asks for nothing that is derived"),
-        );
-    }
-    if let (Some(text), false) = (&section.linearisation, asks(&of_an_impact)) {
-        return mistake(
-            text.span(),
-            "`linearisation` says nothing here: the formula asks for no contact",
-        );
-    }
-    match (&claim.unknown, &section.unknown) {
-        (Some(unknown), Some(text)) if !used.contains(&unknown.name) => mistake(
-            text.span(),
-            format!("the unknown `{}` does not occur in the claim", unknown.name),
-        ),
-        _ => Ok(()),
-    }
-}
-
-/// The names that a computed number needs.
-fn asked_by<'a>(name: Symbol, equation: Option<&'a Oscillator>) -> impl Iterator<Item = Symbol> + 'a {
-    let needs = NAMES.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
-    let words = needs.into_iter().flat_map(|needs| needs.split(", "));
-    let own = words.filter(|word| !word.is_empty() && !word.contains("equation") && !word.contains(' '));
-    let of_a_law = needs.is_some_and(|needs| needs.starts_with("equation"));
-    // An impact has the parameters of its swing, and the amplitude of a law has either letter.
-    let parameters = equation
-        .filter(|_| needs.is_some())
-        .into_iter()
-        .flat_map(|equation| &equation.parameters);
-    let letter = of_a_law.then(|| Symbol::new("a"));
-    own.map(Symbol::new).chain(parameters.copied()).chain(letter)
-}
-
-/// Refuses values of a claim that nothing asks for.
-fn check_values(section: &Section, claim: &Claim) -> Found<()> {
-    let quantity = &claim.question.quantity;
-    let mut used = used(claim);
-    let formulas = match quantity {
-        Quantity::Identity(formula) => vec![formula],
-        Quantity::Motion {
-            kinetic,
-            potential,
-            force,
-        } => vec![kinetic, potential, force],
-        _ => vec![],
-    };
-    if !formulas.is_empty() {
-        let printed = claim.entries.iter().filter_map(|entry| match &entry.stated {
-            Stated::Formula(printed) => Some(printed),
-            _ => None,
-        });
-        let all = formulas
-            .into_iter()
-            .chain(printed)
-            .chain(claim.question.values.values());
-        used.extend(all.flat_map(Expr::symbols));
-        used.extend(used.clone().into_iter().map(Symbol::coordinate));
-    }
-    if let Some(within) = &section.within {
-        for end in within.get_ref() {
-            used.extend(number(end, within.span())?.symbols());
-        }
-    }
-    let own = section.values.as_ref().map(Spanned::get_ref);
-    let rows = section.entries.iter().flat_map(|rows| rows.get_ref());
-    let tables = own.into_iter().chain(rows.map(|row| &row.get_ref().values));
-    let supposed = section.suppose.iter().flat_map(|suppose| &suppose.get_ref().values);
-    for (name, value) in tables.chain(supposed).flatten() {
-        let symbol = symbol(name, value.span())?;
-        if !used.contains(&symbol) && *quantity != Quantity::Nothing {
-            return mistake(
-                value.span(),
-                format!("nothing in claim `{}` asks for `{name}`: leave it out", claim.id),
-            );
-        }
-    }
-    Ok(())
-}
-
-fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {
-    let row = |(name, value): (&String, &Spanned<toml::Value>)| {
-        Ok((symbol(name, value.span())?, number(value.get_ref(), value.span())?))
-    };
-    table.iter().map(row).collect()
-}
-
-fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
-    let found = parse_expression(name).ok().and_then(|name| name.as_symbol());
-    match found.filter(|symbol| symbol.name() == name) {
-        Some(symbol) => Ok(symbol),
-        None => mistake(
-            span,
-            format!("`{name}` is no name: letters, digits and `_`, a letter first"),
-        ),
-    }
-}
-
-/// A number or a formula, exactly as it is typed.
-fn number(value: &toml::Value, span: Range<usize>) -> Found<Expr> {
-    match value {
-        toml::Value::String(text) => parsed(text, span),
-        toml::Value::Integer(number) => parsed(&number.to_string(), span),
-        toml::Value::Float(number) if number.is_finite() => parsed(&number.to_string(), span),
-        _ => mistake(span, "expected a number, or a formula in quotes"),
-    }
-}
-
-fn expression(text: &Text) -> Found<Expr> {
-    parsed(text.get_ref(), text.span())
-}
-
-fn parsed(text: &str, span: Range<usize>) -> Found<Expr> {
-    parse_expression(text).map_err(|ParseError { message, help, .. }| Mistake {
-        span,
-        what: message,
-        help,
-    })
-}
-
-/// A formula, or of an equation the difference of its sides.
-fn equal_to_zero(text: &Text) -> Found<Expr> {
-    match text.get_ref().split_once('=') {
-        None => expression(text),
-        Some((left, right)) => Ok(&parsed(left, text.span())? - &parsed(right, text.span())?),
-    }
-}
-
-fn equation(text: &Text) -> Found<Oscillator> {
-    let equation = catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
-    Oscillator::parse(equation).or_else(|error| {
-        // Its own picture of the place is that of the text alone.
-        let what = error.to_string();
-        mistake(text.span(), what.lines().next().unwrap_or_default())
-    })
-}
-
-fn method(text: &Text) -> Found<Method> {
-    let name = text.get_ref();
-    Method::from_name(name).ok_or_else(|| {
-        let near = nearest(name, Method::ALL.map(Method::name));
-        Mistake {
-            span: text.span(),
-            what: format!("unknown method `{name}`"),
-            help: Some(match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("choose {}", Method::ALL.map(Method::name).join(", ")),
-            }),
-        }
-    })
-}
-
-fn convention(text: &Text) -> Found<AmplitudeConvention> {
-    match AmplitudeConvention::from_name(text.get_ref()) {
-        Some(convention) => Ok(convention),
-        None => mistake(
-            text.span(),
-            format!(
-                "unknown amplitude `{}`: choose initial or first-harmonic",
-                text.get_ref()
-            ),
-        ),
-    }
-}
-
-fn rule(text: &Text) -> Found<Rule> {
-    text.get_ref()
-        .parse()
-        .or_else(|error| mistake(text.span(), format!("{error}")))
-}
-
-fn rounding(text: &Text) -> Found<Rounding> {
-    match Rounding::from_name(text.get_ref()) {
-        Some(rounding) => Ok(rounding),
-        None => {
-            let known = Rounding::ALL.map(Rounding::name).join(", ");
-            mistake(
-                text.span(),
-                format!("unknown rounding `{}`: choose {known}", text.get_ref()),
-            )
-        }
-    }
-}
-
-fn verdict(text: &Text) -> Found<Verdict> {
-    match Verdict::from_name(text.get_ref()) {
-        Some(verdict) => Ok(verdict),
-        None => {
-            let known = Verdict::ALL.map(Verdict::name).join(", ");
-            mistake(
-                text.span(),
-                format!("unknown verdict `{}`: choose {known}", text.get_ref()),
-            )
-        }
-    }
-}
-
-fn tolerance(number: &Spanned<f64>) -> Found<f64> {
-    let value = *number.get_ref();
-    match value.is_finite() && value > 0.0 {
-        true => Ok(value),
-        false => mistake(number.span(), format!("a tolerance is a positive number, not {value}")),
-    }
 }

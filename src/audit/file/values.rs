@@ -1,0 +1,140 @@
+//! Single values of a claims file: expressions, equations, methods, verdicts, each with its place for messages.
+
+use super::{Found, Mistake, Table, Text, mistake};
+use crate::audit::claim::Verdict;
+use crate::audit::printed::Rounding;
+use crate::catalog;
+use crate::expr::{Expr, ParseError, parse_expression};
+use crate::impact::Rule;
+use crate::oscillator::Oscillator;
+use crate::solution::{AmplitudeConvention, Method};
+use crate::spelling::nearest;
+use crate::symbol::Symbol;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::Spanned;
+
+pub(super) fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {
+    let row = |(name, value): (&String, &Spanned<toml::Value>)| {
+        Ok((symbol(name, value.span())?, number(value.get_ref(), value.span())?))
+    };
+    table.iter().map(row).collect()
+}
+
+pub(super) fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
+    let found = parse_expression(name).ok().and_then(|name| name.as_symbol());
+    match found.filter(|symbol| symbol.name() == name) {
+        Some(symbol) => Ok(symbol),
+        None => mistake(
+            span,
+            format!("`{name}` is no name: letters, digits and `_`, a letter first"),
+        ),
+    }
+}
+
+/// A number or a formula, exactly as it is typed.
+pub(super) fn number(value: &toml::Value, span: Range<usize>) -> Found<Expr> {
+    match value {
+        toml::Value::String(text) => parsed(text, span),
+        toml::Value::Integer(number) => parsed(&number.to_string(), span),
+        toml::Value::Float(number) if number.is_finite() => parsed(&number.to_string(), span),
+        _ => mistake(span, "expected a number, or a formula in quotes"),
+    }
+}
+
+pub(super) fn expression(text: &Text) -> Found<Expr> {
+    parsed(text.get_ref(), text.span())
+}
+
+pub(super) fn parsed(text: &str, span: Range<usize>) -> Found<Expr> {
+    parse_expression(text).map_err(|ParseError { message, help, .. }| Mistake {
+        span,
+        what: message,
+        help,
+    })
+}
+
+/// A formula, or of an equation the difference of its sides.
+pub(super) fn equal_to_zero(text: &Text) -> Found<Expr> {
+    match text.get_ref().split_once('=') {
+        None => expression(text),
+        Some((left, right)) => Ok(&parsed(left, text.span())? - &parsed(right, text.span())?),
+    }
+}
+
+pub(super) fn equation(text: &Text) -> Found<Oscillator> {
+    let equation = catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
+    Oscillator::parse(equation).or_else(|error| {
+        // Its own picture of the place is that of the text alone.
+        let what = error.to_string();
+        mistake(text.span(), what.lines().next().unwrap_or_default())
+    })
+}
+
+pub(super) fn method(text: &Text) -> Found<Method> {
+    let name = text.get_ref();
+    Method::from_name(name).ok_or_else(|| {
+        let near = nearest(name, Method::ALL.map(Method::name));
+        Mistake {
+            span: text.span(),
+            what: format!("unknown method `{name}`"),
+            help: Some(match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("choose {}", Method::ALL.map(Method::name).join(", ")),
+            }),
+        }
+    })
+}
+
+pub(super) fn convention(text: &Text) -> Found<AmplitudeConvention> {
+    match AmplitudeConvention::from_name(text.get_ref()) {
+        Some(convention) => Ok(convention),
+        None => mistake(
+            text.span(),
+            format!(
+                "unknown amplitude `{}`: choose initial or first-harmonic",
+                text.get_ref()
+            ),
+        ),
+    }
+}
+
+pub(super) fn rule(text: &Text) -> Found<Rule> {
+    text.get_ref()
+        .parse()
+        .or_else(|error| mistake(text.span(), format!("{error}")))
+}
+
+pub(super) fn rounding(text: &Text) -> Found<Rounding> {
+    match Rounding::from_name(text.get_ref()) {
+        Some(rounding) => Ok(rounding),
+        None => {
+            let known = Rounding::ALL.map(Rounding::name).join(", ");
+            mistake(
+                text.span(),
+                format!("unknown rounding `{}`: choose {known}", text.get_ref()),
+            )
+        }
+    }
+}
+
+pub(super) fn verdict(text: &Text) -> Found<Verdict> {
+    match Verdict::from_name(text.get_ref()) {
+        Some(verdict) => Ok(verdict),
+        None => {
+            let known = Verdict::ALL.map(Verdict::name).join(", ");
+            mistake(
+                text.span(),
+                format!("unknown verdict `{}`: choose {known}", text.get_ref()),
+            )
+        }
+    }
+}
+
+pub(super) fn tolerance(number: &Spanned<f64>) -> Found<f64> {
+    let value = *number.get_ref();
+    match value.is_finite() && value > 0.0 {
+        true => Ok(value),
+        false => mistake(number.span(), format!("a tolerance is a positive number, not {value}")),
+    }
+}

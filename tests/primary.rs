@@ -9,7 +9,7 @@ use lindstedt::impact::primary::{
     Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary,
 };
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
-use lindstedt::system::{Event, Integrator as Route, Options, System};
+use lindstedt::system::{Event, Integrator as Route, Options, Path, System};
 
 fn settings(duration: f64) -> PrimarySettings {
     PrimarySettings {
@@ -273,6 +273,38 @@ fn no_impact_is_missed() {
     }
 }
 
+/// The motion by equations that are solved by hand, q + p cos x = g and (R + 1) p + q cos x = h, with a barrier at `place`, followed by
+/// Runge-Kutta; every passage of the barrier is listed.
+fn by_hand(primary: Primary, model: Model, place: f64, start: [f64; 4], until: f64) -> Path {
+    let g = "(-sin(x) - 2*zeta*v - (gamma + mu*v)*((x - c)^2)^(3/4)*H(x - c))";
+    let h = "(v^2*sin(x) - delta*u - kappa*y + f*sin(eta*t))";
+    let p = format!("(({h} - {g}*cos(x))/(R + sin(x)^2))");
+    let read = |text: &str| -> Expr { parse_expression(text).expect("an expression") };
+    let right = [read("v"), read(&format!("{g} - {p}*cos(x)")), read("u"), read(&p)];
+    let numbers: BTreeMap<Symbol, f64> = [
+        ("R", primary.mass),
+        ("kappa", primary.stiffness),
+        ("delta", primary.damping),
+        ("f", primary.force),
+        ("eta", primary.frequency),
+        ("gamma", model.gamma),
+        ("mu", model.mu),
+        ("zeta", model.zeta),
+        ("c", place),
+    ]
+    .map(|(name, value)| (Symbol::new(name), value))
+    .into();
+    let states = ["x", "v", "y", "u"].map(Symbol::new);
+    let system = System::new(&states, "t".into(), &right, &numbers).expect("a system");
+    let options = Options {
+        integrator: Route::RungeKutta,
+        tolerance: 1e-12,
+        ..Options::default()
+    };
+    let passages = [Event::record(read("x - c"))];
+    system.solve(0.0, &start, until, &passages, &options).expect("a path")
+}
+
 /// The accelerations solved by hand, the contact as |d|^(3/2) behind its step, followed by Runge-Kutta in the time itself.
 #[test]
 fn equations_written_by_hand_agree() {
@@ -292,33 +324,7 @@ fn equations_written_by_hand_agree() {
     let start = [-0.8, 0.0, 0.1, 0.0];
     let motion = follow(PrimaryCase { primary, model, start }, 25.0);
     assert!(motion.impacts.len() >= 3, "{}", motion.impacts.len());
-    // q + p cos x = g, (R + 1) p + q cos x = h  ->  p = (h - g cos x)/(R + sin^2 x)
-    let g = "(-sin(x) - 2*zeta*v - (gamma + mu*v)*((x - 3/10)^2)^(3/4)*H(x - 3/10))";
-    let h = "(v^2*sin(x) - delta*u - kappa*y + f*sin(eta*t))";
-    let p = format!("(({h} - {g}*cos(x))/(R + sin(x)^2))");
-    let read = |text: &str| -> Expr { parse_expression(text).expect("an expression") };
-    let right = [read("v"), read(&format!("{g} - {p}*cos(x)")), read("u"), read(&p)];
-    let numbers: BTreeMap<Symbol, f64> = [
-        ("R", primary.mass),
-        ("kappa", primary.stiffness),
-        ("delta", primary.damping),
-        ("f", primary.force),
-        ("eta", primary.frequency),
-        ("gamma", model.gamma),
-        ("mu", model.mu),
-        ("zeta", model.zeta),
-    ]
-    .map(|(name, value)| (Symbol::new(name), value))
-    .into();
-    let system = System::new(&["x", "v", "y", "u"].map(Symbol::new), "t".into(), &right, &numbers).expect("a system");
-    let options = Options {
-        integrator: Route::RungeKutta,
-        tolerance: 1e-12,
-        ..Options::default()
-    };
-    let path = system
-        .solve(0.0, &start, 25.0, &[Event::record(read("x - 3/10"))], &options)
-        .expect("a path");
+    let path = by_hand(primary, model, 0.3, start, 25.0);
     assert_eq!(path.occurrences().len(), 2 * motion.impacts.len());
     for index in 0..=250 {
         let t = 0.1 * f64::from(index);
@@ -504,30 +510,7 @@ fn a_start_on_a_barrier_is_a_start_in_contact() {
             ..FREE
         };
         let motion = follow(PrimaryCase { primary, model, start }, 10.0);
-        let g = "(-sin(x) - 2*zeta*v - (gamma + mu*v)*((x - c)^2)^(3/4)*H(x - c))";
-        let h = "(v^2*sin(x) - delta*u - kappa*y)";
-        let p = format!("(({h} - {g}*cos(x))/(R + sin(x)^2))");
-        let read = |text: &str| -> Expr { parse_expression(text).expect("an expression") };
-        let right = [read("v"), read(&format!("{g} - {p}*cos(x)")), read("u"), read(&p)];
-        let numbers: BTreeMap<Symbol, f64> = [
-            ("R", primary.mass),
-            ("kappa", primary.stiffness),
-            ("delta", primary.damping),
-            ("gamma", model.gamma),
-            ("mu", model.mu),
-            ("zeta", model.zeta),
-            ("c", place),
-        ]
-        .map(|(name, value)| (Symbol::new(name), value))
-        .into();
-        let states = ["x", "v", "y", "u"].map(Symbol::new);
-        let system = System::new(&states, "t".into(), &right, &numbers).expect("a system");
-        let options = Options {
-            integrator: Route::RungeKutta,
-            tolerance: 1e-12,
-            ..Options::default()
-        };
-        let path = system.solve(0.0, &start, 10.0, &[], &options).expect("a path");
+        let path = by_hand(primary, model, place, start, 10.0);
         for index in 0..=100 {
             let t = 0.1 * f64::from(index);
             let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));

@@ -112,10 +112,29 @@ impl Equations {
         Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
     }
 
-    fn system(&self, states: &[&str], time: &str, right: Vec<Expr>) -> Result<System, PrimaryError> {
+    /// The equations of these states and the accounts; `more` are numbers of this phase alone.
+    fn system(
+        &self,
+        states: &[&str],
+        time: &str,
+        right: &[Expr],
+        more: &[(&str, f64)],
+    ) -> Result<System, PrimaryError> {
         let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
         let states: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).chain(accounts).collect();
-        Ok(System::new(&states, Symbol::new(time), &right, &self.numbers)?)
+        Ok(System::new(&states, Symbol::new(time), right, &self.numbers_and(more))?)
+    }
+
+    /// The numbers of the case, and these beside them.
+    fn numbers_and(&self, more: &[(&str, f64)]) -> BTreeMap<Symbol, f64> {
+        let mut numbers = self.numbers.clone();
+        numbers.extend(more.iter().map(|(name, value)| (Symbol::new(name), *value)));
+        numbers
+    }
+
+    /// The torque on a pendulum at rest, which friction must hold: x'' + y'' cos x + sin x = P + G with x'' = 0.
+    fn torque_at_rest(&self) -> Expr {
+        own("P") - own("sin(x)") - own("cos(x)") * self.held.clone()
     }
 
     /// Away from the barriers, moving in this direction where dry friction asks for one.
@@ -126,7 +145,7 @@ impl Equations {
         let [x, y] = [put(&self.accelerations[0])?, put(&self.accelerations[1])?];
         right.extend([x, own("y'"), y]);
         right.extend(self.accounts(power, Expr::zero()));
-        self.system(&["x", "x'", "y", "y'"], "t", right)
+        self.system(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
 
     /// In a barrier, in s; it pushes as Hertz and Hunt and Crossley say.
@@ -148,53 +167,32 @@ impl Equations {
         right.push(slow(put(&self.accelerations[1])?));
         right.push(own("w"));
         right.extend(self.accounts(power, own("mu*x'^2*w^3")).into_iter().map(slow));
-        let mut at_place = self.clone_numbers();
-        at_place.insert(Symbol::new("place"), place);
-        let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
-        let states = ["w", "x'", "y", "y'", "t"].map(Symbol::new);
-        let states: Vec<Symbol> = states.into_iter().chain(accounts).collect();
-        Ok(System::new(&states, Symbol::new("s"), &right, &at_place)?)
-    }
-
-    fn clone_numbers(&self) -> BTreeMap<Symbol, f64> {
-        self.numbers.clone()
+        self.system(&["w", "x'", "y", "y'", "t"], "s", &right, &[("place", place)])
     }
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction must hold.
     pub(super) fn held(&self, x: f64, contact: f64) -> Result<(System, Expr), PrimaryError> {
-        let mut numbers = self.clone_numbers();
-        numbers.insert(Symbol::new("x"), x);
-        numbers.insert(Symbol::new("P"), contact);
-        let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
-        let states: Vec<Symbol> = ["y", "y'"].map(Symbol::new).into_iter().chain(accounts).collect();
         let still = [("x'", Expr::zero())];
         let mut right = vec![own("y'"), self.held.clone()];
         for account in self.accounts(Expr::zero(), Expr::zero()) {
             right.push(self.put(&account, &still)?);
         }
-        let system = System::new(&states, Symbol::new("t"), &right, &numbers)?;
-        // x'' + y'' cos x + sin x = P + G with x'' = 0.
-        let torque = own("P") - own("sin(x)") - own("cos(x)") * self.held.clone();
-        Ok((system, torque))
+        let system = self.system(&["y", "y'"], "t", &right, &[("x", x), ("P", contact)])?;
+        Ok((system, self.torque_at_rest()))
     }
 
     /// x'' away from the barriers, as a number; dry friction acts in this direction.
     pub(super) fn acceleration(&self, t: f64, state: [f64; 4], direction: f64) -> Result<f64, PrimaryError> {
         let [torque, _] = self.friction(direction);
         let rate = self.put(&self.accelerations[0], &[("P", Expr::zero()), ("G", torque)])?;
-        let mut values = self.clone_numbers();
-        values.insert(Symbol::new("t"), t);
-        values.extend(["x", "x'", "y", "y'"].map(Symbol::new).into_iter().zip(state));
+        let [x, velocity, y, speed] = state;
+        let values = self.numbers_and(&[("t", t), ("x", x), ("x'", velocity), ("y", y), ("y'", speed)]);
         Ok(rate.evaluate(&values).unwrap_or(f64::NAN))
     }
 
     /// The torque that friction must hold, as a number.
     pub(super) fn torque(&self, t: f64, x: f64, contact: f64, [y, speed]: [f64; 2]) -> f64 {
-        let mut values = self.clone_numbers();
-        for (name, value) in [("t", t), ("x", x), ("P", contact), ("y", y), ("y'", speed)] {
-            values.insert(Symbol::new(name), value);
-        }
-        let torque = own("P") - own("sin(x)") - own("cos(x)") * self.held.clone();
-        torque.evaluate(&values).unwrap_or(f64::NAN)
+        let values = self.numbers_and(&[("t", t), ("x", x), ("P", contact), ("y", y), ("y'", speed)]);
+        self.torque_at_rest().evaluate(&values).unwrap_or(f64::NAN)
     }
 }

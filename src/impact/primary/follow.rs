@@ -200,7 +200,6 @@ impl<'a> Run<'a> {
     }
 
     fn fly(&mut self, direction: f64) -> Result<End, PrimaryError> {
-        let system = self.equations.flight(direction)?;
         let mut events = vec![Event::record(own("y'"))];
         let mut sides = Vec::new();
         for side in [Side::Left, Side::Right] {
@@ -212,12 +211,24 @@ impl<'a> Run<'a> {
         if self.case.sticks() {
             events.push(Event::stop(own("x'")));
         }
+        let reason = self.glide(direction, &events)?;
+        if let End::Event(event) = reason {
+            match sides.get(event.wrapping_sub(1)) {
+                Some(side) => self.enter(*side, direction),
+                None => self.turn_back(0.0)?,
+            }
+        }
+        Ok(reason)
+    }
+
+    /// Away from every force of a barrier until one of these events; the first of them are the turning points of the main mass.
+    fn glide(&mut self, direction: f64, events: &[Event]) -> Result<End, PrimaryError> {
+        let system = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed]);
-        let path = system.solve(self.t, &start, self.settings.duration, &events, &self.options())?;
+        let path = system.solve(self.t, &start, self.settings.duration, events, &self.options())?;
         self.turns_of(&path, |state| state[2], |time| time);
-        let reason = path.reason();
-        let end = path.end();
+        let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
         self.state = PrimaryState {
             x: last[0],
@@ -228,12 +239,6 @@ impl<'a> Run<'a> {
         self.accounts.copy_from_slice(&last[4..]);
         self.path.push(self.t, end, Piece::Flight(path));
         self.t = end;
-        if let End::Event(event) = reason {
-            match sides.get(event.wrapping_sub(1)) {
-                Some(side) => self.enter(*side, direction),
-                None => self.turn_back(0.0)?,
-            }
-        }
         Ok(reason)
     }
 
@@ -340,34 +345,20 @@ impl<'a> Run<'a> {
     /// pushed again.
     fn let_go(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
         let place = self.place(side);
-        let system = self.equations.flight(direction)?;
         let sign = Expr::from(side.sign() as i64);
         let events = [
             Event::record(own("y'")),
             Event::stop(offset("x", place)),
             Event::stop(own("gamma") + sign * own("mu*x'")),
         ];
-        let PrimaryState { x, velocity, y, speed } = self.state;
-        let start = self.with_accounts(&[x, velocity, y, speed]);
-        let path = system.solve(self.t, &start, self.settings.duration, &events, &self.options())?;
-        self.turns_of(&path, |state| state[2], |time| time);
-        let (reason, end) = (path.reason(), path.end());
-        let last = path.at(end).unwrap_or(start);
-        self.state = PrimaryState {
-            x: last[0],
-            velocity: last[1],
-            y: last[2],
-            speed: last[3],
-        };
-        self.accounts.copy_from_slice(&last[4..]);
+        let before = self.state.x;
+        let reason = self.glide(direction, &events)?;
         // What the barrier stores on this way it does not give back.
         let stored = |x: f64| {
             let depth = (side.sign() * (x - place)).max(0.0);
             self.case.model.elastic_energy(depth)
         };
-        self.accounts[2] += stored(x) - stored(last[0]);
-        self.path.push(self.t, end, Piece::Flight(path));
-        self.t = end;
+        self.accounts[2] += stored(before) - stored(self.state.x);
         match reason {
             End::Event(1) => self.leave(side, direction),
             End::Event(2) => self.regime = Regime::Contact(side, direction),

@@ -5,7 +5,7 @@
 //!
 //! Any other periodic motion: the Runge-Kutta return to a turning point.
 //!
-//! Only the judge ([`mod@crate::verify`]) may use this file; `tests/layers.rs` holds the wall.
+//! Only the judge ([`mod@crate::verify`]) may use this file; `tests/library/layers.rs` holds the wall.
 
 pub use crate::numeric::ode::energy::{Force, PeriodError, turning_point};
 

@@ -105,7 +105,7 @@ fn every_example_prints_what_it_printed() {
     });
 }
 
-#[path = "../examples/two_links.rs"]
+#[path = "../../examples/two_links.rs"]
 mod two_links;
 
 /// The example of the library: a motion checked by its energy and by the other integrator.

@@ -7,9 +7,9 @@ use lindstedt::method::{Options, solve};
 use lindstedt::verify::{judge, motions};
 use lindstedt::{Oscillator, Symbol};
 
-use crate::families::number;
-use crate::quadrature::{bisect, integrate};
-use crate::random::Random;
+use super::families::number;
+use super::quadrature::{bisect, integrate};
+use super::random::Random;
 
 /// One period of `x'' = acceleration(x, x')` between two maxima, and the maximum, after the transient has gone.
 fn cycle(acceleration: &dyn Fn(f64, f64) -> f64, start: f64, step: f64, transient: f64) -> Option<(f64, f64)> {

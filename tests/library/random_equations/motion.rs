@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::definitions::{Answer, Question};
-use crate::quadrature::{Integrals, bisect, integrate};
+use super::definitions::{Answer, Question};
+use super::quadrature::{Integrals, bisect, integrate};
 
 /// The work of the force along a motion is not known.
 pub struct Unsettled;

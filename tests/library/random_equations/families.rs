@@ -1,7 +1,7 @@
 //! Families of random forces.
 
-use crate::force::{Force, Number, Shape, Term};
-use crate::random::Random;
+use super::force::{Force, Number, Shape, Term};
+use super::random::Random;
 
 /// Draws the terms of one force.
 type Family = fn(&mut Random) -> Vec<Term>;

@@ -10,8 +10,8 @@ use lindstedt::verify::Reach;
 use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{Comparison as Table, Row, compare};
 
-use crate::Comparison;
-use crate::definitions::{Answer, Question};
+use super::Comparison;
+use super::definitions::{Answer, Question};
 
 const TOLERANCE: f64 = 0.01;
 

@@ -236,7 +236,7 @@ fn a_barrier_out_of_reach_has_no_say() {
 /// The tables of the page are computed here.
 #[test]
 fn the_page_prints_what_is_found() {
-    let page = include_str!("../docs/materials.md");
+    let page = include_str!("../../docs/materials.md");
     let study = study_materials(MaterialQuestion::default()).expect("a study");
     let contact = |row: &MaterialRow| {
         let first = row.first.expect("a contact");

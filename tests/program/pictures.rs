@@ -1,5 +1,4 @@
 //! What a picture shows are the numbers that are printed: curves are read back from the SVG by the ticks of their axes.
-#![cfg(feature = "plot")]
 
 use std::process::Command;
 

@@ -8,8 +8,8 @@ use lindstedt::audit::{
     Audit, Claims, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend, Verdict, audit,
 };
 
-const PAPER: &str = include_str!("../examples/audit/paper.toml");
-const FREQUENCIES: &str = include_str!("../examples/audit/frequencies.toml");
+const PAPER: &str = include_str!("../../examples/audit/paper.toml");
+const FREQUENCIES: &str = include_str!("../../examples/audit/frequencies.toml");
 
 fn claims(text: &str) -> Claims {
     text.parse().unwrap_or_else(|error| panic!("{error}"))
@@ -342,7 +342,7 @@ fn a_trend_is_one_of_all_entries() {
 /// The page names every number, every key and every verdict.
 #[test]
 fn the_page_names_everything() {
-    let page = include_str!("../docs/audit.md");
+    let page = include_str!("../../docs/audit.md");
     for (name, needs, words) in NAMES {
         let row = format!("| `{name}` | {needs} | {words} |");
         assert!(page.contains(&row), "{row}");

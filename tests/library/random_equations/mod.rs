@@ -9,7 +9,7 @@
 //! `cargo test` runs a hundred and fifty equations, some two thousand comparisons. By hand:
 //!
 //! ```text
-//! LINDSTEDT_RANDOM_COUNT=20000 LINDSTEDT_RANDOM_SEED=1000000 cargo test --test random_equations -- --nocapture
+//! LINDSTEDT_RANDOM_COUNT=20000 LINDSTEDT_RANDOM_SEED=1000000 cargo test --test library random_equations -- --nocapture
 //! ```
 //!
 //! `LINDSTEDT_RANDOM_FAMILY=barrier` asks for the families with this in their name, and an empty one for all; where it is set,

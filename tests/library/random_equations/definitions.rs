@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-use crate::force::Force;
-use crate::quadrature::{integrate, solve};
+use super::force::Force;
+use super::quadrature::{integrate, solve};
 
 /// What a definition gives.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::definitions::{Answer, Question, series_product};
+use super::definitions::{Answer, Question, series_product};
 
 impl Question<'_> {
     /// `1 = Om + a_1 + ... + a_n` in units of the linear force: the root that continues it from rest.

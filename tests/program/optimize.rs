@@ -332,7 +332,7 @@ fn pictures_show_runs_box_and_front() {
 /// The numbers of the page are computed here.
 #[test]
 fn the_page_prints_what_is_found() {
-    let page = include_str!("../docs/optimize.md");
+    let page = include_str!("../../docs/optimize.md");
     let text = std::fs::read_to_string(example("table-4")).expect("an example");
     let question = asked(&text);
     assert_eq!(question.genetic, Options::default());

@@ -17,7 +17,7 @@ fn with(alpha: f64) -> FrictionStudy {
 /// Every block of numbers in `docs/friction.md` is a section of what the program prints, and none is left out but the question.
 #[test]
 fn the_page_says_what_is_computed() {
-    let page = include_str!("../docs/friction.md");
+    let page = include_str!("../../docs/friction.md");
     let printed = text::friction(&with(DEFAULT_ALPHA));
     let sections: Vec<&str> = printed.trim_end().split("\n\n").skip(1).collect();
     assert_eq!(sections.len(), 6);

@@ -142,7 +142,7 @@ fn the_gain_by_geometry_is_that_of_the_lossless_barrier() {
 /// The table of `docs/chain.md` is what is computed.
 #[test]
 fn the_page_tells_the_numbers() {
-    let page = include_str!("../../docs/chain.md");
+    let page = include_str!("../../../docs/chain.md");
     let mut rows = 0;
     for line in page.lines().filter(|line| line.starts_with("| 0")) {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();

@@ -417,7 +417,7 @@ const READ: [(&str, Given, usize); 7] = [
 
 #[test]
 fn a_reader_in_python_rebuilds_frequency_and_motion() {
-    let lines = include_str!("../examples/read_json.py").lines().count();
+    let lines = include_str!("../../examples/read_json.py").lines().count();
     assert!(lines <= 40, "{lines} lines");
     let version = Command::new("python3").arg("--version").output();
     if !version.is_ok_and(|output| output.status.success()) {

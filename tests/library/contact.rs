@@ -430,7 +430,7 @@ fn a_swing_and_a_barrier_of_the_users_own() {
 /// The table of `docs/impact.md` is what is computed.
 #[test]
 fn the_page_says_what_is_computed() {
-    let page = include_str!("../docs/impact.md");
+    let page = include_str!("../../docs/impact.md");
     let table = impact::compare(Setup {
         tolerance: 1e-3,
         ..Setup::default()
@@ -547,7 +547,7 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
 
 /// The numbers of a table of docs/contact.md that begins after these words: duration, depth, peak force and motion, in percent.
 fn table_of_the_page(words: &str) -> Vec<(String, [f64; 4])> {
-    let page = include_str!("../docs/contact.md");
+    let page = include_str!("../../docs/contact.md");
     let (_, rest) = page.split_once(words).expect("the words are there");
     let lines = rest.lines().skip_while(|line| !line.starts_with("| `"));
     lines

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use crate::definitions::{Answer, Question};
-use crate::force::{Shape, Term};
-use crate::quadrature::{bisect, integrate, solve};
+use super::definitions::{Answer, Question};
+use super::force::{Shape, Term};
+use super::quadrature::{bisect, integrate, solve};
 
 impl Question<'_> {
     /// How many waves of sines and exponents of exponentials the motion runs through: beyond a few, sums over points say

@@ -748,7 +748,7 @@ fn output_of_help() -> String {
 
 #[test]
 fn the_examples_are_the_ones_the_readme_names() {
-    let readme = include_str!("../README.md");
+    let readme = include_str!("../../README.md");
     let named: Vec<&str> = readme
         .split_whitespace()
         .filter(|word| word.starts_with("examples/simulate/"))

@@ -24,8 +24,8 @@ use lindstedt::verify::nearest_singularity;
 use lindstedt::verify::{End, Well};
 use lindstedt::{Oscillator, Symbol};
 
-use crate::quadrature::bisect;
-use crate::random::Random;
+use super::quadrature::bisect;
+use super::random::Random;
 
 /// Equations of each kind.
 const EACH: u64 = 12;

@@ -1,0 +1,30 @@
+//! The library held against independent truth: one file a subject, all in one program, so that they share the processor's cores.
+
+mod conformance;
+mod contact;
+mod equilibria;
+mod exact_numbers;
+mod expr_properties;
+mod friction;
+mod fuzz;
+mod homotopy;
+mod inertia;
+mod judge;
+mod layers;
+mod limit_cycles;
+mod literature;
+mod mechanics;
+mod names;
+mod near_rest;
+mod primary;
+mod printed_integrals;
+mod quotations;
+mod random_equations;
+mod ranges;
+mod ring;
+mod series_properties;
+mod simulate;
+mod starts;
+mod steps;
+mod system;
+mod units;

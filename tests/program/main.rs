@@ -1,0 +1,15 @@
+//! The program as its users run it: one file a subject, all in one program, so that they share the processor's cores.
+
+mod audit;
+mod catalog;
+mod documents;
+mod errors;
+mod gallery;
+mod materials;
+mod optimize;
+mod options;
+#[cfg(feature = "plot")]
+mod pictures;
+mod simulate_cli;
+mod unread;
+mod words;

@@ -10,6 +10,7 @@ mod advice;
 mod branch;
 pub mod law;
 mod method;
+pub mod modulation;
 pub mod note;
 mod sum;
 
@@ -23,6 +24,7 @@ pub use branch::Branch;
 use law::Shown;
 pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};
+pub use modulation::Modulation;
 pub use note::Note;
 pub use sum::Sum;
 
@@ -185,6 +187,8 @@ pub struct Solution {
     pub displacement: FourierSeries<Polynomials>,
     /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
     pub limit_cycle: Option<LimitCycle>,
+    /// Motions that are not periodic: the slow equations of amplitude and phase.
+    pub modulation: Option<Modulation>,
     /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
     pub numerical: bool,
     /// What is known of where the formula holds.
@@ -264,7 +268,9 @@ impl Solution {
 
     /// The small parameter, and those that are small together with it.
     pub fn small_parameters(&self) -> impl Iterator<Item = Symbol> + '_ {
-        let others = self.limit_cycle.iter().flat_map(|cycle| &cycle.small_with);
+        let of_cycle = self.limit_cycle.iter().flat_map(|cycle| &cycle.small_with);
+        let of_modulation = self.modulation.iter().flat_map(|modulation| &modulation.small_with);
+        let others = of_cycle.chain(of_modulation.filter(|_| self.limit_cycle.is_none()));
         std::iter::once(self.small_parameter).chain(others.copied())
     }
 

@@ -112,6 +112,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
             coefficient.product(&Polynomial::symbol(amplitude))
         }),
         limit_cycle: None,
+        modulation: None,
         numerical: false,
         validity,
         steps: series.steps,

@@ -119,6 +119,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         },
         displacement,
         limit_cycle,
+        modulation: None,
         numerical: false,
         validity,
         steps: series.steps,

@@ -105,6 +105,7 @@ pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Metho
         law: Law::Quadrature(vec![]),
         displacement: cosine(Polynomial::symbol(amplitude)),
         limit_cycle: None,
+        modulation: None,
         numerical: false,
         validity: vec![],
         steps: vec![],

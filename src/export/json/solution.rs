@@ -11,7 +11,7 @@ use crate::exact::{self, Doubles, POLYNOMIALS, Polynomials};
 use crate::expr::parse_equation;
 use crate::series::FourierSeries;
 use crate::solution::{
-    self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Note, Root, Solution,
+    self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Note, Root, Solution, modulation,
 };
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -66,8 +66,8 @@ pub struct SolutionDocument {
     pub displacement: Displacement,
     /// The limit cycle of a self-excited equation, whose amplitude the equation determines; null for any other.
     pub limit_cycle: Option<LimitCycle>,
-    /// Always null: no method gives equations of amplitude and phase yet.
-    pub modulation: (),
+    /// The slow equations of amplitude and phase of a motion that is not periodic; null for any other.
+    pub modulation: Option<Modulation>,
     /// Always null: no method gives steady states of a forced equation yet.
     pub response: (),
     /// Whether coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
@@ -137,6 +137,60 @@ pub struct Cycle {
     pub attracts_where_positive: Option<String>,
     /// The same in words.
     pub stability: String,
+}
+
+/// The slow equations of amplitude and phase, in time derivatives: the motion is `displacement` with theta = phase, or for a driven
+/// motion theta = (times_driving * driving_frequency * t - phase)/times_linear.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Modulation {
+    /// The symbol of the amplitude, in the unit of the coordinate.
+    pub amplitude: String,
+    /// The symbol of the phase, in radians.
+    pub phase: String,
+    /// The rate of the amplitude, an expression.
+    pub amplitude_rate: String,
+    /// The rate of the phase, an expression, in radians per unit of time.
+    pub phase_rate: String,
+    /// Parameters that are small together with the small parameter.
+    pub small_with: Vec<String>,
+    /// What a driving force is in resonance with; null for a free motion.
+    pub resonance: Option<Resonance>,
+    /// The motion from a start in closed form; null where none is known.
+    pub transient: Option<Transient>,
+    /// The amplitudes other than zero that stay, smallest first.
+    pub steady: Vec<Cycle>,
+}
+
+/// A driving frequency near a multiple of the linear one: times_driving * driving_frequency = times_linear * omega0 + detuning.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Resonance {
+    /// The driving frequency, a symbol or a number.
+    pub driving_frequency: String,
+    /// How many times it is taken.
+    pub times_driving: u32,
+    /// How many times the linear frequency is taken.
+    pub times_linear: u32,
+    /// The symbol of the detuning.
+    pub detuning: String,
+    /// What the detuning stands for, an expression.
+    pub detuning_means: String,
+}
+
+/// A motion from its start in closed form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Transient {
+    /// The symbol of the amplitude at t = 0.
+    pub start: String,
+    /// The amplitude, an expression in t.
+    pub amplitude: String,
+    /// The phase from zero at t = 0, an expression in t; null where it has no closed form.
+    pub phase: Option<String>,
+    /// The time at which the amplitude reaches zero and stays, or grows without bound, an expression; null where the formulas hold
+    /// for all times.
+    pub ends: Option<String>,
 }
 
 /// A formula at given values, beside the true motion of the equation as it was typed.
@@ -254,7 +308,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
             harmonics: solution.displacement.harmonics().into_iter().map(harmonic).collect(),
         },
         limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
-        modulation: (),
+        modulation: solution.modulation.as_ref().map(modulation),
         response: (),
         numerical: solution.numerical,
         validity: solution.validity.iter().map(ToString::to_string).collect(),
@@ -264,16 +318,45 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
 
 /// The cycle of the solution and, to leading order, all of its equation.
 fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle {
-    let leading = |leading: &LeadingCycle| Cycle {
-        amplitude: Constant::of(&leading.amplitude),
-        attracts_where_positive: leading.attracts_where.as_ref().map(ToString::to_string),
-        stability: leading.stability(),
-    };
     LimitCycle {
         amplitude: Polynomial::of(&cycle.amplitude, solution),
         number: cycle.number,
-        cycles: cycle.cycles.iter().map(leading).collect(),
+        cycles: cycle.cycles.iter().map(self::cycle).collect(),
         small_with: names(&cycle.small_with),
+    }
+}
+
+/// An amplitude that stays, with its stability.
+fn cycle(leading: &LeadingCycle) -> Cycle {
+    Cycle {
+        amplitude: Constant::of(&leading.amplitude),
+        attracts_where_positive: leading.attracts_where.as_ref().map(ToString::to_string),
+        stability: leading.stability(),
+    }
+}
+
+/// The slow equations, with their solutions as far as they are known.
+fn modulation(modulation: &solution::Modulation) -> Modulation {
+    Modulation {
+        amplitude: modulation.amplitude.to_string(),
+        phase: modulation.phase.to_string(),
+        amplitude_rate: modulation.amplitude_rate.to_string(),
+        phase_rate: modulation.phase_rate.to_string(),
+        small_with: names(&modulation.small_with),
+        resonance: modulation.resonance.as_ref().map(|resonance| Resonance {
+            driving_frequency: resonance.driving_frequency.to_string(),
+            times_driving: resonance.times_driving,
+            times_linear: resonance.times_linear,
+            detuning: resonance.detuning.symbol.to_string(),
+            detuning_means: resonance.detuning.meaning.to_string(),
+        }),
+        transient: modulation.transient.as_ref().map(|transient| Transient {
+            start: transient.start.to_string(),
+            amplitude: transient.amplitude.to_string(),
+            phase: transient.phase.as_ref().map(ToString::to_string),
+            ends: transient.ends.as_ref().map(ToString::to_string),
+        }),
+        steady: modulation.steady.iter().map(cycle).collect(),
     }
 }
 
@@ -392,6 +475,7 @@ impl SolutionDocument {
             law: self.law()?,
             displacement: self.displacement.read()?,
             limit_cycle: self.limit_cycle.as_ref().map(LimitCycle::read).transpose()?,
+            modulation: self.modulation.as_ref().map(Modulation::read).transpose()?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
             steps: vec![],
@@ -448,20 +532,58 @@ impl System {
 
 impl LimitCycle {
     fn read(&self) -> Result<solution::LimitCycle, JsonError> {
-        let leading = |cycle: &Cycle| {
-            let attracts_where = cycle.attracts_where_positive.as_deref();
-            Ok(LeadingCycle {
-                amplitude: cycle.amplitude.expression("amplitude")?,
-                attracts_where: attracts_where
-                    .map(|text| expression(text, "attracts_where_positive"))
-                    .transpose()?,
-            })
-        };
         Ok(solution::LimitCycle {
             amplitude: self.amplitude.exact("limit_cycle")?,
             number: self.number,
-            cycles: self.cycles.iter().map(leading).collect::<Result<_, JsonError>>()?,
+            cycles: self.cycles.iter().map(Cycle::read).collect::<Result<_, JsonError>>()?,
             small_with: symbols(&self.small_with),
+        })
+    }
+}
+
+impl Cycle {
+    fn read(&self) -> Result<LeadingCycle, JsonError> {
+        let attracts_where = self.attracts_where_positive.as_deref();
+        Ok(LeadingCycle {
+            amplitude: self.amplitude.expression("amplitude")?,
+            attracts_where: attracts_where
+                .map(|text| expression(text, "attracts_where_positive"))
+                .transpose()?,
+        })
+    }
+}
+
+impl Modulation {
+    fn read(&self) -> Result<solution::Modulation, JsonError> {
+        let optional = |text: &Option<String>, key| text.as_deref().map(|text| expression(text, key)).transpose();
+        let resonance = |resonance: &Resonance| -> Result<_, JsonError> {
+            Ok(modulation::Resonance {
+                driving_frequency: expression(&resonance.driving_frequency, "driving_frequency")?,
+                times_driving: resonance.times_driving,
+                times_linear: resonance.times_linear,
+                detuning: Definition {
+                    symbol: Symbol::new(&resonance.detuning),
+                    meaning: expression(&resonance.detuning_means, "detuning_means")?,
+                },
+            })
+        };
+        let transient = |transient: &Transient| -> Result<_, JsonError> {
+            Ok(modulation::Transient {
+                start: Symbol::new(&transient.start),
+                amplitude: expression(&transient.amplitude, "amplitude")?,
+                phase: optional(&transient.phase, "phase")?,
+                ends: optional(&transient.ends, "ends")?,
+            })
+        };
+        Ok(solution::Modulation {
+            amplitude: Symbol::new(&self.amplitude),
+            phase: Symbol::new(&self.phase),
+            amplitude_rate: expression(&self.amplitude_rate, "amplitude_rate")?,
+            phase_rate: expression(&self.phase_rate, "phase_rate")?,
+            small_with: symbols(&self.small_with),
+            resonance: self.resonance.as_ref().map(resonance).transpose()?,
+            transient: self.transient.as_ref().map(transient).transpose()?,
+            steady: self.steady.iter().map(Cycle::read).collect::<Result<_, JsonError>>()?,
         })
     }
 }

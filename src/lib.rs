@@ -33,6 +33,7 @@
 //! | [`solution`] | what a method returns: law, motion, notes, and how they were reached, line by line |
 //! | [`oscillator`] | what a method is given |
 //! | [`trajectory`] | any equation or mechanism followed in numbers, its energy accounted for |
+//! | [`hill`] | linear equations with periodic coefficients: exact transition curves, Floquet's multipliers |
 //! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
 //! | [`verify`] | the true motion and the verdict |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
@@ -84,6 +85,8 @@ pub mod solution;
 pub mod oscillator;
 
 pub mod trajectory;
+
+pub mod hill;
 
 mod conservative;
 

@@ -20,6 +20,7 @@ mod primary;
 mod problem;
 mod schema;
 mod simulate;
+mod stability;
 mod trajectory;
 
 use std::fmt::Display;
@@ -68,6 +69,8 @@ enum Command {
     Materials(materials::Arguments),
     /// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes
     Optimize(optimize::Arguments),
+    /// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable
+    Stability(stability::Arguments),
     /// Claims of a publication from a file, each computed again, with a verdict
     Audit(audit::Arguments),
     /// Every number, equation, table and figure of the paper, computed again, with a verdict
@@ -194,6 +197,7 @@ impl Command {
             Self::Lagrange(arguments) => arguments.common.clone(),
             Self::Materials(arguments) => arguments.common.clone(),
             Self::Optimize(arguments) => arguments.common.clone(),
+            Self::Stability(arguments) => arguments.common.clone(),
             Self::Audit(arguments) => arguments.common.clone(),
             Self::Paper(arguments) => arguments.common.clone(),
             Self::Catalog(arguments) => arguments.common.clone(),
@@ -211,6 +215,7 @@ impl Command {
             Self::Lagrange(arguments) => arguments.file.as_deref(),
             Self::Materials(arguments) => arguments.file.as_deref(),
             Self::Optimize(arguments) => arguments.file.as_deref(),
+            Self::Stability(arguments) => problem::path(&arguments.problem),
             Self::Audit(arguments) => Some(&arguments.file),
             Self::Paper(_) | Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
         }
@@ -241,6 +246,7 @@ impl Command {
             Self::Lagrange(arguments) => lagrange::run(arguments),
             Self::Materials(arguments) => materials::run(arguments),
             Self::Optimize(arguments) => optimize::run(arguments),
+            Self::Stability(arguments) => stability::run(arguments),
             Self::Audit(arguments) => audit::run(arguments),
             Self::Paper(arguments) => audit::run_paper(arguments),
             Self::Catalog(arguments) => catalog::run(arguments),

@@ -16,6 +16,7 @@ pub mod materials;
 pub mod optimization;
 pub mod primary;
 pub mod simulation;
+pub mod stability;
 pub(crate) mod steps;
 pub mod text;
 pub mod trajectory;

@@ -25,9 +25,11 @@ pub enum Reader {
     Trajectory,
     /// `lindstedt optimize`
     Optimize,
+    /// `lindstedt stability`
+    Stability,
 }
 
-use Reader::{Compare, Derive, Impact, Lagrange, Materials, Optimize, Simulate, Trajectory};
+use Reader::{Compare, Derive, Impact, Lagrange, Materials, Optimize, Simulate, Stability, Trajectory};
 
 impl fmt::Display for Reader {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -39,6 +41,7 @@ impl fmt::Display for Reader {
             Materials => "lindstedt materials",
             Lagrange => "lindstedt lagrange",
             Optimize => "lindstedt optimize",
+            Stability => "lindstedt stability",
         })
     }
 }
@@ -48,13 +51,13 @@ const MECHANISM: [Reader; 5] = [Derive, Compare, Impact, Trajectory, Lagrange];
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
 pub const KEYS: [(&str, &[Reader]); 93] = [
-    ("equation", &[Derive, Compare, Impact, Simulate, Trajectory]),
+    ("equation", &[Derive, Compare, Impact, Simulate, Trajectory, Stability]),
     ("method", &[Derive, Impact]),
-    ("order", &[Derive, Impact]),
-    ("small", &[Derive, Compare]),
+    ("order", &[Derive, Impact, Stability]),
+    ("small", &[Derive, Compare, Stability]),
     ("amplitude", &[Derive, Impact]),
     ("about", &[Derive, Compare, Impact]),
-    ("[values]", &[Derive, Compare, Impact, Lagrange, Trajectory]),
+    ("[values]", &[Derive, Compare, Impact, Lagrange, Trajectory, Stability]),
     ("[lagrangian] coordinates", &MECHANISM),
     ("[lagrangian] kinetic", &MECHANISM),
     ("[lagrangian] potential", &MECHANISM),

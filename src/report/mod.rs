@@ -14,6 +14,7 @@ mod mechanism;
 mod optimization;
 mod primary;
 mod solution;
+mod stability;
 mod trajectory;
 
 pub use audit::audit;
@@ -28,6 +29,7 @@ pub use mechanism::mechanism;
 pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, primary, primary_sweep};
 pub use solution::solution;
+pub use stability::{StabilityReport, stability};
 pub use trajectory::{TrajectoryReport, trajectory};
 
 use std::borrow::Cow;

@@ -18,7 +18,7 @@ pub struct Sum {
 
 impl Sum {
     /// The terms with the least `key` first; whether the numbers before them are rounded.
-    pub(super) fn new(polynomial: &Polynomial, rounded: bool, key: impl Fn(&Monomial) -> i32) -> Self {
+    pub(crate) fn new(polynomial: &Polynomial, rounded: bool, key: impl Fn(&Monomial) -> i32) -> Self {
         let terms = terms::in_order(polynomial, key).into_iter();
         Self {
             terms: terms

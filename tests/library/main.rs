@@ -7,6 +7,7 @@ mod exact_numbers;
 mod expr_properties;
 mod friction;
 mod fuzz;
+mod hill;
 mod homotopy;
 mod inertia;
 mod judge;

@@ -9,7 +9,7 @@ use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
     ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, OptimizationDocument, PrimaryDocument,
-    PrimarySweepDocument, SimulationDocument, SolutionDocument, SweepDocument,
+    PrimarySweepDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -102,6 +102,7 @@ fn reads_back(document: &Value) {
         Kind::Sweep => again::<SweepDocument>(document),
         Kind::Friction => again::<FrictionDocument>(document),
         Kind::Lagrangian => again::<LagrangianDocument>(document),
+        Kind::Stability => again::<StabilityDocument>(document),
         Kind::Motion => again::<MotionDocument>(document),
         Kind::Primary => again::<PrimaryDocument>(document),
         Kind::PrimarySweep => again::<PrimarySweepDocument>(document),
@@ -144,6 +145,9 @@ fn documents() -> Vec<(String, Value)> {
         add(&["lagrange", &file.to_string_lossy()]);
     }
     add(&["lagrange"]);
+    for file in files("examples/stability", ".toml") {
+        add(&["stability", &file.to_string_lossy()]);
+    }
     for file in files("examples/primary", ".toml") {
         add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
     }

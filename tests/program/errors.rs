@@ -33,6 +33,7 @@ fn message(file: &Path) -> String {
         _ if bytes.starts_with(b"# optimize") => run(&["optimize", path], b""),
         _ if bytes.starts_with(b"# audit") => run(&["audit", path], b""),
         _ if bytes.starts_with(b"# lagrange") => run(&["lagrange", path], b""),
+        _ if bytes.starts_with(b"# stability") => run(&["stability", path], b""),
         _ if bytes.starts_with(b"# simulate") => run(&["simulate", path], b""),
         _ => run(&["derive", path], b""),
     };

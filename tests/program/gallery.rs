@@ -189,6 +189,27 @@ fn every_mechanism_prints_what_it_printed() {
     });
 }
 
+/// Every equation with periodic coefficients and its transition curves, in text, LaTeX and JSON.
+#[test]
+fn every_stability_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/stability"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("stability-text", output(&["stability", path]));
+                insta::assert_snapshot!("stability-latex", output(&["stability", path, "--format", "latex"]));
+                let mut document: Value = serde_json::from_str(&output(&["stability", path, "--format", "json"]))
+                    .expect("the output is JSON");
+                rounded(&mut document);
+                insta::assert_json_snapshot!("stability-json", document);
+            }
+        );
+        insta::assert_snapshot!("help-stability", output(&["stability", "--help"]));
+    });
+}
+
 /// A main mass with its damper, in text, JSON and comma-separated values, and driven at several frequencies.
 #[test]
 fn every_main_mass_prints_what_it_printed() {

@@ -44,6 +44,8 @@ fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {
 
 const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
+const HILL: &str = "equation = \"x'' + (delta + eps*cos(t))*x = 0\"\n";
+
 const MECHANISM: &str = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2 + x^4/4\"\n";
 
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
@@ -236,6 +238,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             ("materials", Reader::Materials),
             ("optimize", Reader::Optimize),
             ("lagrange", Reader::Lagrange),
+            ("stability", Reader::Stability),
         ] {
             // Keys of the top stand first; those of a section that is there already stand in it.
             let (with, without) = match (key.starts_with('['), line.starts_with('[')) {
@@ -286,6 +289,12 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             let named_otherwise = foreign && beside.starts_with('[');
             let (with, without) = match foreign {
                 true => (format!("{with}{MECHANISM}"), format!("{without}{MECHANISM}")),
+                false => (with, without),
+            };
+            // Periodic coefficients make another equation.
+            let hill = reader == Reader::Stability && beside == FORMULA;
+            let (with, without) = match hill {
+                true => (with.replace(FORMULA, HILL), HILL.to_owned()),
                 false => (with, without),
             };
             // What compares needs numbers.
@@ -625,6 +634,14 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "alpha=0.1:0.2:2",
     ];
     let own = ["simulate", "x'' + k*x = 0", "--from", "x=1", "--at", "k=1"];
+    let hill = [
+        "stability",
+        "x'' + (delta + eps*cos(Omega*t))*x = 0",
+        "--at",
+        "eps=1",
+        "--at",
+        "Omega=2",
+    ];
     let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
     // Command, what stands beside the option, the option.
     let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
@@ -739,6 +756,18 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("lagrange", vec![], vec!["--tolerance", "0.1"]),
         ("lagrange", vec![], vec!["--timeout", "1e-9"]),
         ("lagrange", vec![], vec!["--quiet"]),
+        ("stability", hill[1..].to_vec(), vec!["--order", "2"]),
+        ("stability", hill[1..].to_vec(), vec!["--tongues", "1"]),
+        ("stability", hill[1..].to_vec(), vec!["--for", "Omega"]),
+        ("stability", hill[1..].to_vec(), vec!["--small", "delta"]),
+        ("stability", hill[1..].to_vec(), vec!["--at", "eps=1/2"]),
+        ("stability", hill[1..].to_vec(), vec!["--format", "csv"]),
+        ("stability", hill[1..].to_vec(), vec!["--format", "latex"]),
+        ("stability", hill[1..].to_vec(), vec!["--output", file]),
+        ("stability", hill[1..].to_vec(), vec!["--plot", "-"]),
+        ("stability", hill[1..].to_vec(), vec!["--tolerance", "1e-9"]),
+        ("stability", hill[1..].to_vec(), vec!["--timeout", "1e-9"]),
+        ("stability", hill[1..].to_vec(), vec!["--quiet"]),
         ("friction", vec![], vec!["--alpha", "0.1"]),
         ("friction", vec![], vec!["--amplitude", "1"]),
         ("friction", vec![], vec!["--speed", "0.01"]),

@@ -27,6 +27,7 @@ pub mod primary;
 mod schema;
 pub mod simulation;
 pub mod solution;
+pub mod stability;
 pub mod sweep;
 
 use std::io;
@@ -49,6 +50,7 @@ pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep}
 pub use schema::Kind;
 pub use simulation::{SimulationDocument, simulation};
 pub use solution::{SolutionDocument, solution};
+pub use stability::{StabilityDocument, stability};
 pub use sweep::{SweepDocument, sweep};
 
 use crate::impact::Phase;

@@ -10,7 +10,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{self, Rational};
 use crate::expr::{Expr, parse_expression};
-use crate::solution::Solution;
+use crate::solution::{Solution, Sum};
 use crate::symbol::Symbol;
 
 /// What stands under names that the equation or the program chose, in their order.
@@ -71,6 +71,11 @@ impl Constant {
 impl Polynomial {
     /// A polynomial of a solution, lowest order in its small parameters first.
     pub fn of(polynomial: &exact::Polynomial, solution: &Solution) -> Self {
+        Self::of_sum(&solution.ordered(polynomial))
+    }
+
+    /// A polynomial with its terms in order.
+    pub fn of_sum(sum: &Sum) -> Self {
         let term = |(monomial, coefficient): (&Monomial, &Rational)| Term {
             monomial: monomial
                 .factors()
@@ -81,7 +86,7 @@ impl Polynomial {
             value: finite(Some(to_f64(coefficient))),
         };
         Self {
-            terms: solution.ordered(polynomial).terms().map(term).collect(),
+            terms: sum.terms().map(term).collect(),
         }
     }
 

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::{
     AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
     JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, OptimizationDocument, PrimaryDocument,
-    PrimarySweepDocument, SimulationDocument, SolutionDocument, SweepDocument, unexpected,
+    PrimarySweepDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -40,6 +40,8 @@ pub enum Kind {
     Materials,
     /// `optimize`.
     Optimization,
+    /// `stability`.
+    Stability,
     /// `audit`, `paper`.
     Audit,
     /// `catalog`.
@@ -48,7 +50,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -62,6 +64,7 @@ impl Kind {
         Self::Lagrangian,
         Self::Materials,
         Self::Optimization,
+        Self::Stability,
         Self::Audit,
         Self::Catalog,
     ];
@@ -82,6 +85,7 @@ impl Kind {
             Self::Lagrangian => "lindstedt/lagrangian/1",
             Self::Materials => "lindstedt/materials/1",
             Self::Optimization => "lindstedt/optimization/1",
+            Self::Stability => "lindstedt/stability/1",
             Self::Audit => "lindstedt/audit/1",
             Self::Catalog => "lindstedt/catalog/1",
         }
@@ -122,6 +126,7 @@ impl Kind {
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
             Self::Optimization => generator.into_root_schema_for::<OptimizationDocument>(),
+            Self::Stability => generator.into_root_schema_for::<StabilityDocument>(),
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
         };

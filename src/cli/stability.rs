@@ -1,0 +1,147 @@
+//! `lindstedt stability PROBLEM`.
+
+use clap::Args;
+use lindstedt::export::{json, latex, stability, text};
+use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves, TruthError};
+use lindstedt::problem::{Order, Reader};
+use lindstedt::report::{self, StabilityReport};
+use lindstedt::verify::Verdict;
+use lindstedt::{Symbol, Values};
+
+use super::derive::{exact_values, formula, oscillator};
+use super::files::width;
+use super::problem::problem;
+use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
+    pub problem: String,
+    /// Highest power of the small parameters, all together, that is kept; 6 without it
+    #[arg(long, value_parser = super::count, allow_hyphen_values = true)]
+    order: Option<u32>,
+    /// The tongues 0 to N; 3 without it
+    #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
+    tongues: Option<u32>,
+    /// What the curves give: a letter of the mean stiffness, or the frequency
+    #[arg(long = "for", value_name = "NAME")]
+    solve_for: Option<String>,
+    /// A small parameter (repeatable); without it eps, and letters that alone stand before a wave or the velocity
+    #[arg(long, value_name = "NAME")]
+    small: Vec<String>,
+    /// A value, exact (1.5, 3/2, pi/3): asks for numbers and verdicts, and is how far a picture or a table goes; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Points of a curve of a chart.
+const STEPS: u32 = 60;
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = problem(&arguments.problem)?;
+    let formula = formula(&problem, Reader::Stability)?;
+    let oscillator = oscillator(&formula, None)?;
+    let usual = Options::default();
+    let order = match formula.order {
+        None => None,
+        Some(Order::Power(order)) => Some(order),
+        Some(Order::Degrees(_)) => {
+            return Err(Failure::Refused(
+                "`order` of a transition curve is a whole number: degrees L,M are those of pade".to_owned(),
+            ));
+        }
+    };
+    let options = Options {
+        order: arguments.order.or(order).unwrap_or(usual.order),
+        tongues: arguments.tongues.map_or(usual.tongues, |tongues| tongues as usize),
+        small: match arguments.small.is_empty() {
+            true => formula.small.map(str::to_owned).into_iter().collect(),
+            false => arguments.small.clone(),
+        },
+        solve_for: arguments.solve_for.clone(),
+    };
+    let curves = hill::transition_curves(&oscillator, &options).map_err(|error| refused(&oscillator.typed, &error))?;
+    let values = exact_values(&arguments.at, &problem)?;
+    let asked = values.is_some() || arguments.common.tolerance.is_some();
+    let values = values.unwrap_or_default();
+    let tolerance = tolerance(&arguments.common);
+    let judged: Option<Vec<JudgedCurve>> = match asked {
+        false => None,
+        true => Some(hill::judge(&curves, &values, tolerance).map_err(|error| unjudged(&error))?),
+    };
+    let report = StabilityReport {
+        curves: &curves,
+        judged: judged.as_deref().map(|judged| (&values, judged)),
+        tolerance,
+    };
+    let charted = arguments.common.plot.is_some() || arguments.common.format == Format::Csv;
+    let charts = match charted {
+        false => None,
+        true => Some(charts(&curves, &values)?),
+    };
+    let text = match (arguments.common.format, &charts) {
+        (Format::Text, _) => text::document(&report::stability(&report), width(arguments.common.output.as_deref())),
+        (Format::Latex, _) => latex::document(&report::stability(&report)),
+        (Format::Json, _) => json_text(&json::stability(&report))?,
+        (Format::Csv, Some((by, charts))) => stability::csv(&curves, *by, charts),
+        (Format::Csv, None) => super::no_table()?,
+    };
+    let picture = match (&arguments.common.plot, &charts) {
+        (Some(path), Some((by, charts))) => Some((path.clone(), picture(&curves, *by, charts, &values))),
+        _ => None,
+    };
+    Ok(Outcome {
+        result: whole(text),
+        picture,
+        note: None,
+        verdict: report.passes().map(Verdict::of),
+        partial: false,
+    })
+}
+
+/// A refusal, with the term that it names shown in the equation.
+fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
+    let place = error.term().and_then(|term| typed.place(term));
+    let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
+    Failure::refused(&format!("{error}{shown}"), error.help())
+}
+
+fn unjudged(error: &TruthError) -> Failure {
+    match error {
+        TruthError::Unknown(..) => Failure::Usage(format!("--at: {error}")),
+        TruthError::Missing(_) => Failure::refused(error, Some("give it with --at NAME=VALUE".to_owned())),
+        TruthError::NotConfirmed(_) | TruthError::Coefficients => {
+            Failure::refused(error, Some("take smaller values, or fewer tongues".to_owned()))
+        }
+        _ => Failure::refused(error, None),
+    }
+}
+
+/// The curves from nothing small up to the value of the first small parameter that has one.
+fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Chart>), Failure> {
+    let sizes = curves.small.iter().filter_map(|name| Some((*name, values.get(*name)?)));
+    let eps = Symbol::new("eps");
+    let Some((by, upto)) = sizes.max_by_key(|(name, _)| *name == eps) else {
+        return Err(Failure::Refused(format!(
+            "a picture or a table of the curves needs to know how far it goes\n  help: --at {}=1",
+            curves.small.first().map_or("eps", |name| name.name())
+        )));
+    };
+    let charts = hill::chart(curves, &values.numbers(), by, upto, STEPS).map_err(|error| unjudged(&error))?;
+    Ok((by, charts))
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &TransitionCurves, _: Symbol, _: &[Chart], _: &Values) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(curves: &TransitionCurves, by: Symbol, charts: &[Chart], values: &Values) -> Result<String, Failure> {
+    let others = values.iter().filter(|(name, _)| *name != by);
+    let others: Vec<String> = others.map(|(name, value)| format!("; {name} = {value}")).collect();
+    let caption = format!("{}{}", curves.equation, others.concat());
+    stability::picture(curves, by, charts, &caption).map_err(|error| Failure::refused(&error, None))
+}

@@ -1,0 +1,87 @@
+//! Transition curves as comma-separated values and as a picture; text and LaTeX by their `document`.
+
+use std::fmt::Write as _;
+
+#[cfg(feature = "plot")]
+use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use crate::hill::{Chart, TransitionCurves};
+use crate::symbol::Symbol;
+
+/// Name of the curve, the small parameter, the unknown by the formula and in truth; an empty cell where there is none.
+///
+/// ```
+/// use lindstedt::Oscillator;
+/// use lindstedt::hill::{Options, chart, transition_curves};
+///
+/// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
+/// let curves = transition_curves(&mathieu, &Options { tongues: 1, ..Options::default() })?;
+/// let chart = chart(&curves, &Default::default(), "eps".into(), 0.5, 10)?;
+/// let table = lindstedt::export::stability::csv(&curves, "eps".into(), &chart);
+/// assert_eq!(table.lines().count(), 1 + 3 * 11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn csv(curves: &TransitionCurves, by: Symbol, charts: &[Chart]) -> String {
+    let unknown = curves.unknown.symbol();
+    let mut text = format!("curve,{by},{unknown}_formula,{unknown}_true\n");
+    for chart in charts {
+        let mut sizes: Vec<f64> = chart.formula.iter().chain(&chart.truth).map(|point| point.1).collect();
+        sizes.sort_by(f64::total_cmp);
+        sizes.dedup();
+        let at = |points: &[(f64, f64)], size: f64| {
+            let point = points.iter().find(|point| point.1 == size);
+            point.map_or(String::new(), |point| point.0.to_string())
+        };
+        for size in sizes {
+            let name = &curves.curves[chart.curve].name;
+            let _ = writeln!(
+                text,
+                "{name},{size},{},{}",
+                at(&chart.formula, size),
+                at(&chart.truth, size)
+            );
+        }
+    }
+    text
+}
+
+/// The chart of Ince and Strutt: the small parameter against the unknown, every curve over the truth.
+///
+/// # Errors
+/// As [`figure`].
+#[cfg(feature = "plot")]
+pub fn picture(curves: &TransitionCurves, by: Symbol, charts: &[Chart], caption: &str) -> Result<String, FigureError> {
+    let unknown = curves.unknown.symbol().to_string();
+    let all = || charts.iter().flat_map(|chart| &chart.truth).map(|point| point.0);
+    let (least, most) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+        (least.min(value), most.max(value))
+    });
+    // A formula far beyond its range would leave nothing of the rest to be seen.
+    let margin = 0.1 * (most - least);
+    let formulas: Vec<Vec<(f64, f64)>> = charts
+        .iter()
+        .map(|chart| {
+            let near = |point: &&(f64, f64)| point.0 >= least - margin && point.0 <= most + margin;
+            chart.formula.iter().take_while(near).copied().collect()
+        })
+        .collect();
+    let drawn = |points: &[(f64, f64)]| points.len() > 1;
+    let truths = charts.iter().filter(|chart| drawn(&chart.truth)).map(|chart| Curve {
+        label: "true motion",
+        points: &chart.truth,
+        style: CurveStyle::RUNGE_KUTTA,
+    });
+    let label = format!("order {}", curves.order);
+    let formulas = formulas.iter().filter(|points| drawn(points)).map(|points| Curve {
+        label: &label,
+        points,
+        style: CurveStyle::FORMULA,
+    });
+    let panel = Panel {
+        title: "Transition curves: rest is unstable inside the tongues",
+        x_label: &unknown,
+        y_label: by.name(),
+        curves: truths.chain(formulas).collect(),
+        ..Panel::default()
+    };
+    figure(&[panel], caption)
+}

@@ -1,0 +1,429 @@
+//! The transition curves of one tongue, exact, order by order.
+//!
+//! On them a motion of the period 4 pi/Omega exists, `x(phi)` with `phi = Omega t/2`, so that the mean stiffness `lambda` is an
+//! eigenvalue. What belongs to the harmonic n is split off (C. Bloch, Nucl. Phys. 6 (1958) 329): with `X` the motions that begin as
+//! `cos n phi` and `sin n phi`, and have nothing else of harmonic n,
+//!
+//! ```text
+//! lambda x = -(Omega^2/4) x_phiphi - (Omega/2) c x_phi - p x =: (M0 + V) x
+//! (M0 + V) X = X H,   H_0 = n^2 Omega^2/4,   H_j = [sum V_i X_(j-i)]_n
+//! (k^2 - n^2) Omega^2/4 [X_j]_k = [sum_(i>=1) X_(j-i) H_i - sum_(i>=1) V_i X_(j-i)]_k,   k /= n
+//! ```
+//!
+//! The eigenvalues of the two by two matrix H are the two curves: its diagonal where it has no other entries, and otherwise
+//! `C -+ sqrt(Q)`, `C = tr H/2`, `Q = C^2 - det H`. C and Q are power series in what is small even where the curves are none, as
+//! at the tip of a tongue that damping has drawn back.
+
+use num_traits::{One, Zero};
+
+use super::periodic::fraction;
+use super::{Hill, HillError, Unknown};
+use crate::exact::rational::ratio;
+use crate::exact::{Monomial, POLYNOMIALS, Polynomial, Polynomials, Rational};
+use crate::series::FourierSeries;
+use crate::symbol::Symbol;
+
+/// One curve: `middle`, or `middle -+ sqrt(under_root)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransitionCurve {
+    /// `a1` and `b1` for a motion of cosines and one of sines; `lower1` and `upper1` where it is of both.
+    pub name: String,
+    /// n: on the curve a motion of the frequency n*Omega/2 exists.
+    pub tongue: usize,
+    /// The curve, or the middle of the two.
+    pub middle: Polynomial,
+    /// What stands under the root; none where the curve is a power series.
+    pub under_root: Option<Polynomial>,
+    /// Whether the root is added.
+    pub upper: bool,
+}
+
+/// The curves of tongue n.
+pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<TransitionCurve>, HillError> {
+    let matrix = effective_matrix(hill, tongue, order);
+    let power = Powers { hill, order };
+    let named = |letter: &str, middle: Polynomial| TransitionCurve {
+        name: format!("{letter}{tongue}"),
+        tongue,
+        middle,
+        under_root: None,
+        upper: false,
+    };
+    let [[cosine, upper_right], [lower_left, sine]] = &matrix;
+    if tongue == 0 {
+        return Ok(vec![named("a", power.solved(cosine, tongue))]);
+    }
+    if upper_right.is_zero() && lower_left.is_zero() {
+        let mut pair = vec![
+            named("a", power.solved(cosine, tongue)),
+            named("b", power.solved(sine, tongue)),
+        ];
+        // Which is the upper one may show beyond the order only.
+        let further = match pair[0].middle == pair[1].middle {
+            false => None,
+            true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
+        };
+        let [[cosine, _], [_, sine]] = further.as_ref().unwrap_or(&matrix);
+        if power.is_above(cosine, sine) != power.falls() {
+            pair.swap(0, 1);
+        }
+        pair[1].upper = true;
+        return Ok(pair);
+    }
+    let middle = cosine.sum_with(sine).scaled(&ratio(1, 2));
+    let difference = cosine.less(sine).scaled(&ratio(1, 2));
+    let least = [&difference, upper_right, lower_left]
+        .into_iter()
+        .filter_map(|entry| power.least_degree(entry));
+    let known = i64::from(order) + least.min().unwrap_or(0);
+    let root = difference
+        .product(&difference)
+        .sum_with(&upper_right.product(lower_left));
+    let root = power.cut(&root, known);
+    let (middle, root) = match hill.unknown {
+        Unknown::Stiffness(_) => {
+            let factor = hill.factor.recip();
+            let middle = middle.less(&hill.constant).scaled(&factor);
+            (middle, root.scaled(&(&factor * &factor)))
+        }
+        Unknown::Frequency(name) => power.frequency_squared(&middle, &root, tongue, name),
+    };
+    let pair = |upper: bool| {
+        let name = format!("{}{tongue}", if upper { "upper" } else { "lower" });
+        match power.square_root(&root) {
+            Some(root) => TransitionCurve {
+                name,
+                tongue,
+                middle: power.cut(
+                    &if upper {
+                        middle.sum_with(&root)
+                    } else {
+                        middle.less(&root)
+                    },
+                    order.into(),
+                ),
+                under_root: None,
+                upper,
+            },
+            None => TransitionCurve {
+                name,
+                tongue,
+                middle: middle.clone(),
+                under_root: Some(root.clone()),
+                upper,
+            },
+        }
+    };
+    Ok(vec![pair(false), pair(true)])
+}
+
+/// H, to the order in what is small; for tongue 0 its first entry alone.
+fn effective_matrix(hill: &Hill, tongue: usize, order: u32) -> [[Polynomial; 2]; 2] {
+    let frequency = hill.frequency.polynomial();
+    let quarter = frequency.product(&frequency).scaled(&ratio(1, 4));
+    let constant = |value: Polynomial| FourierSeries::constant(POLYNOMIALS, value);
+    let half = constant(frequency.scaled(&ratio(1, 2)));
+    // 4/Omega^2
+    let inverse = Polynomial::term(
+        hill.frequency.unit.power(-2),
+        ratio(4, 1) / (&hill.frequency.number * &hill.frequency.number),
+    );
+    let columns: &[usize] = if tongue == 0 { &[0] } else { &[0, 1] };
+    let mut waves: Vec<Vec<FourierSeries<Polynomials>>> = vec![
+        columns
+            .iter()
+            .map(|column| match column {
+                0 => FourierSeries::cos(POLYNOMIALS, tongue),
+                _ => FourierSeries::sin(POLYNOMIALS, tongue),
+            })
+            .collect(),
+    ];
+    let at_rest = quarter.scaled(&fraction(tongue * tongue, 1));
+    let zero = || {
+        [
+            [Polynomial::zero(), Polynomial::zero()],
+            [Polynomial::zero(), Polynomial::zero()],
+        ]
+    };
+    let mut orders = vec![zero()];
+    orders[0][0][0] = at_rest.clone();
+    orders[0][1][1] = at_rest;
+    for j in 1..=order as usize {
+        let mut matrix = zero();
+        let mut next = Vec::new();
+        for column in columns {
+            let mut image = FourierSeries::zero(POLYNOMIALS);
+            for (i, [stiffness, damping]) in hill.graded.iter().enumerate().take(j) {
+                let wave = &waves[j - i - 1][*column];
+                image = image.difference(&stiffness.product(wave));
+                image = image.difference(&half.product(&damping.product(&wave.derivative())));
+            }
+            let entry = |k: usize| (image.cosine(k).constant_term(), image.sine(k).constant_term());
+            let (cosine, sine) = entry(tongue);
+            matrix[0][*column] = cosine;
+            matrix[1][*column] = sine;
+            let mut rest = image.times(-1);
+            for i in 1..j {
+                for (row, wave) in waves[j - i].iter().enumerate() {
+                    rest = rest.sum(&wave.product(&constant(orders[i][row][*column].clone())));
+                }
+            }
+            let divided = |part: Polynomial, k: usize| match k == tongue {
+                true => Polynomial::zero(),
+                false => {
+                    let squares = (k * k) as i64 - (tongue * tongue) as i64;
+                    part.product(&inverse).scaled(&ratio(1, squares))
+                }
+            };
+            let highest = rest.highest_harmonic();
+            let cosines = (0..=highest).map(|k| divided(rest.cosine(k).constant_term(), k));
+            let sines = (0..=highest).map(|k| divided(rest.sine(k).constant_term(), k));
+            next.push(FourierSeries::from_parts(
+                POLYNOMIALS,
+                cosines.collect(),
+                sines.collect(),
+            ));
+        }
+        waves.push(next);
+        orders.push(matrix);
+    }
+    let mut sum = zero();
+    for matrix in &orders {
+        for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            sum[row][column].accumulate(&matrix[row][column]);
+        }
+    }
+    sum
+}
+
+/// Sums, differences and multiples, each a new polynomial.
+trait Combined {
+    fn sum_with(&self, other: &Self) -> Self;
+    fn less(&self, other: &Self) -> Self;
+    fn scaled(&self, factor: &Rational) -> Self;
+}
+
+impl Combined for Polynomial {
+    fn sum_with(&self, other: &Self) -> Self {
+        let mut sum = self.clone();
+        sum.accumulate(other);
+        sum
+    }
+
+    fn less(&self, other: &Self) -> Self {
+        self.sum_with(&other.scaled(&ratio(-1, 1)))
+    }
+
+    fn scaled(&self, factor: &Rational) -> Self {
+        self.product(&Self::constant(factor.clone()))
+    }
+}
+
+/// Power series in what is small, cut after an order.
+struct Powers<'a> {
+    hill: &'a Hill,
+    order: u32,
+}
+
+impl Powers<'_> {
+    fn degree(&self, monomial: &Monomial) -> i64 {
+        self.hill
+            .small
+            .iter()
+            .map(|name| i64::from(monomial.exponent(*name)))
+            .sum()
+    }
+
+    fn least_degree(&self, polynomial: &Polynomial) -> Option<i64> {
+        polynomial.terms().map(|(monomial, _)| self.degree(monomial)).min()
+    }
+
+    fn kept(&self, polynomial: &Polynomial, keep: impl Fn(i64) -> bool) -> Polynomial {
+        let mut kept = Polynomial::zero();
+        for (monomial, number) in polynomial.terms().filter(|term| keep(self.degree(term.0))) {
+            kept.add_term(monomial.clone(), number.clone());
+        }
+        kept
+    }
+
+    fn cut(&self, polynomial: &Polynomial, highest: i64) -> Polynomial {
+        self.kept(polynomial, |degree| degree <= highest)
+    }
+
+    /// Whether the first of two curves is the upper one just above zero of all that is small, other letters being positive.
+    fn is_above(&self, first: &Polynomial, second: &Polynomial) -> bool {
+        let difference = first.less(second);
+        let Some(least) = self.least_degree(&difference) else {
+            return false;
+        };
+        let leading = self.kept(&difference, |degree| degree == least);
+        leading.evaluate(|_| Some(1.0)).is_ok_and(|value| value > 0.0)
+    }
+
+    /// Whether what a curve gives falls where the eigenvalue grows.
+    fn falls(&self) -> bool {
+        match self.hill.unknown {
+            Unknown::Stiffness(_) => self.hill.factor < Rational::zero(),
+            // The frequency has to be lower for the eigenvalue to be the mean stiffness still.
+            Unknown::Frequency(_) => true,
+        }
+    }
+
+    /// The curve on which the mean stiffness is `eigenvalue`.
+    fn solved(&self, eigenvalue: &Polynomial, tongue: usize) -> Polynomial {
+        match self.hill.unknown {
+            Unknown::Stiffness(_) => eigenvalue.less(&self.hill.constant).scaled(&self.hill.factor.recip()),
+            Unknown::Frequency(name) => {
+                // constant = n^2 w/4 + rest(w): from the right side of the order before.
+                let scale = self.first_square(tongue);
+                let mut square = scale.product(&self.hill.constant);
+                let rest = self.kept(eigenvalue, |degree| degree > 0);
+                for _ in 0..self.order {
+                    let rest = self.with_square(&rest, name, &square);
+                    square = self.cut(&scale.product(&self.hill.constant.less(&rest)), self.order.into());
+                }
+                square
+            }
+        }
+    }
+
+    /// `w/lambda` where nothing is small: `4/(n^2 q^2)` for the frequency `q*Omega`.
+    fn first_square(&self, tongue: usize) -> Polynomial {
+        let number = &self.hill.frequency.number;
+        Polynomial::constant(ratio(4, 1) / (fraction(tongue * tongue, 1) * number * number))
+    }
+
+    /// A polynomial in even powers, of either sign, of `name`, with a power series in place of its square.
+    fn with_square(&self, polynomial: &Polynomial, name: Symbol, square: &Polynomial) -> Polynomial {
+        let mut powers: std::collections::BTreeMap<i32, Polynomial> = std::collections::BTreeMap::new();
+        let mut sum = Polynomial::zero();
+        for (monomial, number) in polynomial.terms() {
+            let exponent = monomial.exponent(name) / 2;
+            let power = powers.entry(exponent).or_insert_with(|| self.power(square, exponent));
+            let term = Polynomial::term(monomial.without(name), number.clone());
+            sum.accumulate(&self.cut(&term.product(power), i64::from(self.order) + 2));
+        }
+        sum
+    }
+
+    /// A whole power of a series that begins with a single term.
+    fn power(&self, series: &Polynomial, exponent: i32) -> Polynomial {
+        let highest = i64::from(self.order) + 2;
+        let one = Polynomial::constant(Rational::one());
+        let base = match exponent < 0 {
+            false => series.clone(),
+            true => {
+                // 1/(s (1 + u)) = (1 - u + u^2 - ...)/s
+                let first = self.kept(series, |degree| degree == 0);
+                let Some(inverse) = first
+                    .single_term()
+                    .map(|(monomial, number)| Polynomial::term(monomial.power(-1), number.recip()))
+                else {
+                    return Polynomial::zero();
+                };
+                let rest = series.less(&first).product(&inverse).scaled(&ratio(-1, 1));
+                let mut sum = one.clone();
+                for _ in 0..=self.order + 2 {
+                    sum = self.cut(&one.sum_with(&rest.product(&sum)), highest);
+                }
+                sum.product(&inverse)
+            }
+        };
+        (0..exponent.unsigned_abs()).fold(one, |power, _| self.cut(&power.product(&base), highest))
+    }
+
+    /// The root of a power series whose least part is the square of a single term.
+    fn square_root(&self, series: &Polynomial) -> Option<Polynomial> {
+        let Some(least) = self.least_degree(series) else {
+            return Some(Polynomial::zero());
+        };
+        let first = self.kept(series, |degree| degree == least);
+        let root = first.single_term_root()?;
+        let (monomial, number) = root.single_term()?;
+        let inverse = Polynomial::term(monomial.power(-1), number.recip());
+        // r + h with 2 r h + h^2 = rest.
+        let rest = series.less(&first);
+        let mut correction = Polynomial::zero();
+        for _ in 0..=self.order {
+            let right = rest
+                .less(&correction.product(&correction))
+                .product(&inverse)
+                .scaled(&ratio(1, 2));
+            correction = self.cut(&right, self.order.into());
+        }
+        let whole = correction
+            .terms()
+            .all(|(monomial, _)| self.hill.small.iter().all(|name| monomial.exponent(*name) >= 0));
+        whole.then(|| root.sum_with(&correction))
+    }
+
+    /// Middle and half distance squared of `w = Omega^2` from those of the eigenvalues at a given w: Weierstrass's polynomial
+    /// `v^2 + b v + e`, `v = w - w_0`, of `F(w) = (lambda - C(w))^2 - Q(w)`, which has the two roots that vanish with what is small.
+    /// Dividing `v^2 = q F + r` gives it: `E q = 1 - hi(q lo(F))`, where `F = lo(F) + v^2 E` and lo is of degree one in v.
+    fn frequency_squared(
+        &self,
+        middle: &Polynomial,
+        root: &Polynomial,
+        tongue: usize,
+        name: Symbol,
+    ) -> (Polynomial, Polynomial) {
+        let v = crate::symbol::fresh("v", &[name]);
+        let first = self.first_square(tongue).product(&self.hill.constant);
+        // v counts as small.
+        let mut small = self.hill.small.clone();
+        small.push(v);
+        let extended = Hill {
+            small,
+            graded: vec![],
+            unknown: self.hill.unknown,
+            factor: self.hill.factor.clone(),
+            constant: self.hill.constant.clone(),
+            frequency: self.hill.frequency.clone(),
+        };
+        let highest = i64::from(self.order) + 2;
+        let power = Powers {
+            hill: &extended,
+            order: self.order,
+        };
+        let square = first.sum_with(&Polynomial::symbol(v));
+        let distance = self.hill.constant.less(&power.with_square(middle, name, &square));
+        let function = distance
+            .product(&distance)
+            .less(&power.with_square(root, name, &square));
+        let function = power.cut(&function, highest);
+        let split = |polynomial: &Polynomial| {
+            let (mut low, mut high) = (Polynomial::zero(), Polynomial::zero());
+            for (monomial, number) in polynomial.terms() {
+                match monomial.exponent(v) < 2 {
+                    true => low.add_term(monomial.clone(), number.clone()),
+                    false => high.add_term(monomial.product(&Monomial::power_of(v, -2)), number.clone()),
+                }
+            }
+            [low, high]
+        };
+        let [low, high] = split(&function);
+        let unit = power.power(&high, -1);
+        let one = Polynomial::constant(Rational::one());
+        let mut quotient = unit.clone();
+        for _ in 0..=self.order + 2 {
+            let [_, above] = split(&quotient.product(&low));
+            quotient = power.cut(&unit.product(&one.less(&above)), highest);
+        }
+        // v^2 = q F + r
+        let v_squared = Polynomial::term(Monomial::power_of(v, 2), Rational::one());
+        let [remainder, _] = split(&power.cut(&v_squared.less(&quotient.product(&function)), highest));
+        let at = |exponent: i32| {
+            let mut part = Polynomial::zero();
+            for (monomial, number) in remainder.terms().filter(|term| term.0.exponent(v) == exponent) {
+                part.add_term(monomial.without(v), number.clone());
+            }
+            part
+        };
+        let half = at(1).scaled(&ratio(1, 2));
+        let under_root = half.product(&half).sum_with(&at(0));
+        (
+            self.cut(&first.sum_with(&half), self.order.into()),
+            self.cut(&under_root, i64::from(self.order) + 1),
+        )
+    }
+}

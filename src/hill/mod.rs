@@ -1,0 +1,532 @@
+//! Hill's equation: linear, with coefficients that are periodic in time, such as Mathieu's.
+//!
+//! References: A. H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 5; W. Magnus and S. Winkler, *Hill's
+//! Equation*, Wiley 1966; M. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, chapter 20, for the names a_n and b_n.
+//!
+//! ```text
+//! x'' + c(t) x' + (r delta + p(t)) x = 0,   c, p of the period T = 2 pi/Omega, small with eps
+//! ```
+//!
+//! In comes an [`Oscillator`] of this form; out go its transition curves `delta(eps)`, exact to an order: there a motion of period T or 2 T
+//! exists, and between two of them that belong together rest is unstable. They are judged by Floquet's multipliers of the equation.
+
+mod curves;
+mod periodic;
+mod truth;
+
+use std::collections::BTreeSet;
+
+use num_traits::{One, Zero};
+use thiserror::Error;
+
+use crate::exact::rational::ratio;
+use crate::exact::{Monomial, POLYNOMIALS, Polynomial, Polynomials, Rational};
+use crate::expr::{Equation, Expr, ExprError};
+use crate::oscillator::Oscillator;
+use crate::series::FourierSeries;
+use crate::solution::Sum;
+use crate::symbol::Symbol;
+
+pub use curves::TransitionCurve;
+pub use periodic::Frequency;
+pub use truth::{Chart, JudgedCurve, TruthError, chart, judge};
+
+/// The highest order that is derived.
+pub const HIGHEST_ORDER: u32 = 60;
+
+/// The most tongues that are derived, beside that of number 0.
+pub const MOST_TONGUES: usize = 20;
+
+/// What is wanted of an equation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Highest power of the small parameters, all together, that is kept.
+    pub order: u32,
+    /// The tongues 0, 1, ... up to this one.
+    pub tongues: usize,
+    /// The small parameters, where they are named.
+    pub small: Vec<String>,
+    /// What the curves are solved for, where it is named: the mean stiffness or the frequency.
+    pub solve_for: Option<String>,
+}
+
+impl Default for Options {
+    /// Order 6, the tongues 0 to 3.
+    fn default() -> Self {
+        Self {
+            order: 6,
+            tongues: 3,
+            small: vec![],
+            solve_for: None,
+        }
+    }
+}
+
+/// What a curve gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// The mean stiffness, in this letter.
+    Stiffness(Symbol),
+    /// The square of the frequency, whose letter this is.
+    Frequency(Symbol),
+}
+
+impl Unknown {
+    /// The letter.
+    pub fn symbol(self) -> Symbol {
+        match self {
+            Self::Stiffness(name) | Self::Frequency(name) => name,
+        }
+    }
+
+    /// What a curve gives: `delta`, `Omega^2`.
+    pub fn given(self) -> Polynomial {
+        match self {
+            Self::Stiffness(name) => Polynomial::symbol(name),
+            Self::Frequency(name) => Polynomial::term(Monomial::power_of(name, 2), Rational::one()),
+        }
+    }
+}
+
+/// The curves of an equation on which it changes between stable and unstable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransitionCurves {
+    /// The equation, as it was understood.
+    pub equation: Equation,
+    /// What the curves give.
+    pub unknown: Unknown,
+    /// What is small; the order counts their powers together.
+    pub small: Vec<Symbol>,
+    /// The highest power kept.
+    pub order: u32,
+    /// The letters of the equation.
+    pub parameters: Vec<Symbol>,
+    /// The frequency of the coefficients.
+    pub frequency: Frequency,
+    /// `c(t)`.
+    pub damping: Expr,
+    /// All that stands before the coordinate.
+    pub stiffness: Expr,
+    /// The curves, those of tongue 0 first, the lower one of a pair before the upper one where all that is small is positive.
+    pub curves: Vec<TransitionCurve>,
+}
+
+impl TransitionCurves {
+    /// A polynomial of a curve, lowest order in what is small first.
+    pub fn ordered(&self, polynomial: &Polynomial) -> Sum {
+        Sum::new(polynomial, false, |monomial| {
+            self.small.iter().map(|name| monomial.exponent(*name)).sum()
+        })
+    }
+
+    /// T, the period of the coefficients.
+    ///
+    /// # Errors
+    /// An expression beyond all limits.
+    pub fn period(&self) -> Result<Expr, ExprError> {
+        let turn = &Expr::number(ratio(2, 1)) * &Expr::pi();
+        Expr::divide(&turn, &Expr::from(&self.frequency.polynomial()))
+    }
+
+    /// The names of what is small: `eps, zeta`.
+    pub fn small_in_words(&self) -> String {
+        let names: Vec<&str> = self.small.iter().map(|name| name.name()).collect();
+        names.join(", ")
+    }
+}
+
+impl TransitionCurve {
+    /// The right side of the curve.
+    ///
+    /// # Errors
+    /// An expression beyond all limits.
+    pub fn expression(&self) -> Result<Expr, ExprError> {
+        let middle = Expr::from(&self.middle);
+        let Some(root) = &self.under_root else {
+            return Ok(middle);
+        };
+        let root = Expr::from(root).sqrt()?;
+        Ok(if self.upper { &middle + &root } else { &middle - &root })
+    }
+}
+
+/// Why there are no transition curves.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum HillError {
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// A term that is not linear in the coordinate.
+    #[error("the stability of rest is that of the linear equation, but the term `{0}` is not linear")]
+    NotLinear(String),
+    /// A term without the coordinate.
+    #[error("the term `{0}` drives the motion and has no part in the stability of rest")]
+    Drive(String),
+    /// A coefficient that is no finite Fourier series.
+    #[error(
+        "`{0}` is no sum of waves cos(m*Omega*t), sin(m*Omega*t) of one period, with products of letters before them"
+    )]
+    NotPeriodic(String),
+    /// No coefficient varies.
+    #[error("no coefficient depends on the time, so there are no transition curves")]
+    Constant,
+    /// Nothing to solve for.
+    #[error("there is no letter to solve for: neither the mean stiffness nor the frequency is one")]
+    NoUnknown,
+    /// Several letters to solve for.
+    #[error("the mean stiffness has the letters {0}: which of them do the curves give?")]
+    SeveralUnknowns(String),
+    /// A letter that cannot be solved for.
+    #[error("`{0}` is neither a letter of the mean stiffness alone nor the frequency")]
+    NotAnUnknown(String),
+    /// A mean stiffness that is zero where the frequency is asked for.
+    #[error("the mean stiffness is `{0}`, and the frequency is to be found beside a single term of it")]
+    Stiffness(String),
+    /// A coefficient that is a number.
+    #[error("the coefficient of `{0}` is a number, and the expansion is in a small letter")]
+    NumberIsSmall(String),
+    /// Which letters are small does not follow.
+    #[error("which of {0} are small?")]
+    SeveralSmall(String),
+    /// A letter that is small by request and is none.
+    #[error("`{0}` is no parameter of the equation")]
+    UnknownSmall(String),
+    /// A term that does not vanish with what is small.
+    #[error("the term `{0}` does not vanish with {1}")]
+    NotSmall(String, String),
+    /// An order beyond the limits.
+    #[error("the order is a whole number from 1 to {HIGHEST_ORDER}, the tongues are 0 to {MOST_TONGUES}")]
+    Limits,
+}
+
+impl HillError {
+    /// The term it names, as it was typed.
+    pub fn term(&self) -> Option<&str> {
+        match self {
+            Self::NotLinear(term) | Self::Drive(term) | Self::NotPeriodic(term) | Self::NumberIsSmall(term) => {
+                Some(term)
+            }
+            _ => None,
+        }
+    }
+
+    /// What to try instead.
+    pub fn help(&self) -> Option<String> {
+        let words = match self {
+            Self::NotLinear(_) => "leave it out: near rest it is smaller than the others",
+            Self::Drive(_) => "leave it out",
+            Self::NotPeriodic(_) => "write the coefficient as in `(delta + eps*cos(2*t))*x`",
+            Self::Constant => "for a constant stiffness: `lindstedt derive`",
+            Self::NoUnknown => {
+                "write the equation with a letter, as in `x'' + (delta + eps*cos(2*t))*x` or with cos(Omega*t)"
+            }
+            Self::SeveralUnknowns(_) | Self::NotAnUnknown(_) => "choose one with `--for NAME`",
+            Self::Stiffness(_) => "choose a letter of the mean stiffness with `--for NAME`",
+            Self::NumberIsSmall(_) => "write `eps*cos(2*t)` and give its number with `--at eps=0.2`",
+            Self::SeveralSmall(_) | Self::UnknownSmall(_) | Self::NotSmall(..) => {
+                "name those that are small with `--small NAME`, repeated"
+            }
+            Self::Expression(_) | Self::Limits => return None,
+        };
+        Some(words.to_owned())
+    }
+}
+
+/// An equation taken apart.
+struct Hill {
+    unknown: Unknown,
+    /// `r`, or zero where the frequency is unknown.
+    factor: Rational,
+    /// What of the mean stiffness is neither the unknown nor small.
+    constant: Polynomial,
+    small: Vec<Symbol>,
+    frequency: Frequency,
+    /// `p` and `c` in `phi = Omega*t/2`, the parts of degree 1, 2, ... in what is small.
+    graded: Vec<[FourierSeries<Polynomials>; 2]>,
+}
+
+/// The transition curves of an equation, exact to an order in what is small.
+///
+/// Costs, for each tongue and order, the products of the coefficients with the orders before.
+///
+/// # Errors
+/// [`HillError`].
+///
+/// ```
+/// use lindstedt::Oscillator;
+/// use lindstedt::hill::{Options, transition_curves};
+///
+/// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
+/// let curves = transition_curves(&mathieu, &Options { order: 2, tongues: 1, ..Options::default() })?;
+/// let formulas: Vec<String> = curves.curves.iter().map(|curve| format!("{}: {}", curve.name, curve.middle)).collect();
+/// assert_eq!(formulas, ["a0: -1/8*eps^2", "a1: 1 - 1/2*eps - 1/32*eps^2", "b1: 1 + 1/2*eps - 1/32*eps^2"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn transition_curves(oscillator: &Oscillator, options: &Options) -> Result<TransitionCurves, HillError> {
+    if options.order == 0 || options.order > HIGHEST_ORDER || options.tongues > MOST_TONGUES {
+        return Err(HillError::Limits);
+    }
+    let [damping, stiffness] = linear_coefficients(oscillator)?;
+    let hill = Hill::of(oscillator, [&damping, &stiffness], options)?;
+    let mut curves = Vec::new();
+    for tongue in 0..=options.tongues {
+        // Without the time no motion of the period 0 has a frequency.
+        if tongue == 0 && matches!(hill.unknown, Unknown::Frequency(_)) {
+            continue;
+        }
+        curves.extend(curves::of_tongue(&hill, tongue, options.order)?);
+    }
+    Ok(TransitionCurves {
+        equation: oscillator.equation(),
+        unknown: hill.unknown,
+        small: hill.small,
+        order: options.order,
+        parameters: oscillator.parameters.clone(),
+        frequency: hill.frequency,
+        damping,
+        stiffness,
+        curves,
+    })
+}
+
+/// `c(t)` and all that stands before `x`.
+fn linear_coefficients(oscillator: &Oscillator) -> Result<[Expr; 2], HillError> {
+    let [x, v] = [oscillator.coordinate, oscillator.velocity()];
+    let force = oscillator.force.expand()?;
+    let damping = force.differentiate(v)?.expand()?;
+    let stiffness = force.differentiate(x)?.expand()?;
+    let bent = |expression: &Expr| expression.contains(x) || expression.contains(v);
+    if bent(&damping) || bent(&stiffness) {
+        let bent_term = |term: &&Expr| {
+            [x, v]
+                .iter()
+                .any(|name| term.differentiate(*name).is_ok_and(|slope| bent(&slope)))
+        };
+        let term = force.terms().iter().find(bent_term).unwrap_or(&force);
+        return Err(HillError::NotLinear(as_typed(
+            oscillator,
+            &|typed| bent_term(&typed),
+            term,
+        )));
+    }
+    let free = |term: &Expr| !term.contains(x) && !term.contains(v);
+    if let Some(term) = force.terms().iter().find(|term| free(term) && !term.is_zero()) {
+        let acceleration = v.derivative();
+        let drives = |typed: &Expr| free(typed) && !typed.contains(acceleration) && !typed.is_zero();
+        return Err(HillError::Drive(as_typed(oscillator, &drives, term)));
+    }
+    Ok([damping, stiffness])
+}
+
+/// The first typed term that answers to `is_meant`; else the term as it was understood.
+fn as_typed(oscillator: &Oscillator, is_meant: &dyn Fn(&Expr) -> bool, term: &Expr) -> String {
+    match oscillator.typed.values().position(|value| is_meant(&value)) {
+        Some(number) => oscillator.typed.quote(&[number]),
+        None => term.to_string(),
+    }
+}
+
+impl Hill {
+    fn of(oscillator: &Oscillator, [damping, stiffness]: [&Expr; 2], options: &Options) -> Result<Self, HillError> {
+        let not_periodic = |part: Expr| {
+            let meant = |typed: &Expr| typed.unique_nodes().any(|node| *node == part);
+            let whole = as_typed(oscillator, &meant, &part);
+            HillError::NotPeriodic(whole)
+        };
+        let time = Symbol::new("t");
+        if !damping.contains(time) && !stiffness.contains(time) {
+            return Err(HillError::Constant);
+        }
+        let frequency = periodic::frequency([damping, stiffness]).map_err(not_periodic)?;
+        let frequency = frequency.ok_or_else(|| {
+            let mut terms = stiffness.terms().iter().chain(damping.terms());
+            let moving = terms.find(|term| term.contains(time));
+            not_periodic(moving.unwrap_or(stiffness).clone())
+        })?;
+        let damping = periodic::series(damping, &frequency).map_err(not_periodic)?;
+        let stiffness = periodic::series(stiffness, &frequency).map_err(not_periodic)?;
+        if periodic::is_constant(&damping) && periodic::is_constant(&stiffness) {
+            return Err(HillError::Constant);
+        }
+        let mean = stiffness.constant_term();
+        let unknown = unknown(&mean, [&damping, &stiffness], &frequency, options.solve_for.as_deref())?;
+        let small = small(oscillator, [&damping, &stiffness], &frequency, options)?;
+        let degree = |monomial: &Monomial| {
+            small
+                .iter()
+                .map(|name| i64::from(monomial.exponent(*name)))
+                .sum::<i64>()
+        };
+        let (mut constant, mut factor) = (Polynomial::zero(), Rational::zero());
+        for (monomial, number) in mean.terms() {
+            match unknown {
+                Unknown::Stiffness(name) if monomial.exponent(name) == 1 => factor = number.clone(),
+                _ if degree(monomial) == 0 => constant.add_term(monomial.clone(), number.clone()),
+                _ => {}
+            }
+        }
+        if matches!(unknown, Unknown::Frequency(_)) && constant.single_term().is_none() {
+            return Err(HillError::Stiffness(constant.to_string()));
+        }
+        let kept = Polynomial::term(Monomial::power_of(unknown.symbol(), 1), factor.clone());
+        let kept =
+            FourierSeries::constant(POLYNOMIALS, constant.clone()).sum(&FourierSeries::constant(POLYNOMIALS, kept));
+        let varying = stiffness.difference(&kept);
+        let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
+        let terms = || {
+            varying
+                .numerators()
+                .chain(damping.numerators())
+                .flat_map(Polynomial::terms)
+        };
+        let enters_otherwise = |monomial: &Monomial| small.iter().any(|name| monomial.exponent(*name) < 0);
+        if let Some((monomial, number)) = terms().find(|term| degree(term.0) < 1 || enters_otherwise(term.0)) {
+            let term = Polynomial::term(monomial.clone(), number.clone());
+            return Err(HillError::NotSmall(term.to_string(), names.join(", ")));
+        }
+        let highest = terms().map(|term| degree(term.0)).max().unwrap_or(0);
+        let part = |series: &FourierSeries<Polynomials>, wanted: i64| {
+            series.map(POLYNOMIALS, |polynomial, _| {
+                let mut part = Polynomial::zero();
+                for (monomial, number) in polynomial.terms().filter(|term| degree(term.0) == wanted) {
+                    part.add_term(monomial.clone(), number.clone());
+                }
+                part
+            })
+        };
+        let highest = highest.min(i64::from(options.order));
+        Ok(Self {
+            unknown,
+            factor,
+            constant,
+            graded: (1..=highest)
+                .map(|degree| [part(&varying, degree), part(&damping, degree)])
+                .collect(),
+            small,
+            frequency,
+        })
+    }
+}
+
+/// What the curves give: a letter that stands in the mean stiffness alone, or the frequency.
+fn unknown(
+    mean: &Polynomial,
+    coefficients: [&FourierSeries<Polynomials>; 2],
+    frequency: &Frequency,
+    asked: Option<&str>,
+) -> Result<Unknown, HillError> {
+    let mut seen = std::collections::BTreeMap::<Symbol, usize>::new();
+    let terms = coefficients
+        .iter()
+        .flat_map(|series| series.numerators())
+        .flat_map(Polynomial::terms);
+    for (monomial, _) in terms {
+        for (name, _) in monomial.factors() {
+            *seen.entry(*name).or_default() += 1;
+        }
+    }
+    let alone =
+        |name: &Symbol| seen.get(name) == Some(&1) && frequency.unit.exponent(*name) == 0 && name.name() != "pi";
+    let candidates: Vec<Symbol> = mean
+        .terms()
+        .filter_map(|(monomial, _)| match monomial.factors() {
+            [(name, 1)] => Some(*name),
+            _ => None,
+        })
+        .filter(alone)
+        .collect();
+    let driving = match frequency.unit.factors() {
+        [(name, 1)] if !seen.contains_key(name) => Some(*name),
+        _ => None,
+    };
+    if let Some(asked) = asked {
+        let name = Symbol::new(asked);
+        return match (candidates.contains(&name), driving) {
+            (true, _) => Ok(Unknown::Stiffness(name)),
+            (false, Some(frequency)) if frequency == name => Ok(Unknown::Frequency(name)),
+            _ => Err(HillError::NotAnUnknown(asked.to_owned())),
+        };
+    }
+    let delta = Symbol::new("delta");
+    match (candidates.as_slice(), driving) {
+        ([only], _) => Ok(Unknown::Stiffness(*only)),
+        (several, _) if several.contains(&delta) => Ok(Unknown::Stiffness(delta)),
+        ([], Some(frequency)) => Ok(Unknown::Frequency(frequency)),
+        ([], None) => Err(HillError::NoUnknown),
+        (several, _) => Err(HillError::SeveralUnknowns(listed(several))),
+    }
+}
+
+fn listed(names: &[Symbol]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
+/// What is small: what was named, or `eps` and every letter that alone stands before a wave or the velocity.
+fn small(
+    oscillator: &Oscillator,
+    [damping, stiffness]: [&FourierSeries<Polynomials>; 2],
+    frequency: &Frequency,
+    options: &Options,
+) -> Result<Vec<Symbol>, HillError> {
+    if !options.small.is_empty() {
+        let names = options.small.iter().map(|name| Symbol::new(name));
+        let mut known = Vec::new();
+        for name in names {
+            if !oscillator.parameters.contains(&name) {
+                return Err(HillError::UnknownSmall(name.to_string()));
+            }
+            if !known.contains(&name) {
+                known.push(name);
+            }
+        }
+        return Ok(known);
+    }
+    let waves = stiffness.harmonics().into_iter().filter(|(harmonic, ..)| *harmonic > 0);
+    let before_waves = waves.flat_map(|(_, cosine, sine)| [cosine, sine]);
+    let before_velocity = damping
+        .harmonics()
+        .into_iter()
+        .flat_map(|(_, cosine, sine)| [cosine, sine]);
+    let coefficients: Vec<Polynomial> = before_waves.chain(before_velocity).collect();
+    let letters = |monomial: &Monomial| -> Vec<Symbol> {
+        let names = monomial.factors().iter().map(|factor| factor.0);
+        names
+            .filter(|name| name.name() != "pi" && frequency.unit.exponent(*name) == 0)
+            .collect()
+    };
+    let terms: Vec<(Vec<Symbol>, String)> = coefficients
+        .iter()
+        .flat_map(Polynomial::terms)
+        .map(|(monomial, number)| {
+            let term = Polynomial::term(monomial.clone(), number.clone());
+            (letters(monomial), term.to_string())
+        })
+        .collect();
+    if let Some((_, number)) = terms.iter().find(|(letters, _)| letters.is_empty()) {
+        let whose = |typed: &Expr| typed.contains(Symbol::new("t")) || typed.contains(oscillator.velocity());
+        let term = as_typed(oscillator, &whose, &Expr::symbol("t"));
+        return Err(HillError::NumberIsSmall(match term.as_str() {
+            "t" => number.clone(),
+            _ => term,
+        }));
+    }
+    let mut small = BTreeSet::new();
+    let eps = Symbol::new("eps");
+    if terms.iter().any(|(letters, _)| letters.contains(&eps)) {
+        small.insert(eps);
+    }
+    for (letters, _) in &terms {
+        if let [only] = letters.as_slice() {
+            small.insert(*only);
+        }
+    }
+    if let Some((letters, _)) = terms
+        .iter()
+        .find(|(letters, _)| !letters.iter().any(|name| small.contains(name)))
+    {
+        return Err(HillError::SeveralSmall(listed(letters)));
+    }
+    Ok(small.into_iter().collect())
+}

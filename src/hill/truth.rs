@@ -1,0 +1,401 @@
+//! The judge of transition curves: Floquet's multipliers of the equation as it was typed.
+//!
+//! References: Nayfeh and Mook, section 5.2 (Floquet), 5.3 (Hill's determinant).
+//!
+//! ```text
+//! det(-(D^2 + c D + k) - mu) = 0            mu from Hill's determinant, in numbers, with many harmonics
+//! Phi(T) of x'' + c x' + (k + mu) x = 0     has the multiplier +1 (n even) or -1 (n odd)
+//! ```
+//!
+//! The determinant says which root belongs to which tongue, for real ones come in their order; the multiplier of the integrated motion
+//! confirms it. Nothing is taken from the derivation but which curve is meant.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, Schur, SymmetricEigen};
+use thiserror::Error;
+
+use super::{TransitionCurve, TransitionCurves, Unknown};
+use crate::expr::Expr;
+use crate::numeric::ode::root::find_root;
+use crate::symbol::Symbol;
+use crate::system::{Options, System};
+use crate::values::Values;
+
+/// Harmonics beyond those that the coefficients ask for.
+const SPARE_HARMONICS: usize = 16;
+
+/// The most harmonics of the determinant.
+const MOST_HARMONICS: usize = 120;
+
+/// How far the multiplier may miss its place, in the equation `1 -+ tr Phi + det Phi = 0` over the size of its terms.
+const MULTIPLIER_TOLERANCE: f64 = 1e-6;
+
+/// The imaginary part up to which an eigenvalue counts as real, over the size of the matrix.
+const REAL: f64 = 1e-10;
+
+/// A curve at given values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedCurve {
+    /// Which of the curves.
+    pub curve: usize,
+    /// By the formula; none where it is not real.
+    pub value: Option<f64>,
+    /// In truth; none where the tongue does not reach so far.
+    pub truth: Option<f64>,
+    /// `value/truth - 1`; none where one of them is none or the truth is zero.
+    pub relative_error: Option<f64>,
+    /// Whether the formula is right to the tolerance: both none is right.
+    pub passes: bool,
+}
+
+/// Formula and truth of a curve against the size of what is small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// Which of the curves.
+    pub curve: usize,
+    /// `(unknown, small parameter)` by the formula.
+    pub formula: Vec<(f64, f64)>,
+    /// The same in truth.
+    pub truth: Vec<(f64, f64)>,
+}
+
+/// Why there is no judgement.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum TruthError {
+    /// Letters without a number.
+    #[error("no value for {0}")]
+    Missing(String),
+    /// A value for a letter that does not occur, or that the curves give.
+    #[error("there is a value for `{0}`, which {1}")]
+    Unknown(Symbol, &'static str),
+    /// No positive frequency.
+    #[error("the frequency of the coefficients is {0} there, and must be positive")]
+    Frequency(f64),
+    /// Coefficients that are no numbers, or too large.
+    #[error("the coefficients have no finite value there, or are too large for {MOST_HARMONICS} harmonics")]
+    Coefficients,
+    /// The determinant and the integrated motion do not agree.
+    #[error("no multiplier of the integrated motion confirms the curve {0}: nothing is judged there")]
+    NotConfirmed(String),
+}
+
+/// Every curve at the values, beside the truth.
+///
+/// # Errors
+/// [`TruthError`].
+///
+/// ```
+/// use lindstedt::Oscillator;
+/// use lindstedt::hill::{Options, judge, transition_curves};
+///
+/// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
+/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let judged = judge(&curves, &"eps = 2/5".parse()?, 1e-3)?;
+/// // a_1 and b_1 of Mathieu's equation in the form of Abramowitz and Stegun, q = eps/2.
+/// assert!(judged.iter().all(|curve| curve.passes));
+/// assert!((judged[1].truth.ok_or("a root")? - 0.795_124).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn judge(curves: &TransitionCurves, at: &Values, tolerance: f64) -> Result<Vec<JudgedCurve>, TruthError> {
+    let numbers = at.numbers();
+    let unknown = curves.unknown.symbol();
+    for name in numbers.keys() {
+        if *name == unknown {
+            return Err(TruthError::Unknown(*name, "the curves give"));
+        }
+        if !curves.parameters.contains(name) {
+            return Err(TruthError::Unknown(*name, "does not occur"));
+        }
+    }
+    let missing = |name: &&Symbol| **name != unknown && !numbers.contains_key(*name);
+    let missing: Vec<String> = curves
+        .parameters
+        .iter()
+        .filter(missing)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    if !missing.is_empty() {
+        return Err(TruthError::Missing(missing.join(", ")));
+    }
+    let one = |(index, curve): (usize, &TransitionCurve)| {
+        let value = formula(curves, curve, &numbers);
+        let truth = true_value(curves, curve, &numbers)?;
+        let relative_error = match (value, truth) {
+            (Some(value), Some(truth)) if truth != 0.0 => Some((value - truth) / truth.abs()),
+            _ => None,
+        };
+        let passes = match (value, truth) {
+            (Some(value), Some(truth)) => (value - truth).abs() <= tolerance * truth.abs(),
+            (None, None) => true,
+            _ => false,
+        };
+        Ok(JudgedCurve {
+            curve: index,
+            value,
+            truth,
+            relative_error,
+            passes,
+        })
+    };
+    curves.curves.iter().enumerate().map(one).collect()
+}
+
+/// Every curve from nothing small to `upto` of the small parameter `by`, in equal steps.
+///
+/// # Errors
+/// [`TruthError`].
+pub fn chart(
+    curves: &TransitionCurves,
+    at: &BTreeMap<Symbol, f64>,
+    by: Symbol,
+    upto: f64,
+    steps: u32,
+) -> Result<Vec<Chart>, TruthError> {
+    let mut charts = Vec::new();
+    for (index, curve) in curves.curves.iter().enumerate() {
+        let (mut formulas, mut truths) = (Vec::new(), Vec::new());
+        for step in 0..=steps {
+            let size = upto * f64::from(step) / f64::from(steps);
+            let mut numbers = at.clone();
+            numbers.insert(by, size);
+            formulas.extend(formula(curves, curve, &numbers).map(|value| (value, size)));
+            truths.extend(true_value(curves, curve, &numbers)?.map(|value| (value, size)));
+        }
+        charts.push(Chart {
+            curve: index,
+            formula: formulas,
+            truth: truths,
+        });
+    }
+    Ok(charts)
+}
+
+/// The value that the formula gives: of the frequency, not of its square.
+fn formula(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+    let value_of = |name: Symbol| match name.name() {
+        "pi" => Some(std::f64::consts::PI),
+        _ => numbers.get(&name).copied(),
+    };
+    let middle = curve.middle.evaluate(value_of).ok()?;
+    let root = match &curve.under_root {
+        None => 0.0,
+        Some(root) => root.evaluate(value_of).ok()?.sqrt(),
+    };
+    let value = if curve.upper { middle + root } else { middle - root };
+    let value = match curves.unknown {
+        Unknown::Stiffness(_) => value,
+        Unknown::Frequency(_) => value.sqrt(),
+    };
+    value.is_finite().then_some(value)
+}
+
+/// Where the equation has the motion of the curve in truth; none where its tongue is closed there.
+fn true_value(
+    curves: &TransitionCurves,
+    curve: &TransitionCurve,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Option<f64>, TruthError> {
+    let unknown = curves.unknown.symbol();
+    let with = |value: f64| {
+        let mut numbers = numbers.clone();
+        numbers.insert(unknown, value);
+        numbers
+    };
+    let value = match curves.unknown {
+        Unknown::Stiffness(_) => {
+            // mu = r*delta
+            let slope = curves.stiffness.differentiate(unknown).ok();
+            let slope = slope
+                .and_then(|slope| slope.evaluate(&with(0.0)).ok())
+                .ok_or(TruthError::Coefficients)?;
+            let above = curve.upper == (slope > 0.0);
+            let mu = Coefficients::of(curves, &with(0.0))?.eigenvalue(curve, above)?;
+            mu.is_real.then_some(mu.value / slope)
+        }
+        Unknown::Frequency(_) => frequency_without_remainder(curves, curve, &with)?,
+    };
+    let Some(value) = value else {
+        return Ok(None);
+    };
+    let numbers = with(value);
+    let coefficients = Coefficients::of(curves, &numbers)?;
+    match coefficients.defect(curves, curve, &numbers) {
+        Some(defect) if defect <= MULTIPLIER_TOLERANCE => Ok(Some(value)),
+        _ => Err(TruthError::NotConfirmed(curve.name.clone())),
+    }
+}
+
+/// The frequency at which `mu` is zero: it grows with the frequency.
+fn frequency_without_remainder(
+    curves: &TransitionCurves,
+    curve: &TransitionCurve,
+    with: &dyn Fn(f64) -> BTreeMap<Symbol, f64>,
+) -> Result<Option<f64>, TruthError> {
+    // mu grows with the frequency: the larger of two comes to zero first.
+    let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !curve.upper);
+    // Where nothing varies mu is n^2 Omega^2/4 less the mean stiffness.
+    let unit = Coefficients::of(curves, &with(1.0))?;
+    let count = curve.tongue as f64 * unit.frequency;
+    let mean = unit.mean_stiffness();
+    if !(mean > 0.0 && count > 0.0) {
+        return Ok(None);
+    }
+    let guess = 2.0 * mean.sqrt() / count;
+    // From there on towards where it is zero.
+    const STEPS: i32 = 300;
+    let (mut from, mut before) = (guess, mu(guess)?.value);
+    let ratio = if before < 0.0 { 1.01_f64 } else { 1.0 / 1.01 };
+    for _ in 0..STEPS {
+        let next = from * ratio;
+        let value = mu(next)?.value;
+        if (before < 0.0) != (value < 0.0) {
+            let value = |frequency: f64| mu(frequency).map_or(f64::NAN, |mu| mu.value);
+            let Ok(root) = find_root(value, from, next) else {
+                return Ok(None);
+            };
+            return Ok(mu(root)?.is_real.then_some(root));
+        }
+        (from, before) = (next, value);
+    }
+    Ok(None)
+}
+
+/// An eigenvalue, its real part where it is one of a complex pair.
+struct Eigenvalue {
+    value: f64,
+    is_real: bool,
+}
+
+/// `c` and `k` at equally spaced phases, in numbers.
+struct Coefficients {
+    /// Of the coefficients.
+    frequency: f64,
+    /// `(c, k)` over two periods.
+    samples: Vec<[f64; 2]>,
+    harmonics: usize,
+}
+
+impl Coefficients {
+    fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
+        let value_of = |name: Symbol| numbers.get(&name).copied();
+        let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
+        if !(frequency > 0.0 && frequency.is_finite()) {
+            return Err(TruthError::Frequency(frequency));
+        }
+        let most = curves.curves.iter().map(|curve| curve.tongue).max().unwrap_or(0);
+        let sample = |count: usize| -> Result<Vec<[f64; 2]>, TruthError> {
+            let mut numbers = numbers.clone();
+            let sample = |index: usize| {
+                numbers.insert(Symbol::new("t"), 2.0 * TAU / frequency * index as f64 / count as f64);
+                let value = |expression: &Expr| expression.evaluate(&numbers).ok().filter(|value| value.is_finite());
+                Some([value(&curves.damping)?, value(&curves.stiffness)?])
+            };
+            let samples: Option<Vec<[f64; 2]>> = (0..count).map(sample).collect();
+            samples.ok_or(TruthError::Coefficients)
+        };
+        let rough = sample(64)?;
+        let largest = rough
+            .iter()
+            .fold(0.0_f64, |largest, [c, k]| largest.max(c * c).max(k.abs()));
+        let wanted = most as f64 + SPARE_HARMONICS as f64 + 4.0 * largest.sqrt() / frequency;
+        if wanted > MOST_HARMONICS as f64 {
+            return Err(TruthError::Coefficients);
+        }
+        let harmonics = wanted.ceil() as usize;
+        Ok(Self {
+            frequency,
+            samples: sample((8 * harmonics).max(512))?,
+            harmonics,
+        })
+    }
+
+    fn mean_stiffness(&self) -> f64 {
+        self.samples.iter().map(|sample| sample[1]).sum::<f64>() / self.samples.len() as f64
+    }
+
+    /// `mu` of a curve: the eigenvalues of `-(D^2 + c D + k)` on the motions of its period, in order.
+    /// `above` asks for the larger one of its pair.
+    fn eigenvalue(&self, curve: &TransitionCurve, above: bool) -> Result<Eigenvalue, TruthError> {
+        let odd = curve.tongue % 2;
+        // Normed waves: harmonic, and whether it is a sine.
+        let waves: Vec<(usize, bool)> = (odd..=self.harmonics)
+            .step_by(2)
+            .flat_map(|k| [(k, false), (k, true)])
+            .filter(|wave| *wave != (0, true))
+            .collect();
+        let count = self.samples.len();
+        let half = self.frequency / 2.0;
+        let norm = |k: usize| if k == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+        let mut at_samples = DMatrix::zeros(count, waves.len());
+        let mut images = DMatrix::zeros(count, waves.len());
+        for (row, [c, k]) in self.samples.iter().enumerate() {
+            for (column, (harmonic, is_sine)) in waves.iter().enumerate() {
+                // Reduced in whole numbers, so that the waves are orthogonal to the last digit.
+                let phase = TAU * ((harmonic * row) % count) as f64 / count as f64;
+                let (sine, cosine) = phase.sin_cos();
+                let rate = *harmonic as f64 * half;
+                let (value, slope) = if *is_sine {
+                    (sine, rate * cosine)
+                } else {
+                    (cosine, -rate * sine)
+                };
+                at_samples[(row, column)] = norm(*harmonic) * value;
+                images[(row, column)] = norm(*harmonic) * (rate * rate * value - c * slope - k * value);
+            }
+        }
+        let matrix = at_samples.transpose() * images / count as f64;
+        let size = matrix.norm();
+        if !size.is_finite() {
+            return Err(TruthError::Coefficients);
+        }
+        let undamped = self.samples.iter().all(|[c, _]| *c == 0.0);
+        let mut values: Vec<(f64, f64)> = if undamped {
+            let eigen = SymmetricEigen::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
+            eigen.eigenvalues.iter().map(|value| (*value, 0.0)).collect()
+        } else {
+            let schur = Schur::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
+            schur
+                .complex_eigenvalues()
+                .iter()
+                .map(|value| (value.re, value.im))
+                .collect()
+        };
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // In the even class that of tongue 0 stands before the pairs.
+        let index = match (curve.tongue, above) {
+            (0, _) => 0,
+            (tongue, above) => tongue - 1 + usize::from(above),
+        };
+        let (value, imaginary) = values.get(index).copied().ok_or(TruthError::Coefficients)?;
+        Ok(Eigenvalue {
+            value,
+            is_real: imaginary.abs() <= REAL * size,
+        })
+    }
+
+    /// `|1 -+ tr Phi + det Phi|` of the integrated motion over the size of its terms.
+    fn defect(
+        &self,
+        curves: &TransitionCurves,
+        curve: &TransitionCurve,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Option<f64> {
+        let names = [curves.equation.coordinate, curves.equation.coordinate.derivative()];
+        let [x, v] = names.map(Expr::from);
+        let rate = -(&(&curves.stiffness * &x) + &(&curves.damping * &v));
+        let system = System::new(&names, "t".into(), &[v, rate], numbers).ok()?;
+        let period = TAU / self.frequency;
+        let column = |start: [f64; 2]| {
+            let path = system.solve(0.0, &start, period, &[], &Options::default()).ok()?;
+            path.at(period)
+        };
+        let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);
+        let trace = first.first()? + second.get(1)?;
+        let determinant = first.first()? * second.get(1)? - first.get(1)? * second.first()?;
+        let sign = if curve.tongue.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Some((1.0 - sign * trace + determinant).abs() / (1.0 + trace.abs() + determinant.abs()))
+    }
+}

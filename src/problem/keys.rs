@@ -200,7 +200,11 @@ impl Problem {
     /// [`UnreadKey`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
-        if matches!(reader, Derive | Compare) && self.equation.is_none() && self.lagrangian.is_none() && described {
+        if matches!(reader, Derive | Compare | Stability)
+            && self.equation.is_none()
+            && self.lagrangian.is_none()
+            && described
+        {
             return Err(UnreadKey::NoEquation(reader));
         }
         for (key, readers) in KEYS {

@@ -242,6 +242,8 @@ fn innermost(document: &mut Value) -> &mut Value {
             false => "/equilibria/0",
         },
         Some("lindstedt/motion/1" | "lindstedt/primary/1") => "/final_state",
+        Some("lindstedt/stability/1") => "/curves/0",
+        Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",
         _ => "/entries/0/methods/0",
     };

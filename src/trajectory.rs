@@ -10,6 +10,9 @@
 //! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, holds the only coordinate there is, it
 //! stays until the force on it is more than friction bears.
 
+mod section;
+mod sweep;
+
 use std::collections::BTreeMap;
 
 use num_traits::Zero;
@@ -23,6 +26,9 @@ use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
 use crate::system::{End, Event, Integrator, Options, Path, System, SystemError};
+
+pub use section::{Crossing, MOST_CROSSINGS, Section};
+pub use sweep::{SweptMotion, sweep};
 
 /// What is followed, from where, and how long.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +47,10 @@ pub struct Course {
     pub start: Vec<f64>,
     /// How long it is followed.
     pub duration: f64,
+    /// Where it is looked at, beside the times that are asked for.
+    pub section: Option<Section>,
+    /// From when on: what is before that has not settled.
+    pub after: f64,
     /// Relative error of a step.
     pub tolerance: f64,
     /// Steps after which it ends.
@@ -59,6 +69,7 @@ pub struct Trajectory {
     /// The balance of energy; nothing where there is no energy.
     pub balance: Option<Balance>,
     pieces: Vec<Piece>,
+    crossings: Vec<Crossing>,
     reason: End,
 }
 
@@ -96,6 +107,11 @@ pub enum TrajectoryError {
     /// A duration that is none.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
+    /// A section once a period that is none.
+    #[error(
+        "the period `{0}` of the section is {1}: it must be positive, and the motion shorter than {MOST_CROSSINGS} of it"
+    )]
+    Period(Expr, f64),
     /// The equations cannot be followed.
     #[error(transparent)]
     System(#[from] SystemError),
@@ -164,6 +180,8 @@ impl Course {
             energy,
             values: BTreeMap::new(),
             duration: 50.0,
+            section: None,
+            after: 0.0,
             tolerance: Options::default().tolerance,
             step_limit: Options::default().step_limit,
             interrupt: Interrupt::default(),
@@ -190,7 +208,14 @@ impl Course {
     /// The names that need a number.
     pub fn parameters(&self) -> Vec<Symbol> {
         let energy = self.energy.iter().flatten();
-        let all = self.rates.right.iter().chain(energy).flat_map(Expr::symbols);
+        let section = self.section.iter().map(Section::expression);
+        let all = self
+            .rates
+            .right
+            .iter()
+            .chain(energy)
+            .chain(section)
+            .flat_map(Expr::symbols);
         let all: std::collections::BTreeSet<Symbol> = all.collect();
         let own = |name: &Symbol| self.rates.states.contains(name) || name.name() == "t";
         all.into_iter().filter(|name| !own(name)).collect()
@@ -270,10 +295,11 @@ impl Course {
             step_limit: self.step_limit,
             interrupt: self.interrupt,
         };
+        let events = self.section.as_ref().map_or(vec![], Section::events);
         let mut pieces = Vec::new();
         let (mut from, mut state) = (0.0, start);
         let reason = loop {
-            let path = system.solve(from, &state, self.duration, &[], &options)?;
+            let path = system.solve(from, &state, self.duration, &events, &options)?;
             let (end, reason) = (path.end(), path.reason());
             let last = path.at(end);
             pieces.push(Piece::Moving(path));
@@ -308,9 +334,11 @@ impl Course {
             integrator,
             balance: None,
             pieces,
+            crossings: vec![],
             reason,
         };
         motion.balance = motion.account();
+        motion.crossings = motion.find_crossings()?;
         Ok(motion)
     }
 

@@ -30,6 +30,15 @@ pub struct Arguments {
     /// A value of one of its parameters (1.5, 3/2, pi/3); repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
+    /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section): 2*pi/Omega
+    #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
+    every: Option<String>,
+    /// Look at it where an expression of its coordinates, velocities and the time grows through zero: x', "x - 0.1"
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    section: Option<String>,
+    /// Look at it from this time on, when it has settled
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    after: Option<f64>,
     /// Report the state at this time (repeatable)
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     sample: Vec<f64>,
@@ -91,6 +100,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
         ("--until", arguments.until.is_some(), "duration in [run]"),
         ("--at", !arguments.at.is_empty(), "the keys of a file"),
+        ("--every", arguments.every.is_some(), "--sample"),
+        ("--section", arguments.section.is_some(), "--sample"),
+        ("--after", arguments.after.is_some(), "--sample"),
     ];
     if let Some((option, _, instead)) = foreign.iter().find(|(_, given, _)| *given) {
         return Err(Failure::Usage(format!(
@@ -153,14 +165,11 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
 
 /// An equation or a mechanism of one's own.
 fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
-    let foreign = [
-        ("--chain", arguments.chain),
-        ("--sweep", !arguments.sweep.is_empty()),
-        ("--jobs", arguments.jobs.is_some()),
-    ];
+    let foreign = [("--chain", arguments.chain), ("--jobs", arguments.jobs.is_some())];
     if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
         return Err(Failure::Usage(format!(
-            "{option} belongs to the pendulum and its barrier: an equation or a mechanism of one's own is followed alone"
+            "{option} belongs to the pendulum and its barrier: an equation or a mechanism of one's own is followed by integration, on all \
+             cores where something is swept"
         )));
     }
     let integrators: &[system::Integrator] = match arguments.integrator {
@@ -176,6 +185,11 @@ fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
             until: arguments.until,
             at: &arguments.at,
             samples: &arguments.sample,
+            every: arguments.every.as_deref(),
+            section: arguments.section.as_deref(),
+            after: arguments.after,
+            sweep: &arguments.sweep,
+            quiet: arguments.quiet,
             integrators,
             common: &arguments.common,
         },

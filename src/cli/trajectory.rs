@@ -1,11 +1,13 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
+use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::export::{json, significant, text, trajectory};
-use lindstedt::expr::parse_expression;
+use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
-use lindstedt::report::{self, TrajectoryReport};
-use lindstedt::system::Integrator;
-use lindstedt::trajectory::{Course, Trajectory, TrajectoryError, in_words};
+use lindstedt::report::{self, MotionSweep, TrajectoryReport};
+use lindstedt::system::{End, Integrator};
+use lindstedt::trajectory::{Course, Section, Trajectory, TrajectoryError, in_words, sweep};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
 
@@ -23,6 +25,16 @@ pub(super) struct Asked<'a> {
     pub at: &'a [String],
     /// Times at which the state is wanted.
     pub samples: &'a [f64],
+    /// The period of a section.
+    pub every: Option<&'a str>,
+    /// What grows through zero on a section.
+    pub section: Option<&'a str>,
+    /// From when on it is looked at.
+    pub after: Option<f64>,
+    /// What is varied.
+    pub sweep: &'a [Axis],
+    /// Without a bar of progress.
+    pub quiet: bool,
     /// By Runge-Kutta alone, by power series alone or by both.
     pub integrators: &'a [Integrator],
     pub common: &'a Common,
@@ -39,6 +51,9 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         ));
     }
     let course = course(problem, asked)?;
+    if !asked.sweep.is_empty() {
+        return many(&course, asked);
+    }
     if let Some(late) = asked.samples.iter().find(|sample| **sample > course.duration) {
         return Err(Failure::Refused(format!(
             "--sample {late} lies beyond the duration {}\n  help: raise --until",
@@ -109,16 +124,33 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
         .course()
         .map_err(|error| Failure::refused(&error, error.help()))?;
     let values = exact_values(asked.at, problem)?.unwrap_or_default();
+    course.section = section(&course, asked)?;
     let needed = course.parameters();
     if let Some(unknown) = values.numbers().into_keys().find(|name| !needed.contains(name)) {
         return Err(refused(TrajectoryError::Unknown(unknown)));
     }
     course.values = values.numbers();
+    course.after = asked.after.unwrap_or(0.0);
     course.interrupt = Interrupt::by(&STOP);
     if let Some(until) = asked.until {
         course.duration = until;
     }
-    if asked.from.is_empty() {
+    if course.after > 0.0 && course.after >= course.duration {
+        return Err(Failure::Refused(format!(
+            "--after {} leaves nothing of the duration {}\n  help: raise --until",
+            course.after, course.duration
+        )));
+    }
+    if course.after > 0.0 && course.section.is_none() && asked.sweep.is_empty() {
+        return Err(Failure::Usage(
+            "--after belongs to a section or a sweep: give --every, --section or --sweep".to_owned(),
+        ));
+    }
+    let starts_swept = asked
+        .sweep
+        .iter()
+        .any(|axis| course.rates.states.contains(&Symbol::new(axis.name())));
+    if asked.from.is_empty() && !starts_swept {
         let name = course.coordinates.first().map_or("x", |name| name.name());
         return Err(Failure::Refused(format!(
             "a motion needs its start\n  help: --from {name}=1.5 for a release from rest, --from \"{name}=0,{name}'=1\" for a blow"
@@ -142,6 +174,116 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
         course.begin(name, number).map_err(refused)?;
     }
     Ok(course)
+}
+
+/// The section asked for.
+fn section(course: &Course, asked: &Asked) -> Result<Option<Section>, Failure> {
+    let read = |option: &str, text: &str| {
+        parse_expression(text).map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
+    };
+    let moves = |expression: &Expr| {
+        let states = &course.rates.states;
+        expression.contains(Symbol::new("t")) || states.iter().any(|state| expression.contains(*state))
+    };
+    match (asked.every, asked.section) {
+        (Some(text), _) => match read("every", text)? {
+            period if moves(&period) => Err(Failure::Usage(format!(
+                "--every {text}: a period does not depend on the motion; for where something grows through zero: --section"
+            ))),
+            period => Ok(Some(Section::Every(period))),
+        },
+        (None, Some(text)) => match read("section", text)? {
+            expression if moves(&expression) => Ok(Some(Section::Rising(expression))),
+            _ => Err(Failure::Usage(format!(
+                "--section {text}: never grows through zero, for it does not depend on the motion; for equal times: --every"
+            ))),
+        },
+        (None, None) => Ok(None),
+    }
+}
+
+/// Many motions.
+fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
+    let common = asked.common;
+    if !asked.integrators.is_empty() || !asked.samples.is_empty() || common.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "a sweep reports one line a motion and has no verdict: leave out --integrator, --sample and --tolerance"
+                .to_owned(),
+        ));
+    }
+    if asked.sweep.len() > 1 && common.plot.is_some() {
+        return Err(Failure::Usage(
+            "--plot draws the motions over one parameter, but more are swept: leave out --plot".to_owned(),
+        ));
+    }
+    let names: Vec<Symbol> = asked.sweep.iter().map(|axis| Symbol::new(axis.name())).collect();
+    let parameters = course.parameters();
+    for (index, name) in names.iter().enumerate() {
+        if !parameters.contains(name) && !course.rates.states.contains(name) {
+            return Err(Failure::Refused(format!(
+                "`{name}` is neither a parameter nor a state of the equations, so nothing would vary"
+            )));
+        }
+        if names[..index].contains(name) {
+            return Err(Failure::Usage(format!("`{name}` is swept twice")));
+        }
+        if course.values.contains_key(name) {
+            return Err(Failure::Usage(format!(
+                "`{name}` is swept and has a value beside: give one of them"
+            )));
+        }
+    }
+    let total = grid_size(asked.sweep).map_err(|error| Failure::refused(&error, None))?;
+    let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(asked.sweep, number)).collect();
+    // Draws on standard error, and only where that is a terminal.
+    let bar = match asked.quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(total as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
+        bar.set_style(style);
+    }
+    let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
+        let Failure::Refused(message) = refused(error) else {
+            return Failure::Refused(format!("motion {} cannot begin", number + 1));
+        };
+        Failure::Refused(format!("motion {}: {message}", number + 1))
+    })?;
+    bar.finish_and_clear();
+    let report = MotionSweep {
+        course,
+        names: &names,
+        motions: &motions,
+    };
+    let text = match common.format {
+        Format::Csv => trajectory::sweep_csv(&report),
+        Format::Json => json_text(&json::motion_sweep(&report))?,
+        Format::Text | Format::Latex => text::document(&report::motion_sweep(&report), width(common.output.as_deref())),
+    };
+    let broken = motions.iter().position(|motion| motion.reason != End::Reached);
+    Ok(Outcome {
+        result: whole(text),
+        picture: common.plot.as_ref().map(|path| (path.clone(), sweep_picture(&report))),
+        note: broken.map(|number| {
+            format!(
+                "warning: motion {} stopped early, what there is is kept: {}",
+                number + 1,
+                in_words(motions[number].reason)
+            )
+        }),
+        verdict: None,
+        partial: broken.is_some(),
+    })
+}
+
+#[cfg(not(feature = "plot"))]
+fn sweep_picture(_: &MotionSweep) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn sweep_picture(report: &MotionSweep) -> Result<String, Failure> {
+    trajectory::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
 }
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.

@@ -64,6 +64,8 @@ impl CurveStyle {
     pub const POINTS: Self = Self("#56b4e9", POINTS, 2.2);
     /// Points that stand out.
     pub const MARKED_POINTS: Self = Self("#d55e00", POINTS, 4.5);
+    /// Points of which many make a pattern.
+    pub const DOTS: Self = Self("#0072b2", POINTS, 1.1);
     /// Others that do.
     pub const SECOND_MARKED_POINTS: Self = Self("#000000", POINTS, 4.5);
     /// One of many curves, of which only the whole is to be seen.
@@ -377,6 +379,8 @@ pub fn backbone_figure(
 /// Width of the page in units of 1/96 inch (190 mm), and its margin.
 const PAGE: f64 = 720.0;
 const MARGIN: f64 = 10.0;
+/// Points that are not joined, beyond which only every so many are drawn.
+const MOST_DOTS: usize = 12_000;
 /// Points of one curve beyond which it is thinned.
 const MOST_POINTS: usize = 2000;
 
@@ -499,7 +503,15 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
         }
         let points = points.iter().map(|&(x, y)| (place(x), height(y)));
         let points = points.filter(|(x, y)| x.is_finite() && y.is_finite());
-        let points = thinned(&points.collect::<Vec<_>>());
+        let points: Vec<(f64, f64)> = points.collect();
+        let points = match style.1 == POINTS {
+            true => points
+                .iter()
+                .copied()
+                .step_by(points.len().div_ceil(MOST_DOTS).max(1))
+                .collect(),
+            false => thinned(&points),
+        };
         let enough = if style.1 == POINTS { 1 } else { 2 };
         if points.len() < enough {
             return Err(FigureError::TooFewPoints(within(format!("curve \"{label}\""))));

@@ -4,8 +4,14 @@ use std::fmt::Write as _;
 
 #[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
-use crate::report::TrajectoryReport;
+#[cfg(feature = "plot")]
+use crate::decimal::decimal;
+#[cfg(feature = "plot")]
+use crate::report::section_in_words;
+use crate::report::{MotionSweep, TrajectoryReport};
 use crate::trajectory::in_words;
+#[cfg(feature = "plot")]
+use crate::trajectory::{Crossing, Section, SweptMotion, Trajectory};
 
 /// The points of a table or a curve where no samples are asked for.
 const POINTS: u32 = 2000;
@@ -21,7 +27,7 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
     }
 }
 
-/// Time, coordinates and velocities, 2001 times or those asked for.
+/// Time, coordinates and velocities, 2001 times or those asked for; on a section those of its states.
 ///
 /// ```
 /// use lindstedt::Oscillator;
@@ -39,7 +45,12 @@ pub fn csv(report: &TrajectoryReport) -> String {
     let motion = report.motion;
     let names: Vec<&str> = motion.course.rates.states.iter().map(|name| name.name()).collect();
     let mut text = format!("t,{}\n", names.join(","));
-    for time in times(report) {
+    let on_section = motion.course.section.is_some() && report.samples.is_empty();
+    let times = match on_section {
+        true => motion.crossings().iter().map(|crossing| crossing.time).collect(),
+        false => times(report),
+    };
+    for time in times {
         if let Some(state) = motion.at(time) {
             let state: Vec<String> = state.iter().map(ToString::to_string).collect();
             let _ = writeln!(text, "{time},{}", state.join(","));
@@ -73,6 +84,9 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let course = &motion.course;
     let count = course.coordinates.len();
+    if let Some(section) = &course.section {
+        return on_section(motion, section);
+    }
     let whole = TrajectoryReport {
         samples: &[],
         ..*report
@@ -120,4 +134,137 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     }
     let equations: Vec<String> = course.equations.iter().map(|left| format!("{left} = 0")).collect();
     figure(&panels, &format!("{}.", equations.join(", ")))
+}
+
+/// The states on a section: each coordinate with its velocity.
+#[cfg(feature = "plot")]
+fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureError> {
+    let course = &motion.course;
+    let count = course.coordinates.len();
+    let names: Vec<[String; 2]> = course
+        .coordinates
+        .iter()
+        .map(|name| [name.to_string(), format!("{name}′")])
+        .collect();
+    let point = |index: usize| move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index]);
+    let points: Vec<Vec<(f64, f64)>> = (0..count)
+        .map(|index| motion.crossings().iter().map(point(index)).collect())
+        .collect();
+    let panels: Vec<Panel> = names
+        .iter()
+        .zip(&points)
+        .map(|(name, points)| dots("Poincaré section", [&name[0], &name[1]], points))
+        .collect();
+    let equations: Vec<String> = course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    figure(
+        &panels,
+        &format!("{}. {}", equations.join(", "), section_in_words(section)),
+    )
+}
+
+#[cfg(feature = "plot")]
+fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> Panel<'a> {
+    Panel {
+        title,
+        x_label: labels[0],
+        y_label: labels[1],
+        curves: vec![Curve {
+            label: "",
+            points,
+            style: CurveStyle::DOTS,
+        }],
+        ..Panel::default()
+    }
+}
+
+/// Many motions: a line for every state on the section, or without a section one for every motion with its extremes.
+pub fn sweep_csv(sweep: &MotionSweep) -> String {
+    let course = sweep.course;
+    let varied: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
+    let states: Vec<&str> = course.rates.states.iter().map(|name| name.name()).collect();
+    let join = |numbers: &mut dyn Iterator<Item = f64>| {
+        let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
+        numbers.join(",")
+    };
+    let mut text = String::new();
+    match course.section.is_some() {
+        true => {
+            let _ = writeln!(text, "{},t,{}", varied.join(","), states.join(","));
+            for motion in sweep.motions {
+                for crossing in &motion.crossings {
+                    let line = motion.values.iter().chain([&crossing.time]).chain(&crossing.state);
+                    let _ = writeln!(text, "{}", join(&mut line.copied()));
+                }
+            }
+        }
+        false => {
+            let extremes: Vec<String> = course
+                .coordinates
+                .iter()
+                .map(|name| format!("least {name},greatest {name}"))
+                .collect();
+            let _ = writeln!(
+                text,
+                "{},{},end,{}",
+                varied.join(","),
+                extremes.join(","),
+                states.join(",")
+            );
+            for motion in sweep.motions {
+                let line = motion.values.iter().chain(motion.extremes.iter().flatten());
+                let line = line.chain([&motion.end]).chain(&motion.state);
+                let _ = writeln!(text, "{}", join(&mut line.copied()));
+            }
+        }
+    }
+    text
+}
+
+/// Over what is varied: every state on the section, a bifurcation diagram; without a section the least and the greatest values.
+///
+/// # Errors
+/// As [`figure`].
+#[cfg(feature = "plot")]
+pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
+    let course = sweep.course;
+    let varied = sweep.names.first().map_or("", |name| name.name());
+    let points: Vec<Vec<(f64, f64)>> = (0..course.coordinates.len())
+        .map(|index| {
+            let of = |motion: &SweptMotion| -> Vec<(f64, f64)> {
+                let value = motion.values.first().copied().unwrap_or(f64::NAN);
+                match course.section.is_some() {
+                    true => motion
+                        .crossings
+                        .iter()
+                        .map(|crossing| (value, crossing.state[index]))
+                        .collect(),
+                    false => motion.extremes[index].iter().map(|extreme| (value, *extreme)).collect(),
+                }
+            };
+            sweep.motions.iter().flat_map(of).collect()
+        })
+        .collect();
+    let names: Vec<String> = course.coordinates.iter().map(ToString::to_string).collect();
+    let title = match course.section.is_some() {
+        true => "States on the section",
+        false => "Least and greatest values",
+    };
+    let panels: Vec<Panel> = names
+        .iter()
+        .zip(&points)
+        .map(|(name, points)| dots(title, [varied, name], points))
+        .collect();
+    let equations: Vec<String> = course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    let section = course
+        .section
+        .as_ref()
+        .map(|section| format!(". {}", section_in_words(section)));
+    let after = match course.after > 0.0 {
+        true => format!(", from t = {} to {}", decimal(course.after), decimal(course.duration)),
+        false => format!(", to t = {}", decimal(course.duration)),
+    };
+    figure(
+        &panels,
+        &format!("{}{}{after}", equations.join(", "), section.unwrap_or_default()),
+    )
 }

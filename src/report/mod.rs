@@ -30,7 +30,9 @@ pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, primary, primary_sweep};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
-pub use trajectory::{TrajectoryReport, trajectory};
+#[cfg(feature = "plot")]
+pub(crate) use trajectory::section_in_words;
+pub use trajectory::{MotionSweep, TrajectoryReport, motion_sweep, trajectory};
 
 use std::borrow::Cow;
 

@@ -6,11 +6,15 @@ use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::derivation::Line;
 use crate::expr::Expr;
-use crate::system::Integrator;
-use crate::trajectory::{Trajectory, in_words};
+use crate::symbol::Symbol;
+use crate::system::{End, Integrator};
+use crate::trajectory::{Course, Crossing, Section, SweptMotion, Trajectory, in_words};
 
 /// The most times of rest that are listed.
 const MOST_HELD: usize = 6;
+
+/// The most states of a section that are listed.
+const MOST_ON_SECTION: usize = 40;
 
 /// The rows of the table where no samples are asked for.
 const ROWS: u32 = 20;
@@ -67,6 +71,9 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
         sections.push(values);
     }
     sections.push(states(report));
+    if let Some(section) = &course.section {
+        sections.push(on_section(motion, section));
+    }
     sections.push(account(report));
     Document { sections }
 }
@@ -89,6 +96,112 @@ fn states<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         head: times.chain(names).collect(),
         rows: report.times().into_iter().filter_map(row).collect(),
     }]
+}
+
+/// The first states on the section.
+fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
+    let crossings = motion.crossings();
+    let count = crossings.len();
+    let mut words = format!(
+        "{}: {count} state{}",
+        section_in_words(section),
+        if count == 1 { "" } else { "s" }
+    );
+    if motion.course.after > 0.0 {
+        words.push_str(&format!(" from t = {} on", decimal(motion.course.after)));
+    }
+    if count > MOST_ON_SECTION {
+        words.push_str(&format!("; the first {MOST_ON_SECTION}, all of them as CSV or JSON"));
+    }
+    let heading = |name: &'static str| Heading {
+        text: name,
+        latex: name,
+    };
+    let names = motion.course.rates.states.iter().map(|name| heading(name.name()));
+    let row = |crossing: &Crossing| -> Vec<String> {
+        let numbers = std::iter::once(&crossing.time).chain(&crossing.state);
+        numbers.map(|number| decimal(*number)).collect()
+    };
+    let mut blocks = vec![Block::Heading(words)];
+    if count > 0 {
+        blocks.push(Block::Table {
+            head: std::iter::once(heading("t")).chain(names).collect(),
+            rows: crossings.iter().take(MOST_ON_SECTION).map(row).collect(),
+        });
+    }
+    blocks
+}
+
+/// Where a motion is looked at, in words.
+pub(crate) fn section_in_words(section: &Section) -> String {
+    match section {
+        Section::Every(period) => format!("Section every {period}"),
+        Section::Rising(expression) => format!("Section where {expression} grows through zero"),
+    }
+}
+
+/// The document of many motions, a row each: what is varied, the end, the extremes and how many states lie on the section.
+pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
+    let course = sweep.course;
+    let equation = |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+    let heading = |name: &'static str| Heading {
+        text: name,
+        latex: name,
+    };
+    let varied = sweep.names.iter().map(|name| heading(name.name()));
+    let mut head: Vec<Heading> = varied.collect();
+    let extremes = course
+        .coordinates
+        .iter()
+        .flat_map(|name| [format!("least {name}"), format!("greatest {name}")]);
+    // The names of a table live as long as the program.
+    head.extend(extremes.map(|name| heading(Symbol::new(&name).name())));
+    head.push(heading("section"));
+    let rows = sweep.motions.iter().map(|motion| {
+        let numbers = motion.values.iter().chain(motion.extremes.iter().flatten());
+        let numbers = numbers.map(|value| decimal(*value));
+        numbers.chain([motion.crossings.len().to_string()]).collect()
+    });
+    let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
+    if course.after > 0.0 {
+        words.push_str(&format!("; least and greatest from t = {} on", decimal(course.after)));
+    }
+    let mut last = vec![Block::Note(words)];
+    last.extend(
+        course
+            .section
+            .as_ref()
+            .map(|section| Block::Note(section_in_words(section))),
+    );
+    let ended = sweep
+        .motions
+        .iter()
+        .filter(|motion| motion.reason != End::Reached)
+        .count();
+    if ended > 0 {
+        last.push(Block::Note(format!("{ended} of them end early")));
+    }
+    Document {
+        sections: vec![
+            course.equations.iter().map(equation).collect(),
+            vec![Block::Table {
+                head,
+                rows: rows.collect(),
+            }],
+            last,
+        ],
+    }
+}
+
+/// Many motions to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionSweep<'a> {
+    /// What they have in common.
+    pub course: &'a Course,
+    /// What is varied.
+    pub names: &'a [Symbol],
+    /// The motions, the last name varying fastest.
+    pub motions: &'a [SweptMotion],
 }
 
 fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {

@@ -23,6 +23,7 @@ mod quotations;
 mod random_equations;
 mod ranges;
 mod ring;
+mod section;
 mod series_properties;
 mod simulate;
 mod starts;

@@ -8,8 +8,9 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
-    ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, OptimizationDocument, PrimaryDocument,
-    PrimarySweepDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
+    ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
+    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, SimulationDocument, SolutionDocument,
+    StabilityDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -102,6 +103,7 @@ fn reads_back(document: &Value) {
         Kind::Sweep => again::<SweepDocument>(document),
         Kind::Friction => again::<FrictionDocument>(document),
         Kind::Lagrangian => again::<LagrangianDocument>(document),
+        Kind::MotionSweep => again::<MotionSweepDocument>(document),
         Kind::Stability => again::<StabilityDocument>(document),
         Kind::Motion => again::<MotionDocument>(document),
         Kind::Primary => again::<PrimaryDocument>(document),
@@ -157,6 +159,9 @@ fn documents() -> Vec<(String, Value)> {
         "--sweep",
         "frequency=18:20:3",
     ]);
+    let driven = ["simulate", "x'' + x'/5 + x = F*cos(t)", "--from", "x=1"];
+    add(&[&driven[..], &["--sweep", "F=0:1:3", "--every", "2*pi", "--after", "20"]].concat());
+    add(&[&driven[..], &["--at", "F=1", "--section", "x'"]].concat());
     let links = "examples/lagrange/double-pendulum.toml";
     add(&[
         "simulate",

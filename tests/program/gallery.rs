@@ -185,6 +185,23 @@ fn every_mechanism_prints_what_it_printed() {
             "motion-csv",
             output(&[&course[..], &["--format", "csv", "--sample", "1"]].concat())
         );
+        let driven = [
+            "simulate",
+            "x'' + x'/5 - x + x^3 = F*cos(t)",
+            "--from",
+            "x=1",
+            "--until",
+            "60",
+        ];
+        let settled = ["--every", "2*pi", "--after", "20"];
+        insta::assert_snapshot!(
+            "section-text",
+            output(&[&driven[..], &settled, &["--at", "F=0.1"]].concat())
+        );
+        insta::assert_snapshot!(
+            "motion-sweep-text",
+            output(&[&driven[..], &settled, &["--sweep", "F=0:0.2:3"]].concat())
+        );
         insta::assert_snapshot!("help-lagrange", output(&["lagrange", "--help"]));
     });
 }

@@ -43,7 +43,7 @@ pub use impact::{ImpactDocument, impact};
 pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};
 pub use lagrangian::{LagrangianDocument, lagrangian};
 pub use materials::{MaterialsDocument, materials};
-pub use motion::{MotionDocument, motion};
+pub use motion::{MotionDocument, MotionSweepDocument, motion, motion_sweep};
 pub use number::{Constant, Map, Polynomial, Term};
 pub use optimization::{OptimizationDocument, optimization};
 pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep};

@@ -5,9 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Kind;
 use super::number::Map;
+use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
-use crate::system::Integrator;
-use crate::trajectory::in_words;
+use crate::system::{End, Integrator};
+use crate::trajectory::{Course, Crossing, Section, in_words};
 
 /// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units are those of the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +29,8 @@ pub struct MotionDocument {
     pub integrator: String,
     /// Coordinates and velocities at the times asked for, or at 21 equally spaced ones.
     pub samples: Vec<MotionSample>,
+    /// The states on the section; null where none was asked for.
+    pub section: Option<SectionDocument>,
     /// Those at the end.
     pub final_state: MotionSample,
     /// The account of the energy; null for an equation without energies.
@@ -50,6 +53,20 @@ pub struct MotionSample {
     pub t: f64,
     /// Coordinates and velocities by name: `x`, `x'`.
     pub state: Map<f64>,
+}
+
+/// Poincare's section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "Section")]
+pub struct SectionDocument {
+    /// The time between two states, a formula; null where it is the zeros of `rising` that count.
+    pub every: Option<String>,
+    /// What grows through zero, a formula; null where it is the time that counts.
+    pub rising: Option<String>,
+    /// From when on the motion is looked at.
+    pub after: f64,
+    /// The states, in order.
+    pub states: Vec<MotionSample>,
 }
 
 /// h = sum q' dL/dq' - L, the energy where nothing depends on the time.
@@ -112,6 +129,10 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
             Integrator::RungeKutta => "runge-kutta",
         }
         .to_owned(),
+        section: course.section.as_ref().map(|section| {
+            let states = motion.crossings().iter();
+            section_document(course, section, states, &named)
+        }),
         samples: report.times().into_iter().filter_map(sample).collect(),
         final_state: sample(motion.end()).unwrap_or(start),
         energy: motion.balance.map(|balance| EnergyAccount {
@@ -124,5 +145,115 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         held: motion.held().collect(),
         stopped: in_words(motion.reason()).to_owned(),
         complete: motion.is_complete(),
+    }
+}
+
+fn section_document<'a>(
+    course: &Course,
+    section: &Section,
+    states: impl Iterator<Item = &'a Crossing>,
+    named: &dyn Fn(&[f64]) -> Map<f64>,
+) -> SectionDocument {
+    let [every, rising] = match section {
+        Section::Every(period) => [Some(period.to_string()), None],
+        Section::Rising(expression) => [None, Some(expression.to_string())],
+    };
+    let state = |crossing: &Crossing| MotionSample {
+        t: crossing.time,
+        state: named(&crossing.state),
+    };
+    SectionDocument {
+        every,
+        rising,
+        after: course.after,
+        states: states.map(state).collect(),
+    }
+}
+
+/// Many motions of one equation or mechanism, over every combination of the values of some parameters or starts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct MotionSweepDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::MotionSweep.schema()))]
+    pub schema: String,
+    /// The coordinates.
+    pub coordinates: Vec<String>,
+    /// The equations of motion, each `... = 0`.
+    pub equations: Vec<String>,
+    /// The value of every parameter that is not varied.
+    pub parameters: Map<f64>,
+    /// Coordinates and velocities at t = 0, where they are not varied.
+    pub start: Map<f64>,
+    /// How long each motion is followed.
+    pub duration: f64,
+    /// From when on extremes and section count.
+    pub after: f64,
+    /// What is varied; the last varies fastest.
+    pub varied: Vec<String>,
+    /// The motions, in order.
+    pub motions: Vec<SweptMotionDocument>,
+}
+
+/// One of many motions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "SweptMotion")]
+pub struct SweptMotionDocument {
+    /// The values of what is varied.
+    pub values: Map<f64>,
+    /// Those at the end.
+    pub final_state: MotionSample,
+    /// The least and the greatest value of each coordinate.
+    pub extremes: Map<[f64; 2]>,
+    /// The states on the section; null where none was asked for.
+    pub section: Option<SectionDocument>,
+    /// Why it ends where it does.
+    pub stopped: String,
+    /// Whether it was followed as long as asked.
+    pub complete: bool,
+}
+
+/// The document of kind `motion-sweep`.
+pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
+    let course = sweep.course;
+    let states: Vec<String> = course.rates.states.iter().map(ToString::to_string).collect();
+    let named = |state: &[f64]| -> Map<f64> { states.iter().cloned().zip(state.iter().copied()).collect() };
+    let is_varied = |name: &str| sweep.names.iter().any(|varied| varied.name() == name);
+    let rest = |all: Map<f64>| -> Map<f64> { all.into_iter().filter(|(name, _)| !is_varied(name)).collect() };
+    let parameters = course.values.iter().map(|(name, value)| (name.to_string(), *value));
+    let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
+        values: sweep
+            .names
+            .iter()
+            .map(ToString::to_string)
+            .zip(motion.values.iter().copied())
+            .collect(),
+        final_state: MotionSample {
+            t: motion.end,
+            state: named(&motion.state),
+        },
+        extremes: course
+            .coordinates
+            .iter()
+            .map(ToString::to_string)
+            .zip(motion.extremes.iter().copied())
+            .collect(),
+        section: course
+            .section
+            .as_ref()
+            .map(|section| section_document(course, section, motion.crossings.iter(), &named)),
+        stopped: in_words(motion.reason).to_owned(),
+        complete: motion.reason == End::Reached,
+    });
+    MotionSweepDocument {
+        schema: Kind::MotionSweep.schema().to_owned(),
+        coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
+        equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
+        parameters: rest(parameters.collect()),
+        start: rest(named(&course.start)),
+        duration: course.duration,
+        after: course.after,
+        varied: sweep.names.iter().map(ToString::to_string).collect(),
+        motions: motions.collect(),
     }
 }

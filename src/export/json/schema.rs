@@ -6,8 +6,9 @@ use serde_json::Value;
 
 use super::{
     AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
-    JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, OptimizationDocument, PrimaryDocument,
-    PrimarySweepDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument, unexpected,
+    JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
+    PrimaryDocument, PrimarySweepDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
+    unexpected,
 };
 use crate::solution::Method;
 
@@ -26,6 +27,8 @@ pub enum Kind {
     Simulation,
     /// `simulate` of an equation or a mechanism.
     Motion,
+    /// `simulate --sweep` of an equation or a mechanism.
+    MotionSweep,
     /// `simulate` of a main mass.
     Primary,
     /// `simulate --sweep` of a main mass.
@@ -50,13 +53,14 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
         Self::ImpactComparison,
         Self::Simulation,
         Self::Motion,
+        Self::MotionSweep,
         Self::Primary,
         Self::PrimarySweep,
         Self::Sweep,
@@ -78,6 +82,7 @@ impl Kind {
             Self::ImpactComparison => "lindstedt/impact-comparison/1",
             Self::Simulation => "lindstedt/simulation/1",
             Self::Motion => "lindstedt/motion/1",
+            Self::MotionSweep => "lindstedt/motion-sweep/1",
             Self::Primary => "lindstedt/primary/1",
             Self::PrimarySweep => "lindstedt/primary-sweep/1",
             Self::Sweep => "lindstedt/sweep/1",
@@ -119,6 +124,7 @@ impl Kind {
             Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
             Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
             Self::Motion => generator.into_root_schema_for::<MotionDocument>(),
+            Self::MotionSweep => generator.into_root_schema_for::<MotionSweepDocument>(),
             Self::Primary => generator.into_root_schema_for::<PrimaryDocument>(),
             Self::PrimarySweep => generator.into_root_schema_for::<PrimarySweepDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),

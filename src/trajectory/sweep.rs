@@ -1,0 +1,77 @@
+//! Many motions of one equation: a parameter, or a start, takes value after value, and each motion leaves its section behind.
+//!
+//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their order, whatever the number of threads:
+//! with a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
+
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+
+use super::{Course, Crossing, TrajectoryError};
+use crate::symbol::Symbol;
+use crate::system::End;
+
+/// What one of many motions leaves behind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweptMotion {
+    /// The values of what is varied, in the order of the names.
+    pub values: Vec<f64>,
+    /// When it ended.
+    pub end: f64,
+    /// Coordinates, then velocities there.
+    pub state: Vec<f64>,
+    /// The least and the greatest value of each coordinate, from the time `after` of the course on.
+    pub extremes: Vec<[f64; 2]>,
+    /// The states on the section from then on; none without a section.
+    pub crossings: Vec<Crossing>,
+    /// Why it ended.
+    pub reason: End,
+}
+
+/// Follows the course at every one of the values; `progress` hears of each motion that is done. Costs a motion each, on all cores.
+///
+/// # Errors
+/// The number, counted from zero, of the first motion that cannot begin, and why.
+///
+/// ```
+/// use lindstedt::Oscillator;
+/// use lindstedt::trajectory::{Course, sweep};
+///
+/// let mut course = Course::of_equation(&Oscillator::parse("x'' + k*x = 0")?);
+/// course.begin("x'".into(), 1.0)?;
+/// let motions = sweep(&course, &["k".into()], &[vec![1.0], vec![4.0]], || ()).map_err(|(_, error)| error)?;
+/// assert!((motions[1].extremes[0][1] - 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn sweep(
+    course: &Course,
+    names: &[Symbol],
+    grid: &[Vec<f64>],
+    progress: impl Fn() + Sync,
+) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
+    let one = |(number, values): (usize, &Vec<f64>)| {
+        let mut course = course.clone();
+        for (name, value) in names.iter().zip(values) {
+            match course.rates.states.iter().position(|state| state == name) {
+                Some(place) => course.start[place] = *value,
+                None => {
+                    course.values.insert(*name, *value);
+                }
+            }
+        }
+        let motion = course.follow().map_err(|error| (number, error))?;
+        progress();
+        Ok(SweptMotion {
+            values: values.clone(),
+            end: motion.end(),
+            state: motion.at(motion.end()).unwrap_or_default(),
+            extremes: motion.extremes(),
+            crossings: motion.crossings().to_vec(),
+            reason: motion.reason(),
+        })
+    };
+    #[cfg(feature = "parallel")]
+    let all: Vec<_> = grid.par_iter().enumerate().map(one).collect();
+    #[cfg(not(feature = "parallel"))]
+    let all: Vec<_> = grid.iter().enumerate().map(one).collect();
+    all.into_iter().collect()
+}

@@ -1,0 +1,123 @@
+//! Sections and sweeps of any equation: closed forms, the known cascade of Duffing's two wells, and each motion of a sweep by itself.
+
+use std::f64::consts::{PI, TAU};
+
+use lindstedt::expr::parse_expression;
+use lindstedt::trajectory::{Course, Section, TrajectoryError, sweep};
+use lindstedt::{Oscillator, Symbol};
+
+fn course(equation: &str, start: &[(&str, f64)], duration: f64) -> Course {
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    let mut course = Course::of_equation(&oscillator);
+    for (name, value) in start {
+        course.begin(Symbol::new(name), *value).expect("a state");
+    }
+    course.duration = duration;
+    course
+}
+
+fn every(period: &str) -> Option<Section> {
+    Some(Section::Every(parse_expression(period).expect("a period")))
+}
+
+/// `x'' + 2 zeta x' + x = cos(Omega t)` settles on a circle of the section: one point, known in closed form.
+#[test]
+fn a_linear_motion_settles_on_one_point() {
+    let mut course = course("x'' + x'/5 + x = cos(W*t)", &[("x", 1.0)], 300.0);
+    course.values = [(Symbol::new("W"), 1.3)].into();
+    course.section = every("2*pi/W");
+    course.after = 250.0;
+    let motion = course.follow().expect("a motion");
+    // x = Re X e^(i W t), X = 1/(1 - W^2 + i W/5)
+    let (real, imaginary) = (1.0 - 1.3 * 1.3, 1.3 / 5.0);
+    let square = real * real + imaginary * imaginary;
+    let expected = [real / square, 1.3 * imaginary / square];
+    assert!(motion.crossings().len() > 9);
+    for crossing in motion.crossings() {
+        for (found, expected) in crossing.state.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{crossing:?}, expected {expected:?}");
+        }
+    }
+    let [[least, greatest]] = motion.extremes()[..] else {
+        panic!("one coordinate")
+    };
+    assert!((greatest - square.sqrt().recip()).abs() < 1e-9 && (least + greatest).abs() < 1e-9);
+}
+
+/// The zeros of the velocity from below are the least displacements: every turn of a linear motion, once.
+#[test]
+fn a_section_meets_every_zero_from_below() {
+    let mut free = course("x'' + 4*x = 0", &[("x", 1.5)], 20.0);
+    free.section = Some(Section::Rising(parse_expression("x'").expect("a velocity")));
+    let motion = free.follow().expect("a motion");
+    let times: Vec<f64> = motion.crossings().iter().map(|crossing| crossing.time).collect();
+    let expected: Vec<f64> = (0..)
+        .map(|turn| PI / 2.0 + PI * f64::from(turn))
+        .take_while(|time| *time < 20.0)
+        .collect();
+    assert_eq!(times.len(), expected.len());
+    for (time, expected) in times.iter().zip(expected) {
+        assert!((time - expected).abs() < 1e-12);
+    }
+    assert!(
+        motion
+            .crossings()
+            .iter()
+            .all(|crossing| (crossing.state[0] + 1.5).abs() < 1e-12)
+    );
+}
+
+/// D. W. Jordan and P. Smith, *Nonlinear Ordinary Differential Equations*, section 13.3: with `x'' + 0.3 x' - x + x^3 = F cos 1.2 t`
+/// the period of the drive is kept at F = 0.20, doubled at 0.28, four times as long at 0.29, five times at 0.37, doubled at 0.65.
+#[test]
+fn the_two_wells_double_their_period() {
+    let mut wells = course("x'' + 3/10*x' - x + x^3 = F*cos(6/5*t)", &[("x", 1.0)], 1500.0);
+    wells.section = every("2*pi/(6/5)");
+    wells.after = 1300.0;
+    let forces = [(0.20, 1), (0.28, 2), (0.29, 4), (0.37, 5), (0.65, 2)];
+    let grid: Vec<Vec<f64>> = forces.iter().map(|(force, _)| vec![*force]).collect();
+    let motions = sweep(&wells, &[Symbol::new("F")], &grid, || ()).expect("motions");
+    for (motion, (force, expected)) in motions.iter().zip(forces) {
+        let mut points: Vec<f64> = motion.crossings.iter().map(|crossing| crossing.state[0]).collect();
+        assert!(points.len() > 30);
+        points.sort_by(f64::total_cmp);
+        points.dedup_by(|one, other| (*one - *other).abs() < 1e-3);
+        assert_eq!(points.len(), expected, "F = {force}: {points:?}");
+    }
+}
+
+#[test]
+fn a_sweep_is_its_motions_one_by_one() {
+    let mut driven = course("x'' + c*x' + sin(x) = F*cos(2*t)", &[("x", 0.5)], 30.0);
+    driven.values = [(Symbol::new("c"), 0.1)].into();
+    driven.section = every("pi");
+    let names = [Symbol::new("F"), Symbol::new("x'")];
+    let grid: Vec<Vec<f64>> = vec![vec![0.5, 0.0], vec![0.5, 1.0], vec![0.9, 1.0]];
+    let motions = sweep(&driven, &names, &grid, || ()).expect("motions");
+    for (swept, values) in motions.iter().zip(&grid) {
+        let mut alone = driven.clone();
+        alone.values.insert(names[0], values[0]);
+        alone.begin(names[1], values[1]).expect("a state");
+        let alone = alone.follow().expect("a motion");
+        assert_eq!(swept.crossings, alone.crossings());
+        assert_eq!(swept.state, alone.at(30.0).expect("a state"));
+        assert_eq!(swept.crossings.len(), (30.0 * 2.0 / TAU) as usize);
+    }
+    assert_ne!(motions[0].state, motions[1].state);
+}
+
+#[test]
+fn a_period_that_is_none_is_refused() {
+    for (period, name) in [
+        ("-1", "-1"),
+        ("0*t + 1e-9", "1/1000000000"),
+        ("sqrt(-1 - t^2)", "sqrt(-1 - t^2)"),
+    ] {
+        let mut free = course("x'' + x = 0", &[("x", 1.0)], 10.0);
+        free.section = every(period);
+        match free.follow() {
+            Err(TrajectoryError::Period(given, _)) => assert_eq!(given.to_string(), name),
+            other => panic!("{period}: {other:?}"),
+        }
+    }
+}

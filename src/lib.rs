@@ -84,11 +84,11 @@ pub mod solution;
 
 pub mod oscillator;
 
+mod conservative;
+
 pub mod trajectory;
 
 pub mod hill;
-
-mod conservative;
 
 mod equilibrium;
 

@@ -478,7 +478,8 @@ impl Oscillator {
             .and_then(|range| u32::try_from(range.1).ok()))
     }
 
-    /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
+    /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already. What is left of a bead on a wire
+    /// that turns, `-Omega^2 x`, is no such thing.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
         let Ok(rest) = self
             .force
@@ -490,7 +491,11 @@ impl Oscillator {
         let linear = Expr::divide(&rest, &Expr::from(self.coordinate)).and_then(|quotient| quotient.expand());
         linear.is_ok_and(|quotient| {
             let own = [self.coordinate, self.velocity(), Symbol::new("t")];
-            !quotient.is_zero() && own.iter().all(|&name| !quotient.contains(name)) && quotient != self.stiffness()
+            let repels = quotient.terms().len() == 1 && quotient.has_leading_minus();
+            !quotient.is_zero()
+                && !repels
+                && own.iter().all(|&name| !quotient.contains(name))
+                && quotient != self.stiffness()
         })
     }
 

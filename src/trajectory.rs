@@ -4,7 +4,7 @@
 //! h = sum q_i' dL/dq_i' - L,  L = T - V        dh/dt = -dL/dt + sum q_i' (Q_i - dD/dq_i')
 //! ```
 //!
-//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h.) In: coordinates, their accelerations, numbers for every
+//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every
 //! parameter, a start, a duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a mechanism has
 //! energies, and the same by the other integrator to judge it. Power series go first; where they end, as at a root or a touch that
 //! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, holds the only coordinate there is, it
@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 use num_traits::Zero;
 use thiserror::Error;
 
+use crate::conservative::potential;
 use crate::exact::Rational;
 use crate::exact::rational::{Integer, ratio};
 use crate::expr::{Expr, ExprError, Function, Node};
@@ -39,8 +40,8 @@ pub struct Course {
     pub equations: Vec<Expr>,
     /// Coordinates and velocities with their rates.
     pub rates: Rates,
-    /// h, and its rate; nothing for an equation without energies.
-    pub energy: Option<[Expr; 2]>,
+    /// h and what changes it; nothing for an equation whose inertia depends on the position.
+    pub energy: Option<Energy>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
     /// Where each coordinate begins and how fast, in the order of the states.
@@ -59,6 +60,15 @@ pub struct Course {
     pub interrupt: Interrupt,
 }
 
+/// An energy and what changes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Energy {
+    /// h in coordinates and velocities.
+    pub value: Expr,
+    /// The power of each force that has no part in h, by its name.
+    pub powers: Vec<(String, Expr)>,
+}
+
 /// A motion.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
@@ -74,14 +84,16 @@ pub struct Trajectory {
 }
 
 /// The energy at the end, beside that of the start and the work in between.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Balance {
     /// h at the start.
     pub start: f64,
     /// h at the end.
     pub end: f64,
-    /// What forces, dampers and moving constraints have done.
+    /// What forces, dampers and moving constraints have done, all together.
     pub work: f64,
+    /// What each of them has done, by its name.
+    pub works: Vec<(String, f64)>,
     /// The largest |h - h(0) - work| of many times, over the largest |h - h(0)| or kinetic share: how far the account is off.
     pub residual: f64,
 }
@@ -132,7 +144,8 @@ fn names(symbols: &[Symbol]) -> String {
 const ACCOUNTS: u32 = 2000;
 
 impl Course {
-    /// That of an equation of motion, from rest at zero for 50 units of time.
+    /// That of an equation of motion, from rest at zero for 50 units of time. Its energy is that of the velocity and of all terms of
+    /// the position alone that have a potential in closed form; every other term works for itself.
     pub fn of_equation(oscillator: &Oscillator) -> Self {
         let coordinate = oscillator.coordinate;
         let velocity = oscillator.velocity();
@@ -144,7 +157,7 @@ impl Course {
                 states: vec![coordinate, velocity],
                 right: vec![Expr::from(velocity), -&oscillator.force],
             },
-            None,
+            energy_of(oscillator),
         )
     }
 
@@ -155,23 +168,32 @@ impl Course {
     pub fn of_mechanism(mechanism: &Mechanism, equations: &Equations) -> Result<Self, TrajectoryError> {
         let lagrangian = &mechanism.kinetic - &mechanism.potential;
         let mut energy = vec![-&lagrangian];
-        let mut power = vec![-lagrangian.differentiate(Symbol::new("t"))?];
+        let moving = -lagrangian.differentiate(Symbol::new("t"))?;
+        let mut powers = vec![("moving constraints".to_owned(), moving)];
+        let mut lost = Vec::new();
         for coordinate in &mechanism.coordinates {
             let velocity = coordinate.derivative();
             let speed = Expr::from(velocity);
             energy.push(&speed * &mechanism.kinetic.differentiate(velocity)?);
-            power.push(-(&speed * &mechanism.dissipation.differentiate(velocity)?));
-            power.extend(mechanism.forces.get(coordinate).map(|force| &speed * force));
+            lost.push(-(&speed * &mechanism.dissipation.differentiate(velocity)?));
+            let force = mechanism.forces.get(coordinate);
+            powers.extend(force.map(|force| (format!("Q_{coordinate}"), &speed * force)));
         }
+        powers.push(("dissipation".to_owned(), Expr::sum(lost)));
+        powers.retain(|(_, power)| !power.is_zero());
+        let energy = Energy {
+            value: Expr::sum(energy),
+            powers,
+        };
         Ok(Self::new(
             mechanism.coordinates.clone(),
             equations.left.clone(),
             equations.rates()?,
-            Some([Expr::sum(energy), Expr::sum(power)]),
+            Some(energy),
         ))
     }
 
-    fn new(coordinates: Vec<Symbol>, equations: Vec<Expr>, rates: Rates, energy: Option<[Expr; 2]>) -> Self {
+    fn new(coordinates: Vec<Symbol>, equations: Vec<Expr>, rates: Rates, energy: Option<Energy>) -> Self {
         Self {
             start: vec![0.0; rates.states.len()],
             coordinates,
@@ -207,7 +229,8 @@ impl Course {
 
     /// The names that need a number.
     pub fn parameters(&self) -> Vec<Symbol> {
-        let energy = self.energy.iter().flatten();
+        let energy = self.energy.iter();
+        let energy = energy.flat_map(|energy| energy.powers.iter().map(|(_, power)| power).chain([&energy.value]));
         let section = self.section.iter().map(Section::expression);
         let all = self
             .rates
@@ -278,9 +301,11 @@ impl Course {
             .map(|right| gated_roots(right, &self.values))
             .collect::<Result<_, _>>()?;
         let mut start = self.start.clone();
-        if let Some([_, power]) = &self.energy {
-            let taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
-            states.push(fresh("work", &taken));
+        let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
+        for (_, power) in self.energy.iter().flat_map(|energy| &energy.powers) {
+            let work = fresh("work", &taken);
+            taken.push(work);
+            states.push(work);
             right.push(gated_roots(power, &self.values)?);
             start.push(0.0);
         }
@@ -384,6 +409,35 @@ impl Course {
             _ => None,
         })
     }
+}
+
+/// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every other term; nothing for an inertia that
+/// depends on the position, whose energy is another.
+fn energy_of(oscillator: &Oscillator) -> Option<Energy> {
+    let parts = oscillator.parts().ok()?;
+    if !parts.inertia.is_zero() {
+        return None;
+    }
+    let speed = Expr::from(oscillator.velocity());
+    let mut value = vec![&speed * &speed * Expr::number(ratio(1, 2))];
+    let mut powers = Vec::new();
+    let works = |term: &Expr| (term.to_string(), -(&speed * term));
+    for term in parts.restoring.terms().iter().filter(|term| !term.is_zero()) {
+        match potential(term, oscillator.coordinate) {
+            Some(potential) => value.push(potential),
+            None => powers.push(works(term)),
+        }
+    }
+    let others = [&parts.damping, &parts.forcing];
+    let others = others
+        .into_iter()
+        .flat_map(|part| part.terms())
+        .filter(|term| !term.is_zero());
+    powers.extend(others.map(works));
+    Some(Energy {
+        value: Expr::sum(value),
+        powers,
+    })
 }
 
 /// An expression with the sign of a velocity that is about to be positive, or negative, and the velocity zero.
@@ -507,26 +561,32 @@ fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> Res
 impl Trajectory {
     /// The account of the energy.
     fn account(&self) -> Option<Balance> {
-        let [energy, _] = self.course.energy.as_ref()?;
+        let energy = self.course.energy.as_ref()?;
+        let count = self.course.rates.states.len();
         let at = |time: f64| {
             let state = self.all_at(time)?;
             let mut values = self.course.values.clone();
             values.insert(Symbol::new("t"), time);
             values.extend(self.course.rates.states.iter().copied().zip(state.iter().copied()));
-            Some((energy.evaluate(&values).ok()?, *state.last()?))
+            let works = state[count..].to_vec();
+            Some((energy.value.evaluate(&values).ok()?, works))
         };
+        // The sum of nothing is minus zero.
+        let sum = |works: &[f64]| works.iter().fold(0.0, |sum, work| sum + work);
         let (start, _) = at(0.0)?;
-        let (end, work) = at(self.end())?;
+        let (end, works) = at(self.end())?;
         let (mut astray, mut moved) = (0.0_f64, 0.0_f64);
         for index in 0..=ACCOUNTS {
-            let (now, work) = at(self.end() * f64::from(index) / f64::from(ACCOUNTS))?;
+            let (now, works) = at(self.end() * f64::from(index) / f64::from(ACCOUNTS))?;
+            let work = sum(&works);
             astray = astray.max((now - start - work).abs());
             moved = moved.max(now.abs()).max(work.abs());
         }
         Some(Balance {
             start,
             end,
-            work,
+            work: sum(&works),
+            works: energy.powers.iter().map(|(name, _)| name.clone()).zip(works).collect(),
             residual: if moved > 0.0 { astray / moved } else { 0.0 },
         })
     }

@@ -82,7 +82,7 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         .flatten()
         .find(|motion| !motion.is_complete());
     let allowed = common.tolerance.unwrap_or(TOLERANCE);
-    let doubtful = match (motion.balance, &judge) {
+    let doubtful = match (&motion.balance, &judge) {
         (Some(balance), _) if balance.residual > TOLERANCE => Some(format!(
             "warning: {} of the largest energy is not accounted for: do not trust this motion",
             significant(balance.residual, 2)
@@ -288,7 +288,10 @@ fn sweep_picture(report: &MotionSweep) -> Result<String, Failure> {
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
 fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Verdict {
-    let kept = motion.balance.is_none_or(|balance| balance.residual <= allowed);
+    let kept = motion
+        .balance
+        .as_ref()
+        .is_none_or(|balance| balance.residual <= allowed);
     let agreed = judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
     Verdict::of(kept && agreed && motion.is_complete())
 }

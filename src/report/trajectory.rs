@@ -231,10 +231,24 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         };
         facts.push(("held by friction", format!("t = {}{more}", held.join(", "))));
     }
-    if let Some(balance) = motion.balance {
+    if let Some(balance) = &motion.balance {
         facts.push(("energy at the start", decimal(balance.start)));
         facts.push(("energy at the end", decimal(balance.end)));
-        facts.push(("work in between", decimal(balance.work)));
+        facts.push((
+            "work in between",
+            match balance.works.as_slice() {
+                [(name, work)] => format!("{} of {name}", decimal(*work)),
+                _ => decimal(balance.work),
+            },
+        ));
+        if balance.works.len() > 1 {
+            let each: Vec<String> = balance
+                .works
+                .iter()
+                .map(|(name, work)| format!("{} of {name}", decimal(*work)))
+                .collect();
+            facts.push(("which is", each.join(", ")));
+        }
         facts.push((
             "unaccounted for",
             format!("{} of the largest", significant(balance.residual, 2)),

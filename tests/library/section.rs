@@ -121,3 +121,58 @@ fn a_period_that_is_none_is_refused() {
         }
     }
 }
+
+/// The energy of an equation, its potential in closed form, against the work of every other term: in steady state the drive gives what
+/// damping takes, `pi c W |X|^2` a period.
+#[test]
+fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
+    let equations = [
+        "x'' + c*x' + sin(x) = W*cos(W*t)",
+        "x'' + c*x'*abs(x') + x^3 + 100*(x - 1/5)^(3/2)*H(x - 1/5) = 0",
+        "x'' + c*sgn(x') + x = W*cos(2*t)",
+        "x'' + (1 + c*cos(2*t))*x = 0",
+    ];
+    for equation in equations {
+        let mut course = course(equation, &[("x", 1.0)], 25.0);
+        course.values = course.parameters().into_iter().zip([0.1, 0.7]).collect();
+        let motion = course.follow().expect("a motion");
+        assert!(motion.is_complete(), "{equation}: {:?}", motion.reason());
+        let balance = motion.balance.as_ref().expect("an energy");
+        assert!(balance.residual < 1e-9, "{equation}: {balance:?}");
+        let sum: f64 = balance.works.iter().map(|(_, work)| work).sum();
+        assert!(
+            (sum - balance.work).abs() < 1e-12 && balance.work.abs() > 1e-3,
+            "{equation}: {balance:?}"
+        );
+    }
+    let conservative = course("x'' + x + x^3 = 0", &[("x", 1.0)], 25.0)
+        .follow()
+        .expect("a motion");
+    let balance = conservative.balance.as_ref().expect("an energy");
+    assert!(
+        balance.works.is_empty() && (balance.end - 0.75).abs() < 1e-13,
+        "{balance:?}"
+    );
+    // X = 1/(1 - W^2 + i c W): from settled to settled over one period.
+    let (c, w) = (0.2, 1.3);
+    let work_until = |duration: f64| {
+        let mut driven = course("x'' + c*x' + x = cos(W*t)", &[("x", 0.0)], duration);
+        driven.values = [(Symbol::new("c"), c), (Symbol::new("W"), w)].into();
+        let balance = driven.follow().expect("a motion").balance.expect("an energy");
+        balance
+            .works
+            .into_iter()
+            .collect::<std::collections::BTreeMap<String, f64>>()
+    };
+    let period = TAU / w;
+    let (before, after) = (work_until(40.0 * period), work_until(41.0 * period));
+    let square = 1.0 / ((1.0 - w * w).powi(2) + c * c * w * w);
+    let expected = PI * c * w * square;
+    for (name, sign) in [("c*x'", -1.0), ("-cos(W*t)", 1.0)] {
+        let work = after[name] - before[name];
+        assert!(
+            (work - sign * expected).abs() < 1e-9,
+            "{name}: {work}, expected {expected}"
+        );
+    }
+}

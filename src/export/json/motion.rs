@@ -33,7 +33,7 @@ pub struct MotionDocument {
     pub section: Option<SectionDocument>,
     /// Those at the end.
     pub final_state: MotionSample,
-    /// The account of the energy; null for an equation without energies.
+    /// The account of the energy; null for an equation whose inertia depends on the position.
     pub energy: Option<EnergyAccount>,
     /// The largest difference from the other integrator, over the largest displacement; null where it was not asked for.
     pub difference: Option<f64>,
@@ -79,6 +79,8 @@ pub struct EnergyAccount {
     pub end: f64,
     /// The work of forces, dampers and moving constraints in between.
     pub work: f64,
+    /// The work of each of them by its name: a term of the equation, as it stands on the left side; `Q_x`, `dissipation`.
+    pub works: Map<f64>,
     /// The largest part not accounted for at any time, over the largest energy.
     pub residual: f64,
 }
@@ -135,10 +137,11 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }),
         samples: report.times().into_iter().filter_map(sample).collect(),
         final_state: sample(motion.end()).unwrap_or(start),
-        energy: motion.balance.map(|balance| EnergyAccount {
+        energy: motion.balance.as_ref().map(|balance| EnergyAccount {
             start: balance.start,
             end: balance.end,
             work: balance.work,
+            works: balance.works.iter().cloned().collect(),
             residual: balance.residual,
         }),
         difference: report.judge.map(|judge| motion.difference(judge)),

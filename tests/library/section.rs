@@ -67,8 +67,9 @@ fn a_section_meets_every_zero_from_below() {
     );
 }
 
-/// D. W. Jordan and P. Smith, *Nonlinear Ordinary Differential Equations*, section 13.3: with `x'' + 0.3 x' - x + x^3 = F cos 1.2 t`
-/// the period of the drive is kept at F = 0.20, doubled at 0.28, four times as long at 0.29, five times at 0.37, doubled at 0.65.
+/// The cascade of two wells (D. W. Jordan and P. Smith, *Nonlinear Ordinary Differential Equations*, chapter 13): with
+/// `x'' + 0.3 x' - x + x^3 = F cos 1.2 t` the period of the drive is kept at F = 0.20, doubled at 0.28, four times as long at 0.29, five
+/// times at 0.37, doubled at 0.65.
 #[test]
 fn the_two_wells_double_their_period() {
     let mut wells = course("x'' + 3/10*x' - x + x^3 = F*cos(6/5*t)", &[("x", 1.0)], 1500.0);

@@ -221,11 +221,11 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     for (index, name) in names.iter().enumerate() {
         if !parameters.contains(name) && !course.rates.states.contains(name) {
             return Err(Failure::Refused(format!(
-                "`{name}` is neither a parameter nor a state of the equations, so nothing would vary"
+                "--sweep: `{name}` is neither a parameter nor a state of the equations, so nothing would vary"
             )));
         }
         if names[..index].contains(name) {
-            return Err(Failure::Usage(format!("`{name}` is swept twice")));
+            return Err(Failure::Usage(format!("--sweep: `{name}` is swept twice")));
         }
         if course.values.contains_key(name) {
             return Err(Failure::Usage(format!(

@@ -228,6 +228,27 @@ pub const CATALOG: &[Entry] = &[
         source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equation (7) without friction, excitation and barrier",
         published: None,
     },
+    Entry {
+        name: "forced-duffing",
+        title: "hardening spring of Duffing, damped and driven",
+        equation: "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
+        source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 4.1",
+        published: None,
+    },
+    Entry {
+        name: "forced-helmholtz",
+        title: "quadratic spring of Helmholtz, damped and driven",
+        equation: "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)",
+        source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 4.2",
+        published: None,
+    },
+    Entry {
+        name: "mathieu-duffing",
+        title: "spring of Duffing whose stiffness is driven",
+        equation: "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0",
+        source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 5.7",
+        published: None,
+    },
 ];
 
 /// The entry of this name.

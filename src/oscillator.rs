@@ -683,7 +683,7 @@ impl PerturbedForce {
     }
 
     /// The coefficient of the linear force, its named constants written out.
-    fn linear_in_full(&self) -> Expr {
+    pub(crate) fn linear_in_full(&self) -> Expr {
         let linear = Expr::from(&self.linear);
         let meanings = self
             .definitions

@@ -12,6 +12,7 @@ pub mod law;
 mod method;
 pub mod modulation;
 pub mod note;
+pub mod response;
 mod sum;
 
 use std::collections::BTreeSet;
@@ -26,6 +27,7 @@ pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};
 pub use modulation::Modulation;
 pub use note::Note;
+pub use response::Response;
 pub use sum::Sum;
 
 pub use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, Step};
@@ -189,6 +191,8 @@ pub struct Solution {
     pub limit_cycle: Option<LimitCycle>,
     /// Motions that are not periodic: the slow equations of amplitude and phase.
     pub modulation: Option<Modulation>,
+    /// Driven motions: the frequency-response equation and what follows from it.
+    pub response: Option<Response>,
     /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
     pub numerical: bool,
     /// What is known of where the formula holds.

@@ -22,7 +22,7 @@ pub struct Arguments {
     pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
     /// parameter-expansion, harmonic-balance, energy-balance, max-min, amplitude-frequency, hamiltonian,
-    /// variational-iteration, frequency-formula, pade or exact
+    /// variational-iteration, frequency-formula, pade, multiple-scales or exact
     #[arg(long)]
     method: Option<String>,
     /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade
@@ -46,6 +46,9 @@ pub struct Arguments {
     /// Which limit cycle of a self-excited equation, counted from 1 by amplitude; without it the smallest that attracts
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     cycle: Option<u32>,
+    /// Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the one nearest to the values, or 1:1
+    #[arg(long, value_name = "P:Q", value_parser = ratio)]
+    resonance: Option<(u32, u32)>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -61,6 +64,17 @@ fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
     let names = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic].map(AmplitudeConvention::name);
     let unknown = || "no convention of this name".to_owned();
     PossibleValuesParser::new(names).try_map(move |name| AmplitudeConvention::from_name(&name).ok_or_else(unknown))
+}
+
+/// A ratio of two whole numbers, `1:3`, in lowest terms.
+fn ratio(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(':').and_then(|(above, below)| {
+        let part = |text: &str| text.trim().parse::<u32>().ok().filter(|part| (1..=9).contains(part));
+        part(above).zip(part(below))
+    });
+    let (above, below) = parts.ok_or("expected two whole numbers from 1 to 9, such as 1:3")?;
+    let common = (1..=9).rev().find(|k| above % k == 0 && below % k == 0).unwrap_or(1);
+    Ok((above / common, below / common))
 }
 
 /// What stands after `--order`.
@@ -102,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
     let oscillator = oscillator(&formula, arguments.about.as_deref())?;
-    let options = options(arguments, &formula)?;
+    let options = options(arguments, &formula, &oscillator)?;
     // The name is refused here, for a method that has no use for it would pass over it.
     if options.small.is_some() {
         oscillator
@@ -111,6 +125,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
+    let options = match &values {
+        Some(values) => method::with_resonance_at(&oscillator, &options, values),
+        None => options,
+    };
     let (oscillator, values, solution) = solve_at(oscillator, values, &options)?;
     let tolerance = tolerance(&arguments.common);
     let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
@@ -240,7 +258,7 @@ pub(super) fn with_known_equilibrium(
     })
 }
 
-fn options(arguments: &Arguments, formula: &Formula) -> Result<Options, Failure> {
+fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) -> Result<Options, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     let method = match arguments.method.as_deref().or(formula.method) {
         None => None,
@@ -263,7 +281,7 @@ fn options(arguments: &Arguments, formula: &Formula) -> Result<Options, Failure>
             }
         },
     };
-    let chosen = method.unwrap_or(Method::LindstedtPoincare);
+    let chosen = method.unwrap_or_else(|| method::default_method(oscillator));
     let without = |option: &str, owners: &str| {
         usage(format!(
             "{option} says nothing to --method {}: it belongs to {owners}",
@@ -276,6 +294,9 @@ fn options(arguments: &Arguments, formula: &Formula) -> Result<Options, Failure>
     }
     if arguments.cycle.is_some() && !entry.takes(Choice::Cycle) {
         return without("--cycle", &that_take(Choice::Cycle));
+    }
+    if arguments.resonance.is_some() && !entry.takes(Choice::Resonance) {
+        return without("--resonance", &that_take(Choice::Resonance));
     }
     let (order, pade) = match arguments.order.or(formula.order.map(Order::from)) {
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
@@ -315,6 +336,7 @@ fn options(arguments: &Arguments, formula: &Formula) -> Result<Options, Failure>
         pade,
         hbar,
         cycle: arguments.cycle,
+        resonance: arguments.resonance,
     })
 }
 

@@ -159,6 +159,7 @@ fn in_flags(advice: &Advice) -> String {
         Setting::Taylor => "--taylor DEGREE".to_owned(),
         Setting::About { coordinate, position } => format!("--about {coordinate}={position}"),
         Setting::Values => "--at".to_owned(),
+        Setting::Resonance(driving, linear) => format!("--resonance {driving}:{linear}"),
         other => other.to_string(),
     })
 }

@@ -263,6 +263,21 @@ impl<K: Number> Polynomial<K> {
         ring_of::<K>().power(self, exponent)
     }
 
+    /// The derivative with respect to a symbol.
+    pub fn slope(&self, symbol: Symbol) -> Self {
+        let ring = K::Ring::default();
+        let mut result = Self::zero();
+        for (monomial, coefficient) in &self.terms {
+            let exponent = monomial.exponent(symbol);
+            if exponent != 0 {
+                let mut coefficient = coefficient.clone();
+                ring.scale(&mut coefficient, exponent.into());
+                result.add_term(monomial.product(&Monomial::power_of(symbol, -1)), coefficient);
+            }
+        }
+        result
+    }
+
     /// The same polynomial over other coefficients.
     pub fn map<L: Number>(&self, mut change: impl FnMut(&K) -> L) -> Polynomial<L> {
         let mut result = Polynomial::zero();

@@ -196,6 +196,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
     let law = method::solve(
         swing,
         &method::Options {
+            method: Some(Method::LindstedtPoincare),
             order: Some(order),
             ..Default::default()
         },

@@ -118,6 +118,11 @@ impl Flight {
     ) -> Result<Self, NoFlight> {
         let swing = &equations.swing;
         let turned = if sign < 0.0 { turned(swing)? } else { None };
+        // A swing between barriers is free: what drives it is refused by the method that knows free motions alone.
+        let options = &method::Options {
+            method: options.method.or(Some(Method::LindstedtPoincare)),
+            ..options.clone()
+        };
         let solution = method::solve(turned.as_ref().unwrap_or(swing), options)?;
         let (from, distance) = (sign * release, sign * (release - equations.equilibrium));
         let motion_at = |amplitude: f64| motion_at(&solution, equations, amplitude);

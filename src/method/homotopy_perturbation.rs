@@ -113,6 +113,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         }),
         limit_cycle: None,
         modulation: None,
+        response: None,
         numerical: false,
         validity,
         steps: series.steps,

@@ -120,6 +120,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         displacement,
         limit_cycle,
         modulation: None,
+        response: None,
         numerical: false,
         validity,
         steps: series.steps,
@@ -132,7 +133,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 
 /// The definitions of the force that a formula about it needs: constants of the linear force alone are written out in that of
 /// the linear frequency.
-fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
+pub(super) fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
     let coefficients = force.terms.iter().map(|term| &term.coefficient);
     let used: BTreeSet<Symbol> = coefficients
         .chain([linear_frequency])
@@ -283,7 +284,7 @@ fn expanded(
 
 /// A polynomial in a root of a number, its even powers written as the number: `sqrt(2)^2` as 2, `1/sqrt(2)^3` as half of
 /// `1/sqrt(2)`. What cancels between the powers does so exactly.
-fn with_square(polynomial: &Polynomial, root: Symbol, square: &Rational) -> Polynomial {
+pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Rational) -> Polynomial {
     let mut written = Polynomial::zero();
     for (monomial, number) in polynomial.terms() {
         let pairs = monomial.exponent(root) / 2;
@@ -426,7 +427,7 @@ fn has_drift(force: &PerturbedForce) -> bool {
 }
 
 /// Whether terms feed energy at some amplitudes that others drain, or may do so.
-fn may_balance(force: &PerturbedForce) -> bool {
+pub(super) fn may_balance(force: &PerturbedForce) -> bool {
     drift(force).is_some_and(|equation| !equation.is_single_term())
 }
 

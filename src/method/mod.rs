@@ -26,6 +26,7 @@ pub(crate) mod limit_cycle;
 pub(crate) mod lindstedt_poincare;
 pub(crate) mod max_min;
 pub(crate) mod motion;
+pub(crate) mod multiple_scales;
 pub mod numbers;
 pub(crate) mod one_term;
 pub(crate) mod pade;
@@ -36,6 +37,8 @@ pub mod table;
 pub(crate) mod variational_iteration;
 
 pub use harmonic_balance::MOST_HARMONICS;
+
+pub use multiple_scales::with_resonance_at;
 
 pub use crate::conservative::{Force, cosine_coefficient, is_odd, is_smooth, potential};
 pub use crate::equilibrium::with_numbers_where_needed;
@@ -77,6 +80,9 @@ pub struct Options {
     pub hbar: Option<Expr>,
     /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the smallest that attracts.
     pub cycle: Option<u32>,
+    /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in numbers, or the primary one,
+    /// 2:1 where the drive is in a coefficient.
+    pub resonance: Option<(u32, u32)>,
 }
 
 /// Why a method does not answer, and what to do instead.
@@ -189,6 +195,40 @@ pub enum Unsuited {
     /// A method that measures the amplitude in one way only.
     #[error("measures the amplitude as A = x(0)")]
     Convention,
+    /// A term that depends on time, but is no single wave.
+    #[error("takes drives such as F*cos(Omega*t) and h*x*cos(Omega*t), but `{term}` is no such wave, periodic in time")]
+    NoWave {
+        /// The term.
+        term: Quotation,
+    },
+    /// A second driving frequency.
+    #[error("takes one drive, but the term `{term}` is a second one")]
+    SecondDrive {
+        /// The term.
+        term: Quotation,
+    },
+    /// A linear oscillator driven at its own frequency.
+    #[error(
+        "finds no steady motion: the term `{term}` drives at the linear frequency, and nothing damps or detunes the motion"
+    )]
+    ResonanceWithoutDamping {
+        /// The drive.
+        term: Quotation,
+    },
+    /// A resonance that the equation does not have to the order asked for.
+    #[error(
+        "finds nothing at this order by which the drive would reach the motion at {}:{}{}",
+        asked.0, asked.1, resonances(others)
+    )]
+    NoResonance {
+        /// Omega : omega0 as asked for.
+        asked: (u32, u32),
+        /// Those that there are.
+        others: Vec<(u32, u32)>,
+    },
+    /// A method whose amplitude is that of the first harmonic only.
+    #[error("measures the amplitude as that of the first harmonic, a")]
+    ConventionOfFirstHarmonic,
     /// An even part of the force, in a method for odd forces.
     #[error("is for forces with f(-x) = -f(x), but `{term}` is not odd")]
     NotOdd {
@@ -225,6 +265,14 @@ pub enum Unsuited {
         /// The terms of the force that are none.
         term: Quotation,
     },
+}
+
+fn resonances(others: &[(u32, u32)]) -> String {
+    let names: Vec<String> = others.iter().map(|(p, q)| format!("{p}:{q}")).collect();
+    match names.is_empty() {
+        true => String::new(),
+        false => format!("; it does at {}", names.join(", ")),
+    }
 }
 
 /// What a refusal says is unsuited.
@@ -265,12 +313,26 @@ impl Unsuited {
             Self::Damping { .. } => Advice::words(
                 "there is no frequency-amplitude law of a motion that dies out; leave the term out to get that of the undamped motion",
             ),
-            Self::Forcing { .. } => {
-                Advice::words("leave the term out to get the frequency of the free vibration (the backbone curve)")
-            }
+            Self::Forcing { .. } => Advice::words(
+                "leave the term out to get the frequency of the free vibration (the backbone curve), or try ",
+            )
+            .choose(Setting::Method(Method::MultipleScales)),
             Self::Velocity { .. } => Advice::words("try ").choose(Setting::Method(Method::LindstedtPoincare)),
             Self::Convention => {
                 Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::FirstHarmonic))
+            }
+            Self::NoWave { .. } | Self::SecondDrive { .. } => {
+                Advice::words("in numbers any equation can be followed: `lindstedt simulate`")
+            }
+            Self::ResonanceWithoutDamping { .. } => Advice::words(
+                "the amplitude grows in proportion to time, x = (F/(2*omega0))*t*sin(omega0*t) for F*cos(omega0*t); give a damping such as 2*zeta*x'",
+            ),
+            Self::NoResonance { others, .. } => match others.first() {
+                Some(&(driving, linear)) => Advice::words("try ").choose(Setting::Resonance(driving, linear)),
+                None => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
+            },
+            Self::ConventionOfFirstHarmonic => {
+                Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial))
             }
             Self::NotOdd { .. } | Self::NotOddAbout { .. } => Advice::words("try ")
                 .choose(Setting::Method(Method::HarmonicBalance))
@@ -305,6 +367,9 @@ impl Refusal {
                     Unsuited::Damping { term }
                     | Unsuited::Forcing { term }
                     | Unsuited::Velocity { term }
+                    | Unsuited::NoWave { term }
+                    | Unsuited::SecondDrive { term }
+                    | Unsuited::ResonanceWithoutDamping { term }
                     | Unsuited::NotOdd { term }
                     | Unsuited::NotOddAbout { term, .. }
                     | Unsuited::PolynomialOnly { term },
@@ -368,7 +433,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if let Some(asked) = options.order.filter(|&order| order > HIGHEST_ORDER) {
         return Err(Refusal::Order { asked });
     }
-    let method = options.method.unwrap_or(Method::LindstedtPoincare);
+    let method = options.method.unwrap_or_else(|| default_method(oscillator));
     let entry = Entry::of(method);
     refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
@@ -404,6 +469,23 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
+/// The method that suits an equation, where none is asked for: multiple scales where something drives it, else that of Lindstedt
+/// and Poincare.
+///
+/// ```
+/// use lindstedt::{Method, Oscillator, method::default_method};
+///
+/// let driven = Oscillator::parse("x'' + x'/10 + x + x^3 = cos(2*t)")?;
+/// assert_eq!(default_method(&driven), Method::MultipleScales);
+/// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
+/// ```
+pub fn default_method(oscillator: &Oscillator) -> Method {
+    match oscillator.force.contains(Symbol::new("t")) {
+        true => Method::MultipleScales,
+        false => Method::LindstedtPoincare,
+    }
+}
+
 /// An option that a method has no use for is a mistake, and never ignored.
 fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), Refusal> {
     let given = [
@@ -412,6 +494,7 @@ fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), 
         (Choice::Taylor, options.taylor.is_some()),
         (Choice::Hbar, options.hbar.is_some()),
         (Choice::Cycle, options.cycle.is_some()),
+        (Choice::Resonance, options.resonance.is_some()),
     ];
     match given.iter().find(|(choice, given)| *given && !entry.takes(*choice)) {
         Some(&(choice, _)) => Err(Unsuited::NoSuchChoice { choice }.to(entry.method)),

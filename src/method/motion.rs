@@ -96,6 +96,11 @@ pub enum NoMotion {
     /// The frequency of the formula is not real.
     #[error("not real: omega^2 <= 0")]
     NotReal,
+    /// The motion of a driven equation, which does not follow from its amplitude alone.
+    #[error(
+        "a driven motion has a phase of its own: its steady motions are `steady_states`, and `response.motion` is its formula"
+    )]
+    Driven,
     /// The formula has no value.
     #[error(transparent)]
     Numbers(#[from] NoNumbers),
@@ -110,6 +115,9 @@ impl Solution {
     /// # Errors
     /// [`NoMotion`].
     pub fn motion_at(&self, values: &Values) -> Result<Motion, NoMotion> {
+        if self.response.is_some() {
+            return Err(NoMotion::Driven);
+        }
         let oscillator = Oscillator::from_equation(&self.equation)?;
         let mut needed = self.parameters.clone();
         needed.extend(self.limit_cycle.is_none().then(|| self.amplitude.symbol()));

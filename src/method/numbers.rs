@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use num_traits::Zero as _;
+
 use super::exact_motion::motion_about;
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
@@ -141,7 +143,7 @@ pub fn evaluate(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Numbers, NoNumbers> {
     let mut chosen = Vec::new();
-    let mut numbers = numbers.clone();
+    let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
         let value = best_hbar(oscillator, solution, &numbers, hbar)?;
         numbers.insert(hbar, value);
@@ -195,7 +197,7 @@ pub fn frequency_squared_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, NoNumbers> {
-    let mut numbers = numbers.clone();
+    let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
         let value = best_hbar(oscillator, solution, &numbers, hbar)?;
         numbers.insert(hbar, value);
@@ -204,6 +206,52 @@ pub fn frequency_squared_of(
         true => solve(oscillator, solution, &numbers).map(|found| found.0),
         false => frequency_squared(oscillator, solution, &numbers).map(|found| found.0),
     }
+}
+
+/// The numbers with the amplitude that a formula measures: that of the first harmonic, where only `A = x(0) - equilibrium` is
+/// given, by the formula's own motion solved for it as a series of the same order.
+fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTreeMap<Symbol, f64> {
+    let mut numbers = numbers.clone();
+    let [initial, own] = [AmplitudeConvention::Initial, solution.amplitude].map(AmplitudeConvention::symbol);
+    if initial == own || numbers.contains_key(&own) || !numbers.contains_key(&initial) {
+        return numbers;
+    }
+    // Each order is marked by the small parameters, or by the amplitude itself.
+    let order = i32::try_from(solution.order).unwrap_or(i32::MAX);
+    let in_amplitude = solution.small_parameter == own;
+    let kept = |polynomial: &Polynomial| {
+        let mut kept = Polynomial::zero();
+        for (monomial, number) in polynomial.terms() {
+            let power = match in_amplitude {
+                true => monomial.exponent(initial) - 1,
+                false => solution.order_of(monomial),
+            };
+            if power <= order {
+                kept.add_term(monomial.clone(), number.clone());
+            }
+        }
+        kept
+    };
+    // What the motion has at its start beside the amplitude and the equilibrium.
+    let mut beside = Polynomial::zero();
+    let one: Polynomial = Polynomial::symbol(own);
+    for (monomial, number) in solution.displacement.at_zero().constant_term().terms() {
+        if monomial.exponent(own) > 0 && one.coefficient(monomial).is_zero() {
+            beside.add_term(monomial.clone(), -number.clone());
+        }
+    }
+    let mut amplitude = Polynomial::symbol(initial);
+    for _ in 0..solution.order {
+        let Some(correction) = beside.substitute(own, &amplitude) else {
+            return numbers;
+        };
+        amplitude = kept(&(Polynomial::symbol(initial) + correction));
+    }
+    let value = solution.evaluate(&amplitude, &|name| numbers.get(&name).copied());
+    if let Ok(value) = value {
+        numbers.insert(own, value);
+    }
+    numbers
 }
 
 /// The symbol of homotopy analysis that is to be chosen, where there is one.

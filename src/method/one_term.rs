@@ -106,6 +106,7 @@ pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Metho
         displacement: cosine(Polynomial::symbol(amplitude)),
         limit_cycle: None,
         modulation: None,
+        response: None,
         numerical: false,
         validity: vec![],
         steps: vec![],

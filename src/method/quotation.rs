@@ -59,6 +59,9 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         Unsuited::Damping { term }
         | Unsuited::Forcing { term }
         | Unsuited::Velocity { term }
+        | Unsuited::NoWave { term }
+        | Unsuited::SecondDrive { term }
+        | Unsuited::ResonanceWithoutDamping { term }
         | Unsuited::PolynomialOnly { term } => {
             replace(term, typed(term, oscillator, centred));
         }

@@ -4,8 +4,8 @@
 
 use super::{
     Options, Refusal, amplitude_frequency, energy_balance, exact, frequency_formula, hamiltonian, harmonic_balance,
-    homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation, lindstedt_poincare, max_min, one_term,
-    pade, parameter_expansion, variational_iteration,
+    homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation, lindstedt_poincare, max_min,
+    multiple_scales, one_term, pade, parameter_expansion, variational_iteration,
 };
 use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
@@ -75,6 +75,8 @@ pub enum Choice {
     Hbar,
     /// One of several limit cycles.
     Cycle,
+    /// A resonance of a driven motion.
+    Resonance,
 }
 
 impl Choice {
@@ -86,6 +88,7 @@ impl Choice {
             Self::Taylor => "Taylor polynomial in place of the force",
             Self::Hbar => "convergence-control parameter",
             Self::Cycle => "choice among limit cycles",
+            Self::Resonance => "choice among resonances",
         }
     }
 }
@@ -204,6 +207,16 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
+        method: Method::MultipleScales,
+        solve: multiple_scales::solve,
+        takes: &[Choice::Order, Choice::Cycle, Choice::Resonance],
+        sees: Sees::Derivatives,
+        rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
+        definition: None,
+        signed: true,
+        ..OF_THE_SHARED_INTEGRAL
+    },
+    Entry {
         method: Method::Exact,
         solve: exact::solve,
         takes: &[],
@@ -267,6 +280,6 @@ mod tests {
             assert_eq!(Entry::of(method).method, method);
         }
         assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
-        assert_eq!(that_take(Choice::Cycle), "lindstedt-poincare and pade");
+        assert_eq!(that_take(Choice::Cycle), "lindstedt-poincare, pade and multiple-scales");
     }
 }

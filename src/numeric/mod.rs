@@ -5,10 +5,12 @@
 //!
 //! - [`ode`]: Runge-Kutta with dense output and events, quadrature, roots; turning points.
 //! - [`period`]: the true period of a force of the position alone, from its energy, and of others from their return.
+//! - [`periodic`]: true periodic motions of driven equations, and their Floquet multipliers.
 //! - [`return_map`]: true limit cycles, from one turning point to the next.
 //!
-//! The last two belong to the judge: no method takes its answer from them.
+//! The last three belong to the judge: no method takes its answer from them.
 
 pub mod ode;
 pub mod period;
+pub mod periodic;
 pub mod return_map;

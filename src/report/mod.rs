@@ -6,6 +6,7 @@
 
 mod audit;
 mod comparison;
+mod driven;
 mod friction;
 mod impact;
 mod impact_comparison;

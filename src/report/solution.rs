@@ -22,6 +22,9 @@ use crate::verify::Verification;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verification>, tolerance: f64) -> Document<'a> {
+    if let Some(response) = &solution.response {
+        return super::driven::driven(solution, response, verification, tolerance);
+    }
     let title = Block::Title {
         words: solution.title(),
         amplitude: solution.amplitude,

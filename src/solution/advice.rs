@@ -41,6 +41,8 @@ pub enum Setting {
     },
     /// Values for parameters and amplitude.
     Values,
+    /// A resonance, Omega : omega0.
+    Resonance(u32, u32),
 }
 
 impl Advice {
@@ -90,6 +92,7 @@ impl fmt::Display for Setting {
             Self::Taylor => formatter.write_str("a Taylor degree"),
             Self::About { coordinate, position } => write!(formatter, "about {coordinate}={position}"),
             Self::Values => formatter.write_str("values"),
+            Self::Resonance(driving, linear) => write!(formatter, "resonance {driving}:{linear}"),
         }
     }
 }

@@ -29,6 +29,8 @@ pub enum Method {
     FrequencyFormula,
     /// A quotient of polynomials that agrees with the exact series.
     Pade,
+    /// Amplitude and phase on slow times, one for each order.
+    MultipleScales,
     /// The period by elliptic integrals or Gamma functions, else by quadrature.
     Exact,
 }
@@ -54,7 +56,7 @@ pub enum Counts {
 
 impl Method {
     /// Every method, in the order in which they are listed to users.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::LindstedtPoincare,
         Self::HomotopyPerturbation,
         Self::HomotopyAnalysis,
@@ -68,6 +70,7 @@ impl Method {
         Self::VariationalIteration,
         Self::FrequencyFormula,
         Self::Pade,
+        Self::MultipleScales,
         Self::Exact,
     ];
 
@@ -99,6 +102,7 @@ impl Method {
             Self::VariationalIteration => ("variational-iteration", "Variational iteration", Counts::Nothing),
             Self::FrequencyFormula => ("frequency-formula", "Frequency formula", Counts::Nothing),
             Self::Pade => ("pade", "Pade approximant", Counts::Degrees),
+            Self::MultipleScales => ("multiple-scales", "Multiple scales", Counts::Powers),
             Self::Exact => ("exact", "Exact frequency", Counts::Nothing),
         }
     }

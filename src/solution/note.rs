@@ -88,6 +88,17 @@ pub enum Note {
         /// The polynomial in the square that is zero.
         polynomial: Polynomial,
     },
+    /// A driven motion: which resonance, and what counts as small beside the small parameters.
+    Driven {
+        /// Omega : omega0.
+        resonance: (u32, u32),
+        /// Whether the drive is in a coefficient.
+        parametric: bool,
+        /// What counts as small.
+        small: Vec<Expr>,
+        /// As which power of the small parameter.
+        power: usize,
+    },
     /// A meaning that is taken to be positive.
     Positive(Definition),
     /// An expansion of a force with corners.
@@ -279,6 +290,28 @@ impl fmt::Display for Note {
                     "{} = {} > 0",
                     definition.symbol,
                     definition.meaning_in_words()
+                )
+            }
+            Self::Driven {
+                resonance: (p, q),
+                parametric,
+                small,
+                power,
+            } => {
+                let name = match (p, q) {
+                    (2, 1) if *parametric => "principal parametric resonance".to_owned(),
+                    (1, 1) => "primary resonance".to_owned(),
+                    (1, q) => format!("superharmonic resonance 1:{q}"),
+                    (p, q) => format!("subharmonic resonance {p}:{q}"),
+                };
+                let as_power = match power {
+                    1 => "the small parameter",
+                    _ => "the square of the small parameter",
+                };
+                write!(
+                    formatter,
+                    "{name}, Omega : omega0 near {p} : {q}; as small as {as_power}: {}",
+                    listed(small)
                 )
             }
             Self::BarriersApart { positive } => barriers_apart(formatter, positive),

@@ -12,10 +12,11 @@ use super::validity::{self, Reach};
 use super::{
     Verdict, VerificationError, checked_numbers, formula_frequency, largest_deviation, meant, numbers_or_reason,
 };
+use crate::decimal::significant;
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::numbers::NoNumbers;
-use crate::method::{Options, Refusal, solve};
+use crate::method::{Options, Refusal, solve, with_resonance_at};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
@@ -150,6 +151,7 @@ pub fn compare(
     }
     let (mut solutions, mut refused) = (Vec::new(), Vec::new());
     for options in variants(small) {
+        let options = with_resonance_at(oscillator, &options, at);
         match (solve(oscillator, &options), options.method) {
             (Ok(solution), _) => solutions.push(solution),
             (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
@@ -162,7 +164,13 @@ pub fn compare(
     let Some(first) = solutions.first() else {
         return Err(ComparisonError::NoMethod(refused));
     };
-    let numbers = checked_numbers(first, at)?;
+    if first.response.is_some() {
+        return driven(oscillator, at, tolerance, &solutions, refused);
+    }
+    super::periodic(first)?;
+    // Every row has the motion that starts at A, whatever its formula measures.
+    let at_first = by_start(first, at);
+    let numbers = checked_numbers(first, &at_first)?;
     let meant = meant(oscillator, first, &numbers);
     let (true_motion, reason) = match TrueMotion::of(oscillator, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
@@ -193,6 +201,71 @@ pub fn compare(
         rows,
         refused,
         validity: validity.into_iter().map(|range| range.text).collect(),
+    })
+}
+
+/// The values with `A` as the amplitude of the first harmonic, which is its leading term, where no method measures `A` itself.
+fn by_start(first: &Solution, at: &Values) -> Values {
+    let [initial, own] = [AmplitudeConvention::Initial, first.amplitude].map(AmplitudeConvention::symbol);
+    let free = initial != own && first.limit_cycle.is_none() && at.get(own).is_none();
+    if !free || at.get(initial).is_none() {
+        return at.clone();
+    }
+    let renamed = at
+        .iter()
+        .map(|(name, value)| (if name == initial { own } else { name }, value));
+    let mut values = Values::default();
+    for (name, value) in renamed {
+        if values.insert(name, value.clone()).is_err() {
+            return at.clone();
+        }
+    }
+    values
+}
+
+/// The methods for driven motions, judged by the amplitude of their largest stable steady motion.
+fn driven(
+    oscillator: &Oscillator,
+    at: &Values,
+    tolerance: f64,
+    solutions: &[Solution],
+    refused: Vec<Refused>,
+) -> Result<Comparison, ComparisonError> {
+    let (mut rows, mut validity, mut frequency) = (Vec::new(), Vec::new(), None);
+    for solution in solutions {
+        let judged = super::judge(oscillator, solution, at, tolerance)?;
+        frequency = frequency.or(judged.frequency);
+        let largest = judged.steady_states.iter().find(|judged| judged.state.is_stable());
+        let words = match largest.map(|judged| (judged.state.amplitude, judged.true_amplitude)) {
+            Some((own, Some(truth))) => format!("a = {} against a true {}", significant(own, 6), significant(truth, 6)),
+            Some((own, None)) => format!("a = {}, and no true motion near it", significant(own, 6)),
+            None => "no stable steady motion".to_owned(),
+        };
+        validity.push(format!(
+            "driven: the error is that of the amplitude; {}: {words}",
+            solution.title()
+        ));
+        rows.push(Row {
+            solution: solution.clone(),
+            frequency: judged.frequency,
+            reason: None,
+            chosen: vec![],
+            relative_error: judged.relative_error,
+            max_deviation: judged.max_deviation,
+            reach: None,
+            verdict: Some(judged.verdict),
+        });
+    }
+    let equation = solutions.first().map(|first| first.equation.clone());
+    Ok(Comparison {
+        equation: equation.unwrap_or_else(|| oscillator.equation()),
+        at: at.clone(),
+        true_frequency: frequency,
+        reason: None,
+        tolerance,
+        rows,
+        refused,
+        validity,
     })
 }
 

@@ -20,12 +20,14 @@ mod backbone;
 mod bounds;
 pub mod comparison;
 pub(crate) mod convergence;
+mod driven;
 mod orbit;
 mod reach;
 pub(crate) mod validity;
 pub(crate) mod well;
 
 pub use convergence::{Singularity, nearest_singularity};
+pub use driven::JudgedState;
 pub use validity::{Range, Reach};
 pub use well::{End, Well};
 
@@ -108,7 +110,9 @@ pub struct Verification {
     pub phase: f64,
     /// The motion in theta; `None` where the frequency is not real or the motion is not known.
     pub motion: Option<FourierSeries<Doubles>>,
-    /// The verdict on the frequency.
+    /// Driven motions: every steady motion by the slow equations, largest first, beside the true one.
+    pub steady_states: Vec<JudgedState>,
+    /// The verdict on the frequency; on the amplitude of a driven motion.
     pub verdict: Verdict,
 }
 
@@ -142,6 +146,9 @@ pub enum VerificationError {
     /// The values do not fit the equation.
     #[error(transparent)]
     Expression(#[from] ExprError),
+    /// A motion whose amplitude changes.
+    #[error("the amplitude of the motion changes, so it has no period to be compared with")]
+    NotPeriodic,
     /// The amplitude is zero, and at rest there is nothing to compare.
     #[error(
         "at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against"
@@ -186,7 +193,8 @@ pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
         let oscillator = Oscillator::from_equation(&solution.equation);
         oscillator.is_ok_and(|oscillator| matches!(oscillator.polynomial_degree(), Ok(Some(0 | 1))))
     };
-    if solution.limit_cycle.is_none() && (solution.depends_on_amplitude() || !linear()) {
+    let own = solution.limit_cycle.is_some() || solution.response.is_some();
+    if !own && (solution.depends_on_amplitude() || !linear()) {
         needed.push(solution.amplitude.symbol());
     }
     needed
@@ -213,6 +221,10 @@ pub fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
+    if let Some(response) = &solution.response {
+        return driven::judge(oscillator, solution, response, at, tolerance);
+    }
+    periodic(solution)?;
     let numbers = checked_numbers(solution, at)?;
     let meant = meant(oscillator, solution, &numbers);
     let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
@@ -251,6 +263,7 @@ pub fn judge(
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
         values: symbols.values,
         phase: symbols.phase,
+        steady_states: vec![],
         // The motion of the size of the amplitude, which begins half a period later.
         motion: motion.map(|(_, motion)| match symbols.phase == 0.0 {
             true => motion,
@@ -260,6 +273,15 @@ pub fn judge(
     })
 }
 
+/// An error where the amplitude of a free motion changes.
+fn periodic(solution: &Solution) -> Result<(), VerificationError> {
+    let slow = solution.modulation.as_ref().filter(|_| solution.limit_cycle.is_none());
+    match slow.is_some_and(|slow| !slow.is_conservative()) {
+        true => Err(VerificationError::NotPeriodic),
+        false => Ok(()),
+    }
+}
+
 /// The values as numbers.
 ///
 /// # Errors
@@ -267,7 +289,9 @@ pub fn judge(
 fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
     let needed = needed_values(solution);
     let mut known = solution.parameters.clone();
-    known.push(solution.amplitude.symbol());
+    if solution.response.is_none() {
+        known.push(solution.amplitude.symbol());
+    }
     if let Some((name, _)) = at.iter().find(|(name, _)| !known.contains(name)) {
         return Err(VerificationError::Unknown { name, known });
     }
@@ -316,6 +340,9 @@ pub fn motions(
     solution: &Solution,
     at: &Values,
 ) -> Result<Option<Motions>, VerificationError> {
+    if let Some(response) = &solution.response {
+        return driven::motions(oscillator, solution, response, at);
+    }
     let symbol = solution.amplitude.symbol();
     let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
     let meant = meant(oscillator, solution, &numbers);

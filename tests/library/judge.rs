@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use lindstedt::Values;
 use lindstedt::method::{Options, solve};
-use lindstedt::solution::Method;
+use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::Reach;
 use lindstedt::verify::comparison::{Comparison, compare};
 use lindstedt::verify::{Verdict, Verification, judge};
@@ -207,6 +207,10 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
         let asked = table.at.get("A".into()).unwrap();
         let oscillator = Oscillator::parse(equation).unwrap();
         for row in &table.rows {
+            // A range of A, not of the amplitude of the first harmonic.
+            if row.solution.amplitude == AmplitudeConvention::FirstHarmonic {
+                continue;
+            }
             let reach = row.reach.unwrap();
             let good = row.relative_error.is_some_and(|error| error.abs() <= 0.01);
             assert_eq!(

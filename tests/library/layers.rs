@@ -294,8 +294,9 @@ fn long_integers_come_from_one_place() {
 }
 
 /// The files that make the judge's truth. They know which motion is meant, never how a formula came about.
-const TRUTH: [&str; 6] = [
+const TRUTH: [&str; 7] = [
     "numeric/period.rs",
+    "numeric/periodic.rs",
     "numeric/return_map.rs",
     "verify/amplitude_series.rs",
     "verify/backbone.rs",
@@ -310,7 +311,7 @@ const OF_THE_JUDGE: [&str; 1] = ["VerificationError"];
 const OF_AN_ANSWER: [&str; 1] = ["AmplitudeConvention"];
 
 /// The modules of `numeric` that are truth as a whole: the judge alone uses them, so that no answer comes by a detour.
-const TRUE_MODULES: [&str; 2] = ["period", "return_map"];
+const TRUE_MODULES: [&str; 3] = ["period", "periodic", "return_map"];
 
 /// What crosses the wall between the methods and the truth, as messages: `file` is the path of a source in `src/`.
 fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<String> {

@@ -15,6 +15,7 @@ mod layers;
 mod limit_cycles;
 mod literature;
 mod mechanics;
+mod multiple_scales;
 mod names;
 mod near_rest;
 mod primary;

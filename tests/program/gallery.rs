@@ -545,7 +545,7 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 55] = [
+    const COMMANDS: [&str; 57] = [
         "int",
         "Rightarrow",
         "hbar",
@@ -559,6 +559,8 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "right",
         "omega",
         "Omega",
+        "Lambda",
+        "psi",
         "theta",
         "varepsilon",
         "gamma",

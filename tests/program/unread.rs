@@ -663,6 +663,13 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec!["--taylor", "5"],
         ),
         ("derive", vec![cubic], vec!["--hbar", "-1/2"]),
+        ("derive", vec!["forced-duffing"], vec!["--resonance", "1:3"]),
+        ("derive", vec![cubic], vec!["--resonance", "1:3"]),
+        (
+            "derive",
+            vec![cubic, "--method", "multiple-scales"],
+            vec!["--resonance", "1:3"],
+        ),
         ("derive", vec![cycles], vec!["--cycle", "2"]),
         ("derive", vec!["pendulum"], vec!["--cycle", "1"]),
         (

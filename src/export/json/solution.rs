@@ -68,8 +68,9 @@ pub struct SolutionDocument {
     pub limit_cycle: Option<LimitCycle>,
     /// The slow equations of amplitude and phase of a motion that is not periodic; null for any other.
     pub modulation: Option<Modulation>,
-    /// Always null: no method gives steady states of a forced equation yet.
-    pub response: (),
+    /// The steady motions of a driven equation; null for any other. `frequency` is then the backbone, the frequency of the motion
+    /// itself without damping and drive, and `displacement` its leading term: the whole motion is `response.motion`.
+    pub response: Option<Response>,
     /// Whether coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
     pub numerical: bool,
     /// What is known of where the formula holds, in words.
@@ -178,6 +179,61 @@ pub struct Resonance {
     pub detuning_means: String,
 }
 
+/// What is known of the steady motions of a driven equation. All formulas are in the amplitude and the detuning of `modulation`, the
+/// parameters and the definitions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Response {
+    /// x(t), an expression in t, the amplitude and the phase of `modulation`.
+    pub motion: String,
+    /// The frequency-response equation: a polynomial that is zero at every steady motion; null where the phase cannot be eliminated.
+    pub relation: Option<Polynomial>,
+    /// The relation solved for the detuning; null where it is not quadratic in that.
+    pub branches: Option<Branches>,
+    /// The largest amplitude of all detunings, an expression; null where it has no closed form.
+    pub peak: Option<String>,
+    /// The squares of the amplitudes at which two branches meet, expressions in the detuning; none where they have no closed form.
+    pub folds: Vec<String>,
+    /// The discriminant of the relation in the square of the amplitude, zero where two branches meet; null where it is not given.
+    pub jumps: Option<Polynomial>,
+    /// The names of u = a cos(phase/m) and v = -a sin(phase/m), with m = times_linear.
+    pub coordinates: [String; 2],
+    /// The rates of u and v, polynomials: the slow equations without a singular origin.
+    pub rates: [Polynomial; 2],
+}
+
+/// detuning = centre + sqrt(width_squared) and centre - sqrt(width_squared).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Branches {
+    /// The middle of both branches, the backbone.
+    pub centre: Polynomial,
+    /// The square of their distance from it.
+    pub width_squared: Polynomial,
+}
+
+/// A steady motion in numbers, by the slow equations and in truth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SteadyState {
+    /// The amplitude by the slow equations, in the unit of the coordinate.
+    pub amplitude: f64,
+    /// The phase by the slow equations, from -pi to pi, in radians.
+    pub phase: f64,
+    /// Real and imaginary part of each eigenvalue of the slow equations, per unit of time.
+    pub eigenvalues: [[f64; 2]; 2],
+    /// Whether both real parts are negative.
+    pub stable: bool,
+    /// The amplitude of the true periodic motion near it; null where none was found.
+    pub true_amplitude: Option<f64>,
+    /// Whether the true motion attracts, by its Floquet multipliers; null where none was found.
+    pub true_stable: Option<bool>,
+    /// amplitude / true_amplitude - 1, as a fraction; null for a motion without a part of its own.
+    pub relative_error: Option<f64>,
+    /// The largest |x - x_true| over one period, as a fraction of the largest |x_true|; null where no true motion was found.
+    pub max_deviation: Option<f64>,
+}
+
 /// A motion from its start in closed form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -207,8 +263,9 @@ pub struct Verification {
     pub true_frequency: f64,
     /// frequency / true_frequency - 1, signed, as a fraction; null where there is no frequency.
     pub relative_error: Option<f64>,
-    /// The law that is judged: `omega^2`, of which the frequency is the root, or `omega`.
-    #[schemars(extend("enum" = ["omega^2", "omega"]))]
+    /// What is judged: `omega^2`, of which the frequency is the root, or `omega`; of a driven motion the `amplitude` of the largest
+    /// stable steady state, whose relative error is given.
+    #[schemars(extend("enum" = ["omega^2", "omega", "amplitude"]))]
     pub judged_on: String,
     /// The relative error of `frequency` where `frequency_squared` is judged; null where they do not stand side by side.
     pub error_of_omega: Option<f64>,
@@ -235,6 +292,9 @@ pub struct Verification {
     /// only this starts at the amplitude, not `displacement`. Null where the frequency is not real or the motion is not known.
     #[serde(default)]
     pub motion: Option<Vec<HarmonicValue>>,
+    /// The steady motions of a driven equation, largest first; empty for any other.
+    #[serde(default)]
+    pub steady_states: Vec<SteadyState>,
     /// Whether |relative_error| is within the tolerance, 0.01 unless another was given.
     #[schemars(extend("enum" = [verify::Verdict::Pass.name(), verify::Verdict::Fail.name()]))]
     pub verdict: String,
@@ -309,7 +369,10 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         },
         limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
         modulation: solution.modulation.as_ref().map(modulation),
-        response: (),
+        response: solution
+            .response
+            .as_ref()
+            .map(|response| self::response(response, solution)),
         numerical: solution.numerical,
         validity: solution.validity.iter().map(ToString::to_string).collect(),
         verification: verification.map(self::verification),
@@ -360,6 +423,38 @@ fn modulation(modulation: &solution::Modulation) -> Modulation {
     }
 }
 
+/// The steady motions of a driven equation in symbols.
+fn response(response: &solution::Response, solution: &Solution) -> Response {
+    let polynomial = |value: &exact::Polynomial| Polynomial::of(value, solution);
+    Response {
+        motion: response.motion.to_string(),
+        relation: response.relation.as_ref().map(polynomial),
+        branches: response.branches.as_ref().map(|branches| Branches {
+            centre: polynomial(&branches.centre),
+            width_squared: polynomial(&branches.width_squared),
+        }),
+        peak: response.peak.as_ref().map(ToString::to_string),
+        folds: response.folds.iter().map(ToString::to_string).collect(),
+        jumps: response.jumps.as_ref().map(polynomial),
+        coordinates: response.plane.coordinates.map(|name| name.to_string()),
+        rates: response.plane.rates.each_ref().map(polynomial),
+    }
+}
+
+/// A steady motion in numbers.
+fn steady_state(judged: &verify::JudgedState) -> SteadyState {
+    SteadyState {
+        amplitude: judged.state.amplitude,
+        phase: judged.state.phase,
+        eigenvalues: judged.state.eigenvalues.map(|(real, imaginary)| [real, imaginary]),
+        stable: judged.state.is_stable(),
+        true_amplitude: finite(judged.true_amplitude),
+        true_stable: judged.true_stable,
+        relative_error: finite(judged.relative_error),
+        max_deviation: finite(judged.max_deviation),
+    }
+}
+
 /// The verdict on a formula.
 ///
 /// ```
@@ -395,6 +490,7 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         values: numbers(&verification.values),
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
+        steady_states: verification.steady_states.iter().map(steady_state).collect(),
         verdict: verification.verdict.name().to_owned(),
     }
 }
@@ -476,6 +572,7 @@ impl SolutionDocument {
             displacement: self.displacement.read()?,
             limit_cycle: self.limit_cycle.as_ref().map(LimitCycle::read).transpose()?,
             modulation: self.modulation.as_ref().map(Modulation::read).transpose()?,
+            response: self.response.as_ref().map(Response::read).transpose()?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
             steps: vec![],
@@ -549,6 +646,35 @@ impl Cycle {
             attracts_where: attracts_where
                 .map(|text| expression(text, "attracts_where_positive"))
                 .transpose()?,
+        })
+    }
+}
+
+impl Response {
+    fn read(&self) -> Result<solution::Response, JsonError> {
+        let polynomial = |value: &Option<Polynomial>, key| value.as_ref().map(|value| value.exact(key)).transpose();
+        let branches = |branches: &Branches| -> Result<_, JsonError> {
+            Ok(solution::response::Branches {
+                centre: branches.centre.exact("centre")?,
+                width_squared: branches.width_squared.exact("width_squared")?,
+            })
+        };
+        let [u, v] = &self.rates;
+        Ok(solution::Response {
+            motion: expression(&self.motion, "motion")?,
+            relation: polynomial(&self.relation, "relation")?,
+            branches: self.branches.as_ref().map(branches).transpose()?,
+            peak: self.peak.as_deref().map(|peak| expression(peak, "peak")).transpose()?,
+            folds: self
+                .folds
+                .iter()
+                .map(|fold| expression(fold, "folds"))
+                .collect::<Result<_, _>>()?,
+            jumps: polynomial(&self.jumps, "jumps")?,
+            plane: solution::response::Plane {
+                coordinates: self.coordinates.each_ref().map(|name| Symbol::new(name)),
+                rates: [u.exact("rates")?, v.exact("rates")?],
+            },
         })
     }
 }

@@ -1,0 +1,200 @@
+//! What counts as small, and in which power: the force as terms of an expansion.
+//!
+//! In: an equation and the small parameter asked for. Out: a [`Scaling`]. A parameter whose vanishing leaves the linear
+//! oscillator marks the orders; several that have to vanish together count as equally small; otherwise the amplitude marks
+//! them, a linear damping by its square.
+
+use num_traits::One;
+
+use super::super::joint_expansion::expand_jointly;
+use super::super::lindstedt_poincare::may_balance;
+use super::super::{Options, Refusal, Unsuited, secular};
+use crate::exact::polynomial::Monomial;
+use crate::exact::{Polynomial, Rational};
+use crate::expr::Expr;
+use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
+use crate::solution::note::Cut;
+use crate::solution::{AmplitudeConvention, Definition, Method, Note};
+use crate::symbol::Symbol;
+
+/// A force with its orders.
+pub(super) struct Scaling {
+    pub(super) force: PerturbedForce,
+    /// What marks the orders; `None` where it is the amplitude.
+    pub(super) marker: Option<Symbol>,
+    /// What stands for the marker in the answer, where the equation does not have it.
+    pub(super) marks: Option<Rational>,
+    /// The small parameter of the answer.
+    pub(super) small: Symbol,
+    /// Parameters that are small together with it.
+    pub(super) small_with: Vec<Symbol>,
+    /// The value of a small parameter that the equation does not have.
+    pub(super) bookkeeping: Option<Definition>,
+    /// A linear damping that counts as the square of the amplitude.
+    pub(super) damping: Option<Expr>,
+    pub(super) order: u32,
+}
+
+/// The order at which a linear damping enters an expansion in the amplitude.
+pub(super) const DAMPING_IN_AMPLITUDE: usize = 2;
+
+impl Scaling {
+    /// A polynomial with a marker that the equation does not have as its value.
+    pub(super) fn unmarked(&self, polynomial: &Polynomial, marker: Symbol) -> Polynomial {
+        let value = match (&self.marks, self.marker) {
+            (Some(value), _) => value.clone(),
+            (None, None) => Rational::one(),
+            (None, Some(_)) => return polynomial.clone(),
+        };
+        let mut result = num_traits::Zero::zero();
+        for (monomial, number) in polynomial.terms() {
+            let power = value.pow(monomial.exponent(marker));
+            Polynomial::add_term(&mut result, monomial.without(marker), number * power);
+        }
+        result
+    }
+
+    /// How the expansion is cut.
+    pub(super) fn cut_note(&self) -> Note {
+        let together = self.small_with.iter().copied();
+        Note::Cut(Cut::Truncated {
+            small: std::iter::once(self.small).chain(together).collect(),
+            order: self.order,
+            marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
+        })
+    }
+}
+
+/// The force of a free motion with its orders; defaults and highest orders are those in a parameter and in the amplitude.
+///
+/// # Errors
+/// A term that is not small or no polynomial, by name; an order above those that there are.
+pub(super) fn scaling(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+    default: [u32; 2],
+    highest: [u32; 2],
+) -> Result<Scaling, Refusal> {
+    let small = oscillator.small_parameter(options.small.as_deref())?;
+    if let SmallParameter::Parameter(name) = small {
+        let order = order_of(options, default[0], highest[0])?;
+        match oscillator.expand(small, order) {
+            Ok(force) => {
+                within_reach(&force, order)?;
+                return Ok(Scaling {
+                    force,
+                    marker: Some(name),
+                    marks: None,
+                    small: name,
+                    small_with: vec![],
+                    bookkeeping: None,
+                    damping: None,
+                    order,
+                });
+            }
+            Err(OscillatorError::NotSmall { .. }) if !parts.damping.is_zero() => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    if let Some(found) = together(oscillator, parts, options, small, [default[0], highest[0]])? {
+        return Ok(found);
+    }
+    let order = order_of(options, default[1], highest[1])?;
+    in_amplitude(oscillator, parts, order)
+}
+
+/// The expansion in parameters that are small together, or in one that marks all terms but the linear one of an equation that
+/// may have a limit cycle; `None` where the amplitude is to be the small parameter.
+fn together(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+    small: SmallParameter,
+    [default, highest]: [u32; 2],
+) -> Result<Option<Scaling>, Refusal> {
+    let in_amplitude = options.small.is_some() && small == SmallParameter::Amplitude;
+    if parts.damping.is_zero() || in_amplitude {
+        return Ok(None);
+    }
+    let Some(probe) = expand_jointly(oscillator, parts, small, 1) else {
+        return Ok(None);
+    };
+    if probe.parameters.is_empty() && !may_balance(&probe.force) {
+        return Ok(None);
+    }
+    let order = order_of(options, default, highest)?;
+    let Some(joint) = expand_jointly(oscillator, parts, small, order) else {
+        return Ok(None);
+    };
+    within_reach(&joint.force, order)?;
+    let mut parameters = joint.parameters.into_iter();
+    let first = parameters.next();
+    let value = joint.value.unwrap_or_else(One::one);
+    Ok(Some(Scaling {
+        force: joint.force,
+        marker: Some(joint.delta),
+        marks: first.is_some().then(|| value.clone()),
+        bookkeeping: first.is_none().then(|| Definition {
+            symbol: joint.delta,
+            meaning: Expr::number(value),
+        }),
+        small: first.unwrap_or(joint.delta),
+        small_with: parameters.collect(),
+        damping: None,
+        order,
+    }))
+}
+
+/// The expansion in the amplitude, a linear damping taken out and put back as its square.
+fn in_amplitude(oscillator: &Oscillator, parts: &Parts, order: u32) -> Result<Scaling, Refusal> {
+    let velocity = oscillator.velocity();
+    let constant = |term: &&Expr| {
+        let quotient = Expr::divide(term, &Expr::from(velocity));
+        quotient.is_ok_and(|factor| !factor.contains(velocity) && !factor.contains(oscillator.coordinate))
+    };
+    let linear: Vec<Expr> = parts.damping.terms().iter().filter(constant).cloned().collect();
+    let damping = Expr::sum(linear);
+    let mut rest = oscillator.clone();
+    rest.force = (&oscillator.force - &damping).expand()?;
+    let mut force = rest.expand(SmallParameter::Amplitude, order)?;
+    if !damping.is_zero() {
+        let not_polynomial = || Refusal::from(OscillatorError::NotPolynomial(damping.clone().into()));
+        let coefficient = damping.to_polynomial(&mut |_| None)?.ok_or_else(not_polynomial)?;
+        let over = Monomial::power_of(velocity, -1);
+        force.terms.push(Term {
+            order: DAMPING_IN_AMPLITUDE,
+            position: 0,
+            velocity: 1,
+            coefficient: coefficient.times_monomial(&over),
+        });
+    }
+    within_reach(&force, order)?;
+    Ok(Scaling {
+        force,
+        marker: None,
+        marks: None,
+        small: AmplitudeConvention::FirstHarmonic.symbol(),
+        small_with: vec![],
+        bookkeeping: None,
+        damping: (!damping.is_zero()).then_some(damping),
+        order,
+    })
+}
+
+fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusal> {
+    match options.order {
+        Some(asked) if asked > highest => Err(Unsuited::HighestOrder { highest }.to(Method::MultipleScales)),
+        Some(asked) => Ok(asked),
+        None => Ok(default),
+    }
+}
+
+/// An error where powers are so high that an expansion would take too long.
+fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::SecularError> {
+    let terms = force.terms.iter();
+    secular::bounded(
+        terms.map(|term| (term.order, term.position + term.velocity)),
+        order as usize + 1,
+    )
+}

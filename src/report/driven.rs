@@ -1,0 +1,161 @@
+//! A driven motion: its slow equations, its steady motions in symbols, and at numbers beside the true ones.
+
+use std::borrow::Cow;
+
+use super::{Block, Document, Heading};
+use crate::decimal::{decimal, significant};
+use crate::derivation::{Formula, Line};
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::solution::{Modulation, Response, Solution};
+use crate::symbol::Symbol;
+use crate::verify::{JudgedState, Verification};
+
+/// The document of a driven motion.
+pub(super) fn driven<'a>(
+    solution: &'a Solution,
+    response: &Response,
+    verification: Option<&Verification>,
+    tolerance: f64,
+) -> Document<'a> {
+    let title = Block::Title {
+        words: solution.title(),
+        amplitude: solution.amplitude,
+    };
+    let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title]];
+    if let Some(slow) = &solution.modulation {
+        sections.push(slow_equations(solution, response, slow));
+    }
+    sections.push(steady_motions(solution, response));
+    let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
+    let heading = Block::Heading("Validity".to_owned());
+    sections.push(std::iter::once(heading).chain(notes).collect());
+    if let Some(verification) = verification {
+        sections.push(judged(verification, solution, tolerance));
+    }
+    Document { sections }
+}
+
+fn equation<'a>(left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
+    Block::Line(Cow::Owned(Line::equation(left, right)))
+}
+
+/// Words before an equation.
+fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
+    Block::Line(Cow::Owned(Line::equation(left, right).because(words)))
+}
+
+fn slow_equations<'a>(solution: &'a Solution, response: &Response, slow: &Modulation) -> Vec<Block<'a>> {
+    let mut blocks = vec![
+        Block::Heading("Motion and slow equations".to_owned()),
+        equation(solution.coordinate(), response.motion.clone()),
+        equation(slow.amplitude.derivative(), slow.amplitude_rate.clone()),
+        equation(slow.phase.derivative(), slow.phase_rate.clone()),
+    ];
+    blocks.extend(solution.definitions.iter().map(Block::Definition));
+    blocks
+}
+
+fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<'a>> {
+    let mut blocks = vec![Block::Heading("Steady motions".to_owned())];
+    let detuning = detuning(solution);
+    let polynomial = |polynomial: &Polynomial| Expr::from(polynomial);
+    if let Some(relation) = &response.relation {
+        blocks.push(said("frequency response", Expr::zero(), polynomial(relation)));
+    }
+    if let (Some(branches), Some(detuning)) = (&response.branches, detuning) {
+        let centre = polynomial(&branches.centre);
+        if let Ok(width) = polynomial(&branches.width_squared).sqrt() {
+            let either = [&centre - &width, &centre + &width];
+            let words = ["solved for the detuning", "and"];
+            for (words, branch) in words.iter().zip(either) {
+                blocks.push(said(words, detuning, branch));
+            }
+        }
+    }
+    if let Some(frequency) = solution.law.frequency() {
+        blocks.push(said("backbone", Symbol::new("omega"), polynomial(frequency)));
+    }
+    let a = solution.amplitude.symbol();
+    if let Some(peak) = &response.peak {
+        blocks.push(said("largest amplitude", a, peak.clone()));
+    }
+    for fold in &response.folds {
+        let square = Expr::product([Expr::from(a), Expr::from(a)]);
+        blocks.push(said("branches meet at", square, fold.clone()));
+    }
+    if let Some(jumps) = &response.jumps {
+        blocks.push(said(
+            "jumps, where this discriminant changes its sign",
+            Expr::zero(),
+            polynomial(jumps),
+        ));
+    }
+    blocks
+}
+
+fn detuning(solution: &Solution) -> Option<Symbol> {
+    let resonance = solution.modulation.as_ref()?.resonance.as_ref()?;
+    Some(resonance.detuning.symbol)
+}
+
+fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) -> Vec<Block<'a>> {
+    let at = verification.at.iter();
+    let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
+    let at = if at.is_empty() {
+        String::new()
+    } else {
+        format!(" at {}", at.join(", "))
+    };
+    let mut blocks = vec![Block::Heading(format!("Steady motions{at}, beside the true ones"))];
+    if verification.steady_states.is_empty() {
+        blocks.push(Block::Note(
+            "none: the slow equations have no steady motion at these values".to_owned(),
+        ));
+    } else {
+        let heading = |text, latex| Heading { text, latex };
+        blocks.push(Block::Table {
+            head: vec![
+                heading("a", "$a$"),
+                heading("phase", "phase"),
+                heading("stable", "stable"),
+                heading("true a", "true $a$"),
+                heading("error", "error"),
+                heading("deviation", "deviation"),
+                heading("true stable", "true stable"),
+            ],
+            rows: verification.steady_states.iter().map(row).collect(),
+        });
+    }
+    let stable = verification
+        .steady_states
+        .iter()
+        .filter(|judged| judged.state.is_stable());
+    let count = stable.count();
+    let verdict = verification.verdict.name();
+    let within = significant(100.0 * tolerance, 3);
+    blocks.push(Block::Note(format!(
+        "{} steady motions, {count} stable; omega = {} of the motion itself",
+        verification.steady_states.len(),
+        verification.frequency.map_or_else(String::new, decimal)
+    )));
+    blocks.push(Block::Note(format!(
+        "verdict {verdict}: of the largest stable one |error of {}| <= {within} %, and the true one is stable too",
+        solution.amplitude.symbol()
+    )));
+    blocks
+}
+
+fn row(judged: &JudgedState) -> Vec<String> {
+    let yes = |stable: bool| if stable { "yes" } else { "no" }.to_owned();
+    let part = |part: Option<f64>| part.map_or_else(String::new, |part| format!("{} %", significant(100.0 * part, 3)));
+    vec![
+        decimal(judged.state.amplitude),
+        decimal(judged.state.phase),
+        yes(judged.state.is_stable()),
+        judged.true_amplitude.map_or_else(|| "none found".to_owned(), decimal),
+        part(judged.relative_error),
+        part(judged.max_deviation),
+        judged.true_stable.map_or_else(String::new, yes),
+    ]
+}

@@ -1,0 +1,256 @@
+//! Steady motions of a driven oscillator: the frequency-response equation and what follows from it.
+//!
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1 to 4.1.4 and 5.7.
+//!
+//! In: the slow equations of a driven motion. Out, in symbols, the relation between amplitude and detuning, its branches, its
+//! peak and the places where two branches meet; at numbers, every steady motion with the eigenvalues that decide its stability.
+
+use nalgebra::Matrix2;
+
+use super::Solution;
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::numeric::ode::root::find_root;
+use crate::symbol::Symbol;
+
+/// What is known of the steady motions of a driven oscillator. Everything is in the amplitude, the parameters and the definitions
+/// of the solution, the detuning among them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// `x(t)` in `t`, the amplitude and the phase of the slow equations.
+    pub motion: Expr,
+    /// The frequency-response equation: zero at every steady motion; `None` where the phase cannot be eliminated.
+    pub relation: Option<Polynomial>,
+    /// The relation solved for the detuning, where it is quadratic in that.
+    pub branches: Option<Branches>,
+    /// The largest amplitude of all detunings, where it has a closed form.
+    pub peak: Option<Expr>,
+    /// The squares of the amplitudes at which two branches meet, by the detuning, where they have a closed form.
+    pub folds: Vec<Expr>,
+    /// The discriminant of the relation in the square of the amplitude: zero where two branches meet, which is where the
+    /// amplitude jumps.
+    pub jumps: Option<Polynomial>,
+    /// The slow equations in coordinates without a singular origin.
+    pub plane: Plane,
+}
+
+/// `detuning = centre + and - sqrt(width_squared)`; the centre is the backbone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branches {
+    /// The middle of both.
+    pub centre: Polynomial,
+    /// The square of their distance from it; steady motions have amplitudes where it is not negative.
+    pub width_squared: Polynomial,
+}
+
+/// The slow equations in `u = a cos(psi/m)`, `v = -a sin(psi/m)`, with `m` of the resonance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// `u` and `v`.
+    pub coordinates: [Symbol; 2],
+    /// `u'` and `v'`.
+    pub rates: [Polynomial; 2],
+}
+
+/// A steady motion at numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteadyState {
+    /// The amplitude; zero for the motion without a part of its own.
+    pub amplitude: f64,
+    /// The phase of the slow equations, from -pi to pi.
+    pub phase: f64,
+    /// Real and imaginary part of the eigenvalues of the slow equations about it, per unit of time.
+    pub eigenvalues: [(f64, f64); 2],
+}
+
+impl SteadyState {
+    /// Whether small disturbances die out.
+    pub fn is_stable(&self) -> bool {
+        self.eigenvalues.iter().all(|value| value.0 < 0.0)
+    }
+}
+
+impl Solution {
+    /// Every steady motion of a driven oscillator at given values, by its slow equations, largest amplitude first; nothing for
+    /// other motions, where a value is missing, and where the phase cannot be eliminated.
+    ///
+    /// ```
+    /// use lindstedt::{Options, Oscillator, Values, solve};
+    ///
+    /// let duffing = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)")?;
+    /// let solution = solve(&duffing, &Options::default())?;
+    /// let at: Values = "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25".parse()?;
+    /// let states = solution.steady_states(&|name| at.get(name));
+    /// let stable: Vec<bool> = states.iter().map(|state| state.is_stable()).collect();
+    /// assert_eq!(stable, [true, false, true]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn steady_states(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Vec<SteadyState> {
+        self.found_steady_states(value_of).unwrap_or_default()
+    }
+
+    fn found_steady_states(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Vec<SteadyState>> {
+        let response = self.response.as_ref()?;
+        let resonance = self.modulation.as_ref()?.resonance.as_ref()?;
+        let times = f64::from(resonance.times_linear);
+        let plane = Field::new(self, &response.plane, value_of)?;
+        let relation = coefficients(self, response.relation.as_ref()?, self.amplitude.symbol(), value_of)?;
+        let mut states: Vec<SteadyState> = Vec::new();
+        let state = |[u, v]: [f64; 2]| SteadyState {
+            amplitude: u.hypot(v),
+            phase: wrapped(times * (-v).atan2(u)),
+            eigenvalues: plane.eigenvalues([u, v]),
+        };
+        for amplitude in positive_roots(&relation) {
+            if let Some(place) = plane.at_rest_on(amplitude) {
+                states.push(state(place));
+            }
+        }
+        if plane.at([0.0, 0.0]).iter().all(|rate| rate.abs() < 1e-300) {
+            states.push(state([0.0, 0.0]));
+        }
+        states.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+        Some(states)
+    }
+}
+
+/// An angle from -pi to pi.
+fn wrapped(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
+}
+
+/// The coefficients of a polynomial in one symbol, lowest power first.
+fn coefficients(
+    solution: &Solution,
+    polynomial: &Polynomial,
+    symbol: Symbol,
+    value_of: &dyn Fn(Symbol) -> Option<f64>,
+) -> Option<Vec<f64>> {
+    let mut parts: Vec<Polynomial> = Vec::new();
+    for (monomial, number) in polynomial.terms() {
+        let exponent = usize::try_from(monomial.exponent(symbol)).ok()?;
+        if parts.len() <= exponent {
+            parts.resize_with(exponent + 1, num_traits::Zero::zero);
+        }
+        parts[exponent].add_term(monomial.without(symbol), number.clone());
+    }
+    parts
+        .iter()
+        .map(|part| solution.evaluate(part, value_of).ok())
+        .collect()
+}
+
+/// The positive roots of a polynomial, lowest coefficient first: between the zeros of its slope.
+fn positive_roots(coefficients: &[f64]) -> Vec<f64> {
+    let length = coefficients
+        .iter()
+        .rposition(|value| *value != 0.0)
+        .map_or(0, |last| last + 1);
+    let coefficients = &coefficients[..length];
+    let Some((leading, rest)) = coefficients.split_last().filter(|(_, rest)| !rest.is_empty()) else {
+        return vec![];
+    };
+    let value = |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);
+    // Cauchy's bound.
+    let bound = 1.0 + rest.iter().map(|c| (c / leading).abs()).fold(0.0, f64::max);
+    if !bound.is_finite() {
+        return vec![];
+    }
+    let slope: Vec<f64> = coefficients
+        .iter()
+        .enumerate()
+        .skip(1)
+        .map(|(k, c)| k as f64 * c)
+        .collect();
+    let mut places = vec![0.0];
+    places.extend(positive_roots(&slope));
+    places.push(bound);
+    let mut roots: Vec<f64> = Vec::new();
+    for pair in places.windows(2) {
+        if value(pair[0]) * value(pair[1]) < 0.0
+            && let Ok(root) = find_root(value, pair[0], pair[1])
+        {
+            roots.push(root);
+        }
+    }
+    roots
+}
+
+/// The slow equations in the plane, and their slopes, at numbers.
+struct Field<'a> {
+    solution: &'a Solution,
+    plane: &'a Plane,
+    value_of: &'a dyn Fn(Symbol) -> Option<f64>,
+    slopes: [[Polynomial; 2]; 2],
+}
+
+impl<'a> Field<'a> {
+    /// `None` where a value is missing.
+    fn new(solution: &'a Solution, plane: &'a Plane, value_of: &'a dyn Fn(Symbol) -> Option<f64>) -> Option<Self> {
+        let slopes = plane
+            .rates
+            .each_ref()
+            .map(|rate| plane.coordinates.map(|coordinate| rate.slope(coordinate)));
+        let field = Self {
+            solution,
+            plane,
+            value_of,
+            slopes,
+        };
+        let known = plane.rates.iter().all(|rate| field.value(rate, [1.0, 1.0]).is_finite());
+        known.then_some(field)
+    }
+
+    fn value(&self, polynomial: &Polynomial, place: [f64; 2]) -> f64 {
+        let value_of = |name: Symbol| {
+            let own = self.plane.coordinates.iter().position(|own| *own == name);
+            own.map(|index| place[index]).or_else(|| (self.value_of)(name))
+        };
+        self.solution.evaluate(polynomial, &value_of).unwrap_or(f64::NAN)
+    }
+
+    fn at(&self, place: [f64; 2]) -> [f64; 2] {
+        self.plane.rates.each_ref().map(|rate| self.value(rate, place))
+    }
+
+    fn jacobian(&self, place: [f64; 2]) -> Matrix2<f64> {
+        let [[a, b], [c, d]] = self
+            .slopes
+            .each_ref()
+            .map(|row| row.each_ref().map(|slope| self.value(slope, place)));
+        Matrix2::new(a, b, c, d)
+    }
+
+    fn eigenvalues(&self, place: [f64; 2]) -> [(f64, f64); 2] {
+        let found = self.jacobian(place).complex_eigenvalues();
+        [(found[0].re, found[0].im), (found[1].re, found[1].im)]
+    }
+
+    /// The place of rest on the circle of this radius: the best of many directions, and Newton's steps from there.
+    fn at_rest_on(&self, radius: f64) -> Option<[f64; 2]> {
+        const DIRECTIONS: usize = 720;
+        const STEPS: usize = 40;
+        let on_circle = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        let size = |place: [f64; 2]| {
+            let [u, v] = self.at(place);
+            u.hypot(v)
+        };
+        let start = (0..DIRECTIONS)
+            .map(on_circle)
+            .min_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+        let mut place = start;
+        for _ in 0..STEPS {
+            let [u, v] = self.at(place);
+            let step = self.jacobian(place).try_inverse()? * nalgebra::Vector2::new(u, v);
+            place = [place[0] - step[0], place[1] - step[1]];
+            if step.norm() <= 1e-15 * radius {
+                break;
+            }
+        }
+        let near = (place[0].hypot(place[1]) / radius - 1.0).abs() < 1e-6;
+        (near && place.iter().all(|value| value.is_finite())).then_some(place)
+    }
+}

@@ -1,0 +1,264 @@
+//! Steady motions of a driven oscillator against true ones: periodic motions of the equation as it was typed, found by shooting.
+//!
+//! The slow equations say which steady motions there are and where to begin the search; the true motion, its amplitude and its
+//! Floquet multipliers come from Runge-Kutta on the original equation alone.
+//!
+//! ```text
+//! relative_error = a_formula / a_true - 1,   a = amplitude of the harmonic q of the period 2 pi p/Omega
+//! ```
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use super::orbit::SAMPLES;
+use super::{Motions, Verdict, Verification, VerificationError, checked_numbers};
+use crate::exact::rational::from_f64;
+use crate::expr::{CompiledFunction, Expr};
+use crate::method::numbers::symbol_values;
+use crate::numeric::ode::{Options, State, integrate};
+use crate::numeric::periodic::{PeriodicMotion, periodic_motion};
+use crate::oscillator::Oscillator;
+use crate::solution::response::SteadyState;
+use crate::solution::{Response, Solution};
+use crate::symbol::Symbol;
+use crate::values::Values;
+
+/// A steady motion of the slow equations beside the true one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedState {
+    /// By the slow equations.
+    pub state: SteadyState,
+    /// The amplitude of the true motion; `None` where none was found.
+    pub true_amplitude: Option<f64>,
+    /// Whether the true motion attracts, by its Floquet multipliers.
+    pub true_stable: Option<bool>,
+    /// `amplitude / true amplitude - 1`; `None` for a motion without a part of its own.
+    pub relative_error: Option<f64>,
+    /// Largest deviation of the motion over one period, over the largest true displacement.
+    pub max_deviation: Option<f64>,
+}
+
+/// The largest stable steady motion by the formula and the true one, over one period; `None` where there is no such motion.
+pub(super) fn motions(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    response: &Response,
+    at: &Values,
+) -> Result<Option<Motions>, VerificationError> {
+    let question = Question::new(oscillator, solution, response, at)?;
+    let states = question.states();
+    let largest = states.iter().find(|state| state.is_stable()).or(states.first());
+    let Some((state, found)) = largest.and_then(|state| Some((*state, question.truth.near(&question.motion, *state)?)))
+    else {
+        return Ok(None);
+    };
+    let times = (0..=SAMPLES).map(|k| question.truth.period * k as f64 / SAMPLES as f64);
+    let motion = &question.motion;
+    Ok(Some(Motions {
+        formula: times
+            .clone()
+            .map(|t| (t, motion.position(t, state), motion.velocity(t, state)))
+            .collect(),
+        truth: times
+            .map(|t| {
+                let (x, v) = found.at(t);
+                (t, x, v)
+            })
+            .collect(),
+    }))
+}
+
+/// A driven oscillator with numbers.
+struct Question<'a> {
+    solution: &'a Solution,
+    numbers: BTreeMap<Symbol, f64>,
+    /// omega of the motion itself.
+    frequency: f64,
+    truth: Truth,
+    motion: Formula,
+}
+
+impl<'a> Question<'a> {
+    fn new(
+        oscillator: &Oscillator,
+        solution: &'a Solution,
+        response: &Response,
+        at: &Values,
+    ) -> Result<Self, VerificationError> {
+        let mut numbers = checked_numbers(solution, at)?;
+        numbers.remove(&solution.amplitude.symbol());
+        let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
+        let (p, q) = resonance.map_or((1, 1), |resonance| (resonance.times_linear, resonance.times_driving));
+        let driving = resonance.map_or(Ok(1.0), |resonance| resonance.driving_frequency.evaluate(&numbers))?;
+        let period = TAU * f64::from(p) / driving.abs();
+        Ok(Self {
+            solution,
+            frequency: driving.abs() * f64::from(q) / f64::from(p),
+            truth: Truth::new(oscillator, &numbers, period, q)?,
+            motion: Formula::new(solution, response, &numbers)?,
+            numbers,
+        })
+    }
+
+    fn states(&self) -> Vec<SteadyState> {
+        self.solution.steady_states(&|name| self.numbers.get(&name).copied())
+    }
+}
+
+/// Judges the steady motions of a driven oscillator: the verdict is that on the largest stable one.
+pub(super) fn judge(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    response: &Response,
+    at: &Values,
+    tolerance: f64,
+) -> Result<Verification, VerificationError> {
+    let question = Question::new(oscillator, solution, response, at)?;
+    let states = question.states().into_iter();
+    let states: Vec<JudgedState> = states
+        .map(|state| question.truth.beside(&question.motion, state))
+        .collect();
+    let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
+    let passed = judged.is_some_and(|judged| {
+        let agrees = judged.true_stable == Some(judged.state.is_stable());
+        agrees
+            && judged
+                .relative_error
+                .map_or(judged.state.amplitude == 0.0, |error| error.abs() <= tolerance)
+    });
+    let symbols = symbol_values(oscillator, solution, &question.numbers, None);
+    Ok(Verification {
+        at: at.clone(),
+        frequency: Some(question.frequency),
+        reason: None,
+        true_frequency: question.frequency,
+        relative_error: judged.and_then(|judged| judged.relative_error),
+        judged_on: "amplitude",
+        error_of_omega: None,
+        max_deviation: judged.and_then(|judged| judged.max_deviation),
+        residual: None,
+        slope: None,
+        ranges: vec![],
+        chosen: vec![],
+        values: symbols.values,
+        phase: 0.0,
+        motion: None,
+        steady_states: states,
+        verdict: Verdict::of(passed),
+    })
+}
+
+/// The equation as it was typed, with numbers for its parameters.
+struct Truth {
+    force: CompiledFunction,
+    period: f64,
+    /// The harmonic of the period whose amplitude is meant.
+    own: u32,
+}
+
+impl Truth {
+    fn new(
+        oscillator: &Oscillator,
+        numbers: &BTreeMap<Symbol, f64>,
+        period: f64,
+        own: u32,
+    ) -> Result<Self, VerificationError> {
+        let exact = |(name, value): (&Symbol, &f64)| Some((*name, Expr::number(from_f64(*value)?)));
+        let force = oscillator
+            .force
+            .substitute_all(&numbers.iter().filter_map(exact).collect())?;
+        let arguments = [Symbol::new("t"), oscillator.coordinate, oscillator.velocity()];
+        Ok(Self {
+            force: CompiledFunction::new(&force, &arguments)?,
+            period,
+            own,
+        })
+    }
+
+    /// The true periodic motion near one by the formula.
+    fn near(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicMotion> {
+        /// For how long a motion is left to settle.
+        const PERIODS: f64 = 200.0;
+        let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
+        let size = motion.size(self.period, state);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
+        let found = periodic_motion(&acceleration, self.period, start, size);
+        // Near a fold the search may miss what a motion settles on all the same.
+        let settled = || {
+            let [x, v] = start;
+            let options = Options::with_tolerance(1e-9);
+            let end = PERIODS * self.period;
+            let path = integrate(acceleration, State { t: 0.0, x, v }, end, &[], &options).ok()?;
+            let end = path.end();
+            periodic_motion(&acceleration, self.period, [end.x, end.v], size).ok()
+        };
+        match found {
+            Ok(found) => Some(found),
+            Err(_) if state.is_stable() => settled(),
+            Err(_) => None,
+        }
+    }
+
+    fn beside(&self, motion: &Formula, state: SteadyState) -> JudgedState {
+        let found = self.near(motion, state);
+        let own = found.as_ref().map(|found| found.harmonic(self.own));
+        let error = own.map(|own| state.amplitude / own - 1.0);
+        let deviation = found.as_ref().map(|found| {
+            let times = (0..=SAMPLES).map(|k| self.period * k as f64 / SAMPLES as f64);
+            let pairs = times.map(|t| (found.at(t).0, motion.position(t, state)));
+            let (largest, size) = pairs.fold((0.0_f64, 0.0_f64), |(largest, size), (truth, formula)| {
+                (largest.max((truth - formula).abs()), size.max(truth.abs()))
+            });
+            if size > 0.0 { largest / size } else { 0.0 }
+        });
+        JudgedState {
+            state,
+            true_amplitude: own,
+            true_stable: found.map(|found| found.attracts()),
+            relative_error: error.filter(|error| state.amplitude > 0.0 && error.is_finite()),
+            max_deviation: deviation.filter(|deviation| deviation.is_finite()),
+        }
+    }
+}
+
+/// The motion by the formula, in time, amplitude and phase.
+struct Formula {
+    position: CompiledFunction,
+    velocity: CompiledFunction,
+}
+
+impl Formula {
+    fn new(
+        solution: &Solution,
+        response: &Response,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
+        let value_of = |name: Symbol| numbers.get(&name).copied();
+        let defined = solution.defined_values(&value_of).unwrap_or_default();
+        let known = numbers.iter().map(|(name, value)| (*name, *value)).chain(defined);
+        let exact = |(name, value): (Symbol, f64)| Some((name, Expr::number(from_f64(value)?)));
+        let motion = response.motion.substitute_all(&known.filter_map(exact).collect())?;
+        let t = Symbol::new("t");
+        let phase = solution.modulation.as_ref().map_or(t, |slow| slow.phase);
+        let arguments = [t, solution.amplitude.symbol(), phase];
+        Ok(Self {
+            position: CompiledFunction::new(&motion, &arguments)?,
+            velocity: CompiledFunction::new(&motion.differentiate(t)?, &arguments)?,
+        })
+    }
+
+    fn position(&self, t: f64, state: SteadyState) -> f64 {
+        self.position.call(&[t, state.amplitude, state.phase])
+    }
+
+    fn velocity(&self, t: f64, state: SteadyState) -> f64 {
+        self.velocity.call(&[t, state.amplitude, state.phase])
+    }
+
+    fn size(&self, period: f64, state: SteadyState) -> f64 {
+        const SAMPLES: usize = 64;
+        let place = |k: usize| self.position(period * k as f64 / SAMPLES as f64, state).abs();
+        (0..SAMPLES).map(place).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,461 @@
+//! The method of multiple scales against published slow equations, against true motions, and put back into the equation.
+//!
+//! - Duffing, pendulum, van der Pol: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapters 2 and 3.
+
+use lindstedt::exact::{POLYNOMIALS, Polynomial, ratio};
+use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::method::{Options, Refusal, Unsuited, solve};
+use lindstedt::series::FourierSeries;
+use lindstedt::solution::{Method, Solution};
+use lindstedt::{Oscillator, Symbol, Values, judge};
+
+fn options(order: u32) -> Options {
+    Options {
+        method: Some(Method::MultipleScales),
+        order: Some(order),
+        ..Options::default()
+    }
+}
+
+fn derive(equation: &str, order: u32) -> Solution {
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    solve(&oscillator, &options(order)).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"))
+}
+
+fn of_text(text: &str) -> Polynomial {
+    of_expression(&parse_expression(text).expect("an expression"))
+}
+
+fn of_expression(expression: &Expr) -> Polynomial {
+    let polynomial = expression.expand().and_then(|sum| sum.to_polynomial(&mut |_| None));
+    polynomial.expect("short").expect("a polynomial")
+}
+
+/// `a'` and `psi'`.
+fn slow(solution: &Solution) -> [Polynomial; 2] {
+    let slow = solution.modulation.as_ref().expect("slow equations");
+    [&slow.amplitude_rate, &slow.phase_rate].map(of_expression)
+}
+
+#[test]
+fn published_slow_equations() {
+    for (equation, order, amplitude_rate, phase_rate) in [
+        (
+            "x'' + w^2*x + g*x^3 = 0",
+            3,
+            "0",
+            "w + 3*g*a^2/(8*w) - 15*g^2*a^4/(256*w^3) + 123*g^3*a^6/(8192*w^5)",
+        ),
+        ("x'' + sin(x) = 0", 4, "0", "1 - a^2/16 + a^4/1024"),
+        (
+            "x'' - mu*(1 - x^2)*x' + x = 0",
+            2,
+            "mu*a/2 - mu*a^3/8",
+            "1 - mu^2*(1/8 - a^2/8 + 7*a^4/256)",
+        ),
+        ("x'' + 2*zeta*x' + x = 0", 3, "-zeta*a", "1 - zeta^2/2"),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "-zeta*a", "1 + 3*eps*a^2/8"),
+        ("x'' + x + eps*x'^3 = 0", 1, "-3*eps*a^3/8", "1"),
+        ("x'' + x + eps*x^2 = 0", 2, "0", "1 - 5*eps^2*a^2/12"),
+    ] {
+        let expected = [amplitude_rate, phase_rate].map(of_text);
+        assert_eq!(slow(&derive(equation, order)), expected, "{equation}");
+    }
+}
+
+/// The motion put back into its equation, by the algebra of series alone: time derivatives are `a' d/da + psi' d/dtheta`.
+#[test]
+fn what_is_left_of_the_equation_is_of_the_next_order() {
+    for (equation, small, order) in [
+        ("x'' + x + eps*x^3 = 0", "eps", 3),
+        ("x'' + x + eps*(alpha*x^2 + beta*x^3) = 0", "eps", 3),
+        ("x'' + eps*x' + x + eps*x^3 + eps*x^2*x'^3 = 0", "eps", 3),
+        ("x'' + x + eps*x^2 + eps^2*x'*x^2 + 3*eps^3*x^5 = 0", "eps", 3),
+        ("x'' + x + eps*x*x'^2 - eps^2*x' = 0", "eps", 2),
+        ("x'' + 4*x + eps*(1 + x)*x'^2 = 0", "eps", 3),
+    ] {
+        let solution = derive(equation, order);
+        let [amplitude_rate, phase_rate] = slow(&solution);
+        let (eps, a) = (Symbol::new(small), Symbol::new("a"));
+        let cut = |series: FourierSeries<_>, highest: i32| {
+            series.map(POLYNOMIALS, |coefficient: &Polynomial, _| {
+                coefficient.truncated(eps, highest)
+            })
+        };
+        let highest = order as i32;
+        let constant = |polynomial: &Polynomial| FourierSeries::constant(POLYNOMIALS, polynomial.clone());
+        let rate = |series: &FourierSeries<_>| {
+            let slope = series.map(POLYNOMIALS, |coefficient: &Polynomial, _| coefficient.slope(a));
+            let slow = slope.product(&constant(&amplitude_rate));
+            cut(slow.sum(&series.derivative().product(&constant(&phase_rate))), highest)
+        };
+        let x = &solution.displacement;
+        let velocity = rate(x);
+        let acceleration = rate(&velocity);
+        let residual = of_expression(&solution.equation.left);
+        let names = ["x", "x'", "x''"].map(Symbol::new);
+        let mut sum = FourierSeries::zero(POLYNOMIALS);
+        for (monomial, number) in residual.terms() {
+            let mut rest = monomial.clone();
+            let mut term = FourierSeries::integer(POLYNOMIALS, 1);
+            for (name, series) in names.iter().zip([x, &velocity, &acceleration]) {
+                for _ in 0..monomial.exponent(*name) {
+                    term = cut(term.product(series), highest);
+                }
+                rest = rest.without(*name);
+            }
+            sum = sum.sum(&cut(
+                term.product(&constant(&Polynomial::term(rest, number.clone()))),
+                highest,
+            ));
+        }
+        assert!(sum.is_zero(), "{equation}: {:?}", sum.harmonics());
+        // The next order is not zero: the test would see a mistake.
+        assert!(!x.is_zero());
+    }
+}
+
+/// The error of the frequency against the true one vanishes with the first missing power.
+#[test]
+fn slopes_of_the_error() {
+    for (equation, order, at, slope) in [
+        ("x'' + x + eps*x^3 = 0", 1, "eps = 1/5, a = 1", 2.0),
+        ("x'' + x + eps*x^3 = 0", 2, "eps = 1/5, a = 1", 3.0),
+        ("x'' + x + eps*x^3 = 0", 3, "eps = 1/5, a = 1", 4.0),
+        ("x'' + x + eps*x^2 = 0", 3, "eps = 1/5, a = 1", 4.0),
+        ("x'' + sin(x) = 0", 2, "a = 1/2", 4.0),
+        ("x'' + sin(x) = 0", 4, "a = 1/2", 6.0),
+        ("x'' + sin(x) = 0", 6, "a = 1", 8.0),
+        ("x'' + x + eps*x*x'^2 = 0", 2, "eps = 1/5, a = 1", 3.0),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 3/10", 4.0),
+        ("x'' - mu*(1 - x'^2/3)*x' + x = 0", 2, "mu = 3/10", 4.0),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let solution = derive(equation, order);
+        let at: Values = at.parse().expect("values");
+        let judged = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
+        let measured = judged.slope.expect("a slope");
+        assert!(
+            (measured - slope).abs() < 0.1,
+            "{equation} to order {order}: {measured}"
+        );
+    }
+}
+
+#[test]
+fn several_cycles_each_on_its_own() {
+    // a' = -(eps/2) a (a^2 - 1)(a^2 - 4)/8 and so on: two cycles at 1 and 2 to leading order.
+    let equation = "x'' + x + eps*x'*(4 - 5*(x^2 + x'^2) + (x^2 + x'^2)^2) = 0";
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    for (cycle, amplitude) in [(1, 1), (2, 2)] {
+        let asked = Options {
+            cycle: Some(cycle),
+            ..options(2)
+        };
+        let solution = solve(&oscillator, &asked).expect("a limit cycle");
+        let found = solution.limit_cycle.as_ref().expect("a limit cycle");
+        let leading = found.amplitude.truncated(Symbol::new("eps"), 0);
+        assert_eq!(leading, Polynomial::constant(ratio(amplitude, 1)));
+        let judged = judge(&oscillator, &solution, &"eps = 1/100".parse().expect("values"), 0.01).expect("a verdict");
+        assert!(
+            judged.relative_error.is_some_and(|error| error.abs() < 1e-6),
+            "{judged:?}"
+        );
+        assert!(
+            judged.max_deviation.is_some_and(|deviation| deviation < 1e-3),
+            "{judged:?}"
+        );
+    }
+}
+
+#[test]
+fn refusals_name_what_is_in_the_way() {
+    let refused = |equation: &str, order| {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        solve(&oscillator, &options(order)).expect_err("refused")
+    };
+    let highest = |highest| Unsuited::HighestOrder { highest }.to(Method::MultipleScales);
+    assert_eq!(refused("x'' + x + eps*x^3 = 0", 4), highest(3));
+    assert_eq!(refused("x'' + sin(x) = 0", 7), highest(6));
+    for (equation, term) in [
+        ("x'' + x + eps*sgn(x') = 0", "eps*sgn(x')"),
+        ("x'' + x + eps*abs(x)*x = 0", "eps*abs(x)*x"),
+    ] {
+        let refusal = refused(equation, 2);
+        assert!(matches!(&refusal, Refusal::Oscillator(_)), "{equation}: {refusal}");
+        assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
+    }
+}
+
+const FORCED_DUFFING: &str = "x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t)";
+
+fn driven(equation: &str, resonance: (u32, u32), order: u32) -> Solution {
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    let asked = Options {
+        resonance: Some(resonance),
+        ..options(order)
+    };
+    solve(&oscillator, &asked).unwrap_or_else(|refusal| panic!("{equation} at {resonance:?}: {refusal}"))
+}
+
+/// Nayfeh and Mook, section 4.1: equations (4.1.18), (4.1.37), (4.1.52) with their phase, and (5.7.19).
+#[test]
+fn published_slow_equations_of_driven_motions() {
+    for (equation, resonance, amplitude_rate, phase_rate) in [
+        (
+            FORCED_DUFFING,
+            (1, 1),
+            "-c*a/2 + F/(2*w)*sin(psi)",
+            "sigma - 3*g*a^2/(8*w) + F/(2*w*a)*cos(psi)",
+        ),
+        (
+            FORCED_DUFFING,
+            (1, 3),
+            "-c*a/2 - g*Lambda^3/w*sin(psi)",
+            "sigma - 3*g*Lambda^2/w - 3*g*a^2/(8*w) - g*Lambda^3/(w*a)*cos(psi)",
+        ),
+        (
+            FORCED_DUFFING,
+            (3, 1),
+            "-c*a/2 - 3*g*Lambda/(4*w)*a^2*sin(psi)",
+            "sigma - 9*g*Lambda^2/w - 9*g*a^2/(8*w) - 9*g*Lambda/(4*w)*a*cos(psi)",
+        ),
+        (
+            "x'' + c*x' + w^2*x + g*x^3 + h*x*cos(Omega*t) = 0",
+            (2, 1),
+            "-c*a/2 - h/(4*w)*a*sin(psi)",
+            "sigma - 3*g*a^2/(4*w) - h/(2*w)*cos(psi)",
+        ),
+        (
+            "x'' + c*x' + w^2*x + g*x^2 = F*cos(Omega*t)",
+            (1, 2),
+            "-c*a/2 - g*Lambda^2/w*sin(psi)",
+            "sigma - g*Lambda^2/(w*a)*cos(psi)",
+        ),
+        (
+            "x'' + c*x' + w^2*x + g*x^2 = F*cos(Omega*t)",
+            (2, 1),
+            "-c*a/2 - g*Lambda/w*a*sin(psi)",
+            "sigma - 2*g*Lambda/w*cos(psi)",
+        ),
+    ] {
+        let solution = driven(equation, resonance, 1);
+        let slow = solution.modulation.as_ref().expect("slow equations");
+        for (found, expected) in [(&slow.amplitude_rate, amplitude_rate), (&slow.phase_rate, phase_rate)] {
+            let difference = found - &parse_expression(expected).expect("an expression");
+            let left = difference.expand().expect("short");
+            assert!(left.is_zero(), "{equation} at {resonance:?}: {found} is not {expected}");
+        }
+    }
+}
+
+/// The frequency-response equation of the primary resonance, (4.1.21), its peak and where its branches meet.
+#[test]
+fn frequency_response_of_the_primary_resonance() {
+    let solution = driven("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)", (1, 1), 1);
+    let response = solution.response.as_ref().expect("a response");
+    let relation = of_text("zeta^2*a^2 + (sigma*a - 3*eps*a^3/8)^2 - F^2/4");
+    assert_eq!(response.relation, Some(relation));
+    let peak = parse_expression("F/(2*zeta)").expect("an expression");
+    assert_eq!(response.peak, Some(peak));
+    // Where two branches meet the relation has a double root, and the discriminant vanishes.
+    let at: Values = "zeta = 1/100, eps = 1/10, F = 1/10".parse().expect("values");
+    let value = |polynomial: &Polynomial, sigma: f64| {
+        let value_of = |name: Symbol| {
+            if name.name() == "sigma" {
+                Some(sigma)
+            } else {
+                at.get(name)
+            }
+        };
+        polynomial.evaluate(value_of).expect("a value")
+    };
+    let jumps = response.jumps.as_ref().expect("a discriminant");
+    let count = |omega: f64| {
+        let value_of = |name: Symbol| {
+            if name.name() == "Omega" {
+                Some(omega)
+            } else {
+                at.get(name)
+            }
+        };
+        solution.steady_states(&value_of).len()
+    };
+    let mut changes = 0;
+    let grid: Vec<f64> = (0..400).map(|k| 0.9 + 0.003 * f64::from(k)).collect();
+    for pair in grid.windows(2) {
+        let signs = [pair[0], pair[1]].map(|omega| value(jumps, omega - 1.0) > 0.0);
+        let counts = [count(pair[0]), count(pair[1])];
+        assert_eq!(signs.map(|positive| if positive { 3 } else { 1 }), counts, "{pair:?}");
+        changes += usize::from(signs[0] != signs[1]);
+    }
+    assert_eq!(changes, 2, "one jump up, one jump down");
+}
+
+/// Every steady motion against the true periodic one, found by shooting: amplitude and stability.
+#[test]
+fn steady_motions_are_the_true_ones() {
+    let duffing = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
+    let helmholtz = "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)";
+    let parametric = "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0";
+    let by_sine = "x'' + 2*zeta*x' + x + eps*x^3 = F*sin(Omega*t)";
+    let pendulum = "x'' + x'/100 + sin(x) = cos(19*t/20)/50";
+    for (equation, at, order, count, stable, error) in [
+        (
+            duffing,
+            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
+            1,
+            3,
+            2,
+            4e-2,
+        ),
+        (
+            duffing,
+            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
+            2,
+            3,
+            2,
+            4e-3,
+        ),
+        (
+            by_sine,
+            "zeta = 1/200, eps = -1/100, F = 1/50, Omega = 247/250",
+            1,
+            1,
+            1,
+            1e-2,
+        ),
+        (
+            duffing,
+            "zeta = 1/1000, eps = 1/200, F = 1, Omega = 67/200",
+            1,
+            1,
+            1,
+            2e-2,
+        ),
+        (
+            duffing,
+            "zeta = 1/1000, eps = 1/200, F = 1, Omega = 67/200",
+            2,
+            1,
+            1,
+            2e-4,
+        ),
+        (
+            duffing,
+            "zeta = 1/2000, eps = 1/200, F = 10, Omega = 31/10",
+            1,
+            3,
+            2,
+            1e-2,
+        ),
+        (
+            parametric,
+            "zeta = 1/200, h = 1/20, eps = 1/100, Omega = 2",
+            1,
+            2,
+            1,
+            1e-3,
+        ),
+        (
+            helmholtz,
+            "zeta = 1/200, eps = 1/50, F = 1, Omega = 101/200",
+            1,
+            1,
+            1,
+            8e-2,
+        ),
+        (pendulum, "", 2, 3, 2, 4e-2),
+        (pendulum, "", 4, 3, 2, 1e-2),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let at: Values = at.parse().expect("values");
+        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at);
+        let solution = solve(&oscillator, &asked).expect(equation);
+        let judged = judge(&oscillator, &solution, &at, error).expect(equation);
+        let states = &judged.steady_states;
+        assert_eq!(states.len(), count, "{equation}: {states:?}");
+        let found = states.iter().filter(|judged| judged.state.is_stable()).count();
+        assert_eq!(found, stable, "{equation}: {states:?}");
+        for state in states {
+            assert_eq!(
+                state.true_stable,
+                Some(state.state.is_stable()),
+                "{equation}: {state:?}"
+            );
+            assert!(
+                state.relative_error.is_none_or(|value| value.abs() < error),
+                "{equation}: {state:?}"
+            );
+        }
+        assert_eq!(judged.verdict, lindstedt::Verdict::Pass, "{equation}");
+    }
+}
+
+/// All that is small made smaller together: the error of the amplitude to order n vanishes with the power n, and the table of
+/// `docs/multiple-scales.md` is what is computed.
+#[test]
+fn slopes_of_the_error_of_driven_motions() {
+    let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    let orders = [1, 2].map(|order| driven(equation, (1, 1), order));
+    let largest = |solution: &Solution, d: u32| {
+        let at = format!("zeta = 1/{d}, eps = 1/{d}, F = 3/{d}, Omega = {}/{d}", d + 1);
+        let judged = judge(&oscillator, solution, &at.parse().expect("values"), 0.1).expect("a verdict");
+        let [state] = judged.steady_states.as_slice() else {
+            panic!("{judged:?}");
+        };
+        (state.state.amplitude, state.relative_error.expect("an error"))
+    };
+    let page = include_str!("../../docs/multiple-scales.md");
+    let mut errors: Vec<[f64; 2]> = Vec::new();
+    for line in page
+        .lines()
+        .filter(|line| line.starts_with("| ") && line.ends_with(" % |"))
+    {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let number = |index: usize| cells[index].trim_end_matches(" %").parse::<f64>().expect("a number");
+        let d = cells[1].parse().expect("a whole number");
+        let found = orders.each_ref().map(|solution| largest(solution, d));
+        for (k, (amplitude, error)) in found.iter().enumerate() {
+            assert!((amplitude - number(2 * k + 2)).abs() < 6e-5, "{line}: {amplitude}");
+            assert!((100.0 * error - number(2 * k + 3)).abs() < 6e-4, "{line}: {error}");
+        }
+        errors.push(found.map(|(_, error)| error.abs()));
+    }
+    assert_eq!(errors.len(), 4);
+    for pair in errors.windows(2) {
+        for (order, (before, after)) in [1.0, 2.0].iter().zip(pair[0].iter().zip(pair[1])) {
+            let slope = (before / after).log2();
+            assert!((slope - order).abs() < 0.1, "order {order}: {slope}");
+        }
+    }
+}
+
+#[test]
+fn drives_that_are_refused_by_name() {
+    let refused = |equation: &str| {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        solve(&oscillator, &Options::default()).expect_err("refused")
+    };
+    for (equation, term) in [
+        ("x'' + x = cos(t)", "cos(t)"),
+        ("x'' + t*x = 0", "t*x"),
+        ("x'' + x = exp(-t)", "exp(-t)"),
+        ("x'' + x + x^3 = cos(t)^2", "cos(t)^2"),
+        ("x'' + x + x^3 = cos(2*t) + cos(3*t)", "cos(3*t)"),
+    ] {
+        let refusal = refused(equation);
+        assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
+        assert!(refusal.help().is_some(), "{equation}");
+    }
+    // A cubic force knows no resonance 2:1 to first order; the refusal says which it knows.
+    let oscillator = Oscillator::parse(FORCED_DUFFING).expect("an oscillator");
+    let asked = Options {
+        resonance: Some((2, 1)),
+        ..options(1)
+    };
+    let others = vec![(1, 1), (3, 1), (1, 3)];
+    let expected = Unsuited::NoResonance { asked: (2, 1), others }.to(Method::MultipleScales);
+    assert_eq!(solve(&oscillator, &asked), Err(expected));
+}

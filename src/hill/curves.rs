@@ -34,8 +34,21 @@ pub struct TransitionCurve {
     pub middle: Polynomial,
     /// What stands under the root; none where the curve is a power series.
     pub under_root: Option<Polynomial>,
-    /// Whether the root is added.
+    /// Whether it is the upper one of its pair where what is small is positive: the one to which the root is added.
     pub upper: bool,
+    /// What the motion on the curve is made of.
+    pub motion: WavesOfMotion,
+}
+
+/// What a motion on a curve is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WavesOfMotion {
+    /// Of cosines alone.
+    Cosines,
+    /// Of sines alone.
+    Sines,
+    /// Of both.
+    Both,
 }
 
 /// The curves of tongue n.
@@ -48,10 +61,24 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
         middle,
         under_root: None,
         upper: false,
+        motion: match letter {
+            "a" => WavesOfMotion::Cosines,
+            _ => WavesOfMotion::Sines,
+        },
     };
     let [[cosine, upper_right], [lower_left, sine]] = &matrix;
+    // Only then no order mixes cosines and sines.
+    let is_even = hill.graded.iter().all(|[stiffness, damping]| {
+        let waves = |series: &FourierSeries<Polynomials>| series.harmonics();
+        waves(stiffness).iter().all(|(_, _, sine)| sine.is_zero())
+            && waves(damping).iter().all(|(_, cosine, _)| cosine.is_zero())
+    });
     if tongue == 0 {
-        return Ok(vec![named("a", power.solved(cosine, tongue))]);
+        let mut curve = named("a", power.solved(cosine, tongue));
+        if !is_even {
+            curve.motion = WavesOfMotion::Both;
+        }
+        return Ok(vec![curve]);
     }
     if upper_right.is_zero() && lower_left.is_zero() {
         let mut pair = vec![
@@ -68,6 +95,12 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
             pair.swap(0, 1);
         }
         pair[1].upper = true;
+        if !is_even {
+            for (curve, side) in pair.iter_mut().zip(["lower", "upper"]) {
+                curve.name = format!("{side}{tongue}");
+                curve.motion = WavesOfMotion::Both;
+            }
+        }
         return Ok(pair);
     }
     let middle = cosine.sum_with(sine).scaled(&ratio(1, 2));
@@ -104,6 +137,7 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
                 ),
                 under_root: None,
                 upper,
+                motion: WavesOfMotion::Both,
             },
             None => TransitionCurve {
                 name,
@@ -111,6 +145,7 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
                 middle: middle.clone(),
                 under_root: Some(root.clone()),
                 upper,
+                motion: WavesOfMotion::Both,
             },
         }
     };
@@ -295,41 +330,52 @@ impl Powers<'_> {
 
     /// A polynomial in even powers, of either sign, of `name`, with a power series in place of its square.
     fn with_square(&self, polynomial: &Polynomial, name: Symbol, square: &Polynomial) -> Polynomial {
-        let mut powers: std::collections::BTreeMap<i32, Polynomial> = std::collections::BTreeMap::new();
+        let exponents = || polynomial.terms().map(|(monomial, _)| monomial.exponent(name) / 2);
+        let highest = |sign: i32| exponents().map(|exponent| sign * exponent).max().unwrap_or(0).max(0);
+        let inverse = self.inverse(square);
+        let [above, below] =
+            [(square, highest(1)), (&inverse, highest(-1))].map(|(base, highest)| self.powers(base, highest));
         let mut sum = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
             let exponent = monomial.exponent(name) / 2;
-            let power = powers.entry(exponent).or_insert_with(|| self.power(square, exponent));
+            let powers = if exponent < 0 { &below } else { &above };
             let term = Polynomial::term(monomial.without(name), number.clone());
-            sum.accumulate(&self.cut(&term.product(power), i64::from(self.order) + 2));
+            let power = &powers[exponent.unsigned_abs() as usize];
+            sum.accumulate(&self.cut(&term.product(power), self.highest()));
         }
         sum
     }
 
-    /// A whole power of a series that begins with a single term.
-    fn power(&self, series: &Polynomial, exponent: i32) -> Polynomial {
-        let highest = i64::from(self.order) + 2;
-        let one = Polynomial::constant(Rational::one());
-        let base = match exponent < 0 {
-            false => series.clone(),
-            true => {
-                // 1/(s (1 + u)) = (1 - u + u^2 - ...)/s
-                let first = self.kept(series, |degree| degree == 0);
-                let Some(inverse) = first
-                    .single_term()
-                    .map(|(monomial, number)| Polynomial::term(monomial.power(-1), number.recip()))
-                else {
-                    return Polynomial::zero();
-                };
-                let rest = series.less(&first).product(&inverse).scaled(&ratio(-1, 1));
-                let mut sum = one.clone();
-                for _ in 0..=self.order + 2 {
-                    sum = self.cut(&one.sum_with(&rest.product(&sum)), highest);
-                }
-                sum.product(&inverse)
-            }
+    /// What is kept while a series is made: a little more than what is shown.
+    fn highest(&self) -> i64 {
+        i64::from(self.order) + 2
+    }
+
+    /// The powers of a series from 0 to the highest.
+    fn powers(&self, base: &Polynomial, highest: i32) -> Vec<Polynomial> {
+        let mut powers = vec![Polynomial::constant(Rational::one())];
+        for power in 0..highest as usize {
+            powers.push(self.cut(&powers[power].product(base), self.highest()));
+        }
+        powers
+    }
+
+    /// One over a series that begins with a single term: `1/(s (1 + u)) = (1 - u + u^2 - ...)/s`.
+    fn inverse(&self, series: &Polynomial) -> Polynomial {
+        let first = self.kept(series, |degree| degree == 0);
+        let inverse = first
+            .single_term()
+            .map(|(monomial, number)| Polynomial::term(monomial.power(-1), number.recip()));
+        let Some(inverse) = inverse else {
+            return Polynomial::zero();
         };
-        (0..exponent.unsigned_abs()).fold(one, |power, _| self.cut(&power.product(&base), highest))
+        let one = Polynomial::constant(Rational::one());
+        let rest = series.less(&first).product(&inverse).scaled(&ratio(-1, 1));
+        let mut sum = one.clone();
+        for _ in 0..=self.highest() {
+            sum = self.cut(&one.sum_with(&rest.product(&sum)), self.highest());
+        }
+        sum.product(&inverse)
     }
 
     /// The root of a power series whose least part is the square of a single term.
@@ -402,7 +448,7 @@ impl Powers<'_> {
             [low, high]
         };
         let [low, high] = split(&function);
-        let unit = power.power(&high, -1);
+        let unit = power.inverse(&high);
         let one = Polynomial::constant(Rational::one());
         let mut quotient = unit.clone();
         for _ in 0..=self.order + 2 {

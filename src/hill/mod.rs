@@ -27,7 +27,7 @@ use crate::series::FourierSeries;
 use crate::solution::Sum;
 use crate::symbol::Symbol;
 
-pub use curves::TransitionCurve;
+pub use curves::{TransitionCurve, WavesOfMotion};
 pub use periodic::Frequency;
 pub use truth::{Chart, JudgedCurve, TruthError, chart, judge};
 

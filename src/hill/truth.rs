@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, Schur, SymmetricEigen};
 use thiserror::Error;
 
-use super::{TransitionCurve, TransitionCurves, Unknown};
+use super::{TransitionCurve, TransitionCurves, Unknown, WavesOfMotion};
 use crate::expr::Expr;
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
@@ -192,6 +192,19 @@ fn formula(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMa
     value.is_finite().then_some(value)
 }
 
+/// Whether a curve is the upper one of its pair at the numbers: where what is small is negative, two of them change places.
+fn is_upper(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMap<Symbol, f64>) -> bool {
+    let other = curves
+        .curves
+        .iter()
+        .find(|other| other.tongue == curve.tongue && *other != curve);
+    let value = |curve| formula(curves, curve, numbers);
+    match (value(curve), other.and_then(value)) {
+        (Some(own), Some(other)) if own != other => own > other,
+        _ => curve.upper,
+    }
+}
+
 /// Where the equation has the motion of the curve in truth; none where its tongue is closed there.
 fn true_value(
     curves: &TransitionCurves,
@@ -211,7 +224,7 @@ fn true_value(
             let slope = slope
                 .and_then(|slope| slope.evaluate(&with(0.0)).ok())
                 .ok_or(TruthError::Coefficients)?;
-            let above = curve.upper == (slope > 0.0);
+            let above = is_upper(curves, curve, numbers) == (slope > 0.0);
             let mu = Coefficients::of(curves, &with(0.0))?.eigenvalue(curve, above)?;
             mu.is_real.then_some(mu.value / slope)
         }
@@ -234,8 +247,9 @@ fn frequency_without_remainder(
     curve: &TransitionCurve,
     with: &dyn Fn(f64) -> BTreeMap<Symbol, f64>,
 ) -> Result<Option<f64>, TruthError> {
+    let upper = is_upper(curves, curve, &with(1.0));
     // mu grows with the frequency: the larger of two comes to zero first.
-    let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !curve.upper);
+    let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper);
     // Where nothing varies mu is n^2 Omega^2/4 less the mean stiffness.
     let unit = Coefficients::of(curves, &with(1.0))?;
     let count = curve.tongue as f64 * unit.frequency;
@@ -325,6 +339,11 @@ impl Coefficients {
             .step_by(2)
             .flat_map(|k| [(k, false), (k, true)])
             .filter(|wave| *wave != (0, true))
+            .filter(|(_, is_sine)| match curve.motion {
+                WavesOfMotion::Cosines => !is_sine,
+                WavesOfMotion::Sines => *is_sine,
+                WavesOfMotion::Both => true,
+            })
             .collect();
         let count = self.samples.len();
         let half = self.frequency / 2.0;
@@ -364,10 +383,12 @@ impl Coefficients {
                 .collect()
         };
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // In the even class that of tongue 0 stands before the pairs.
-        let index = match (curve.tongue, above) {
-            (0, _) => 0,
-            (tongue, above) => tongue - 1 + usize::from(above),
+        // Of both waves, that of tongue 0 stands before the pairs; of one, there is one for every second tongue.
+        let index = match (curve.motion, curve.tongue) {
+            (WavesOfMotion::Sines, tongue) => (tongue - 1) / 2,
+            (WavesOfMotion::Cosines, tongue) => tongue / 2,
+            (WavesOfMotion::Both, 0) => 0,
+            (WavesOfMotion::Both, tongue) => tongue - 1 + usize::from(above),
         };
         let (value, imaginary) = values.get(index).copied().ok_or(TruthError::Coefficients)?;
         Ok(Eigenvalue {

@@ -254,3 +254,23 @@ fn the_page_prints_what_is_computed() {
         assert!(page.contains(&row), "docs/stability.md lacks {row}");
     }
 }
+
+/// Where what is small is negative the curves of a pair have changed places.
+#[test]
+fn curves_are_told_apart_on_either_side() {
+    for equation in [
+        "x'' + (delta + eps*cos(2*t))*x = 0",
+        "x'' + (delta + eps*sin(2*t))*x = 0",
+        "x'' + (1 + eps*cos(Omega*t))*x = 0",
+        "x'' + (1 - eps*sin(Omega*t))*x = 0",
+    ] {
+        let derived = curves(equation, 8, 3);
+        for eps in [0.3, -0.3] {
+            let judged = judge(&derived, &values(&[("eps", eps)]), 1e-4).expect("a judgement");
+            assert!(
+                judged.iter().all(|curve| curve.passes && curve.value.is_some()),
+                "{equation}, {eps}: {judged:?}"
+            );
+        }
+    }
+}

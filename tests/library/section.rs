@@ -166,7 +166,7 @@ fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
             .collect::<std::collections::BTreeMap<String, f64>>()
     };
     let period = TAU / w;
-    let (before, after) = (work_until(40.0 * period), work_until(41.0 * period));
+    let (before, after) = (work_until(80.0 * period), work_until(81.0 * period));
     let square = 1.0 / ((1.0 - w * w).powi(2) + c * c * w * w);
     let expected = PI * c * w * square;
     for (name, sign) in [("c*x'", -1.0), ("-cos(W*t)", 1.0)] {

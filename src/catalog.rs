@@ -63,6 +63,7 @@ const fn omega_squared(law: &'static str, order: u32) -> Option<Published> {
 }
 
 const NAYFEH_MOOK: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 2";
+const NAYFEH_MOOK_DAMPED: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 3";
 const MICKENS: &str = "R. E. Mickens, Truly Nonlinear Oscillations, World Scientific 2010";
 
 /// Every oscillator, in the order of the listing.
@@ -247,6 +248,27 @@ pub const CATALOG: &[Entry] = &[
         title: "spring of Duffing whose stiffness is driven",
         equation: "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 5.7",
+        published: None,
+    },
+    Entry {
+        name: "dry-friction",
+        title: "spring with the dry friction of Coulomb",
+        equation: "x'' + alpha*sgn(x') + x = 0",
+        source: NAYFEH_MOOK_DAMPED,
+        published: None,
+    },
+    Entry {
+        name: "quadratic-damping",
+        title: "spring in a fluid that resists by the square of the speed",
+        equation: "x'' + c*abs(x')*x' + x = 0",
+        source: NAYFEH_MOOK_DAMPED,
+        published: None,
+    },
+    Entry {
+        name: "damped-duffing",
+        title: "hardening spring with viscous damping",
+        equation: "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+        source: NAYFEH_MOOK_DAMPED,
         published: None,
     },
 ];

@@ -259,6 +259,12 @@ impl Solution {
         Ok(values)
     }
 
+    /// The slow equations, where the amplitude changes or a force drives the motion; of a periodic motion none.
+    pub fn slow(&self) -> Option<&Modulation> {
+        let slow = self.modulation.as_ref();
+        slow.filter(|modulation| !modulation.is_conservative() && modulation.release.is_some())
+    }
+
     /// The law that only numbers solve, in one line.
     pub fn by_numbers(&self) -> Option<String> {
         let lines: Vec<String> = self.law.quadrature()?.iter().map(ToString::to_string).collect();
@@ -327,6 +333,21 @@ impl Solution {
         self.displacement = self
             .displacement
             .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
+        if let Some(slow) = &mut self.modulation {
+            slow.round(&round);
+            // Formulas in rounded numbers of many digits say less than the slow equations themselves.
+            if let (Some(_), Some(release)) = (slow.transient.take(), &mut slow.release) {
+                for part in [&mut release.amplitude, &mut release.phase] {
+                    let named = self
+                        .definitions
+                        .iter()
+                        .position(|own| Some(own.symbol) == part.as_symbol());
+                    if let Some(place) = named {
+                        *part = self.definitions.remove(place).meaning;
+                    }
+                }
+            }
+        }
         for step in &mut self.steps {
             if let Some(condition) = &mut step.amplitude {
                 condition.sine = rounded(&condition.sine);
@@ -372,6 +393,16 @@ impl Solution {
 
     /// The law in one line, with the definitions it needs.
     pub fn formula(&self) -> String {
+        if let Some(slow) = self.slow() {
+            let [amplitude, phase] = [slow.amplitude, slow.phase].map(Symbol::derivative);
+            let rates = [&slow.amplitude_rate, &slow.phase_rate];
+            let symbols = rates.into_iter().flat_map(Expr::symbols).collect();
+            let definitions = self.definitions_behind(symbols).into_iter();
+            let definitions =
+                definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
+            let law = format!("{amplitude} = {}, {phase} = {}", rates[0], rates[1]);
+            return std::iter::once(law).chain(definitions).collect();
+        }
         let shown = self.law.in_one_line();
         let law = match shown {
             Shown::Squared(law) => format!("omega^2 = {}", self.ordered(law)),

@@ -145,6 +145,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 VerificationError::Missing(names) => {
                     Failure::refused(&error, names.first().map(|name| format!("--at {name}=VALUE")))
                 }
+                VerificationError::OffCycle => Failure::refused(
+                    &error,
+                    Some("--method averaging follows the motion from A to the cycle".to_owned()),
+                ),
                 _ => Failure::refused(&error, None),
             })?)
         }
@@ -429,6 +433,7 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
         formula_label: &label,
         formula: &motions.formula,
         truth: &motions.truth,
+        envelopes: motions.envelope.as_ref().map_or(&[], |envelopes| envelopes.as_slice()),
         caption: &caption,
     };
     motion_figure(&figure).map_err(|error| Failure::refused(&error, None))

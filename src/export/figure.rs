@@ -242,6 +242,8 @@ pub struct MotionFigure<'a> {
     pub formula: &'a [(f64, f64, f64)],
     /// The truth, sampled at exactly the same times.
     pub truth: &'a [(f64, f64, f64)],
+    /// The envelopes of a motion whose amplitude changes, times and places; none for a periodic one.
+    pub envelopes: &'a [Vec<(f64, f64)>],
     /// Words below the figure, or empty.
     pub caption: &'a str,
 }
@@ -265,6 +267,7 @@ pub struct MotionFigure<'a> {
 ///     formula_label: &solution.title(),
 ///     formula: &sampled.formula,
 ///     truth: &sampled.truth,
+///     envelopes: &[],
 ///     caption: "A pendulum released at 1 rad.",
 /// })?;
 /// assert!(svg.starts_with("<svg") && svg.contains("(rad)"));
@@ -291,11 +294,19 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let displacement = with_unit(format!("displacement {name}"), data.displacement_unit);
     let velocity = format!("velocity {name}′");
     let deviation = with_unit("formula − Runge-Kutta".to_owned(), data.displacement_unit);
-    let motions = over(&formula_time, &truth_time);
+    let mut motions = over(&formula_time, &truth_time);
+    for (k, envelope) in data.envelopes.iter().enumerate() {
+        let label = if k == 0 { "envelope of the formula" } else { "" };
+        motions.push(curve(label, envelope, CurveStyle::DIFFERENCE));
+    }
+    let shown = match data.envelopes.is_empty() {
+        true => "Motion over one true period",
+        false => "Motion and its envelope",
+    };
     let orbits = over(&formula_phase, &truth_phase);
     let deviations = vec![curve("", &difference, CurveStyle::DIFFERENCE)];
     let panels = [
-        panel("Motion over one true period", [&time, &displacement], motions, vec![]),
+        panel(shown, [&time, &displacement], motions, vec![]),
         panel("Phase plane", [&displacement, &velocity], orbits, vec![]),
         panel("Difference", [&time, &deviation], deviations, vec![Guide::Y(0.0, "")]),
     ];
@@ -833,6 +844,7 @@ mod tests {
                 formula_label,
                 formula,
                 truth,
+                envelopes: &[],
                 caption,
             })
         };

@@ -407,8 +407,22 @@ fn motion(solution: &Solution) -> Vec<String> {
     let coordinate = solution.coordinate();
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
-    lines.push("\\theta &= \\omega t".to_owned());
+    lines.push(format!("\\theta &= {}", angle(solution)));
     lines
+}
+
+/// What the angle of a motion is.
+fn angle(solution: &Solution) -> String {
+    let Some(slow) = solution.slow() else {
+        return "\\omega t".to_owned();
+    };
+    let phase = Expr::from(slow.phase);
+    let Some(resonance) = &slow.resonance else {
+        return expression(&phase);
+    };
+    let driven = Expr::from(i64::from(resonance.times_driving)) * &resonance.driving_frequency * Expr::symbol("t");
+    let angle = Expr::divide(&(driven - phase), &Expr::from(i64::from(resonance.times_linear)));
+    angle.map_or_else(|_| String::new(), |angle| expression(&angle))
 }
 
 /// Running text inside `\\text{...}`.

@@ -21,8 +21,8 @@ use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
-use crate::verify::Verification;
 use crate::verify::comparison::Comparison;
+use crate::verify::{Followed, Verification};
 
 /// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
 ///
@@ -303,8 +303,48 @@ fn motion(solution: &Solution) -> String {
     );
     let first = format!("  {}(t) = ", solution.coordinate());
     let mut lines = terms::lines(&waves, &first, "         ");
-    lines.push("         theta = omega*t\n".to_owned());
+    lines.push(format!("         theta = {}\n", angle(solution)));
     lines.join("\n")
+}
+
+/// What the angle of a motion is.
+fn angle(solution: &Solution) -> String {
+    let Some(slow) = solution.slow() else {
+        return "omega*t".to_owned();
+    };
+    let phase = slow.phase;
+    let Some(resonance) = &slow.resonance else {
+        return phase.to_string();
+    };
+    let driven = match resonance.times_driving {
+        1 => format!("{}*t", resonance.driving_frequency),
+        times => format!("{times}*{}*t", resonance.driving_frequency),
+    };
+    match resonance.times_linear {
+        1 => format!("{driven} - {phase}"),
+        times => format!("({driven} - {phase})/{times}"),
+    }
+}
+
+/// How a motion that is not periodic was followed, name by name.
+fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
+    let mut lines = vec![(
+        "followed to",
+        format!("t = {}: {}", decimal(followed.until), followed.reason),
+    )];
+    if let Some(error) = followed.amplitude_error {
+        let error = size_in_percent(error);
+        lines.push(("error of amplitude", format!("{error} of that at the start")));
+    }
+    let time = |time: Option<f64>| time.map_or("not seen".to_owned(), decimal);
+    if followed.tenth.or(followed.true_tenth).is_some() {
+        let [formula, truth] = [followed.tenth, followed.true_tenth].map(time);
+        lines.push(("a tenth is left at", format!("t = {formula}; true t = {truth}")));
+        if let Some(action) = followed.tenth_by_action {
+            lines.push(("by the action at", format!("t = {}", decimal(action))));
+        }
+    }
+    lines
 }
 
 /// The verdict, number by number.
@@ -342,15 +382,24 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbo
         let deviation = size_in_percent(deviation);
         line(
             "largest deviation",
-            format!("{deviation} of the amplitude over one period"),
+            match verification.followed {
+                None => format!("{deviation} of the amplitude over one period"),
+                Some(_) => format!("{deviation} of the amplitude at the start"),
+            },
         );
+    }
+    for (name, value) in verification.followed.iter().flat_map(followed) {
+        line(name, value);
     }
     if let Some(residual) = verification.residual {
         line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
     }
-    let slope = verification.slope;
-    let slope = slope.map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}"));
-    line("slope of the error", slope);
+    // Of a motion that is not periodic it is not measured.
+    if verification.followed.is_none() {
+        let slope = verification.slope;
+        let slope = slope.map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}"));
+        line("slope of the error", slope);
+    }
     for (name, value) in &verification.chosen {
         let how = if *name == hbar { " (least squared residual)" } else { "" };
         line(name.name(), format!("{}{how}", significant(*value, 6)));

@@ -8,6 +8,7 @@
 //! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`] and a row in [`table::METHODS`].
 
 pub(crate) mod amplitude_frequency;
+pub(crate) mod averaging;
 pub(crate) mod balance;
 pub(crate) mod energy_balance;
 pub(crate) mod exact;
@@ -253,6 +254,24 @@ pub enum Unsuited {
         /// Its highest order.
         highest: u32,
     },
+    /// An order below what a method has.
+    #[error("has no order below {lowest}")]
+    LowestOrder {
+        /// Its lowest order.
+        lowest: u32,
+    },
+    /// A motion whose amplitude changes, measured at its start alone.
+    #[error("measures an amplitude that changes by the first harmonic: a, which begins at A")]
+    SlowAmplitude,
+    /// Slow equations among answers for periodic motions.
+    #[error("gives an amplitude that changes, and no closed form of one that stays")]
+    NoSteadyAmplitude,
+    /// A term whose projection on the first harmonic has no closed form.
+    #[error("knows no closed form for the first harmonic of `{term}`")]
+    NoProjection {
+        /// The term.
+        term: Quotation,
+    },
     /// An option that says nothing to the method.
     #[error("takes no {}", choice.words())]
     NoSuchChoice {
@@ -310,9 +329,11 @@ impl Unsuited {
     fn help(&self, refuser: Refuser) -> Advice {
         let first = |rest: &str| Advice::words("try ").choose(Setting::Order(1)).then(rest);
         match self {
-            Self::Damping { .. } => Advice::words(
-                "there is no frequency-amplitude law of a motion that dies out; leave the term out to get that of the undamped motion",
-            ),
+            Self::Damping { .. } => {
+                Advice::words("there is no frequency-amplitude law of a motion that dies out; try ")
+                    .choose(Setting::Method(Method::Averaging))
+                    .then(" for its decay, or leave the term out to get the law of the undamped motion")
+            }
             Self::Forcing { .. } => Advice::words(
                 "leave the term out to get the frequency of the free vibration (the backbone curve), or try ",
             )
@@ -337,6 +358,12 @@ impl Unsuited {
             Self::NotOdd { .. } | Self::NotOddAbout { .. } => Advice::words("try ")
                 .choose(Setting::Method(Method::HarmonicBalance))
                 .then(", which balances the drift as well"),
+            Self::LowestOrder { lowest } => Advice::words("try ").choose(Setting::Order(*lowest)),
+            Self::SlowAmplitude => Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial)),
+            Self::NoSteadyAmplitude => Advice::words("give numbers for the parameters, in the equation"),
+            Self::NoProjection { .. } => {
+                Advice::words("powers of x and x', their sizes and signs, and (2/pi)*atan(k*x') have one")
+            }
             Self::HighestOrder { highest } => Advice::words("try ").choose(Setting::Order(*highest)),
             Self::NoSuchChoice { choice } => Advice::words(format!("it belongs to {}", that_take(*choice))),
             Self::PolynomialOnly { .. } => match refuser {
@@ -372,6 +399,7 @@ impl Refusal {
                     | Unsuited::ResonanceWithoutDamping { term }
                     | Unsuited::NotOdd { term }
                     | Unsuited::NotOddAbout { term, .. }
+                    | Unsuited::NoProjection { term }
                     | Unsuited::PolynomialOnly { term },
                 ..
             }
@@ -402,7 +430,9 @@ impl Refusal {
                     .then("`, and write a polynomial such as x - eps*x^3/6 for sin(x)")
             }
             Self::NoLimitCycle { .. } => {
-                Advice::words("energy is fed at every amplitude or drained at every amplitude: no motion repeats")
+                Advice::words("energy is fed at every amplitude or drained at every amplitude: no motion repeats; try ")
+                    .choose(Setting::Method(Method::Averaging))
+                    .then(" for how it grows or decays")
             }
             Self::NoSuchCycle { .. } => Advice::words("they are counted from 1, the smallest first"),
             // Numbers alone do not help where there are numbers already.
@@ -433,7 +463,72 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if let Some(asked) = options.order.filter(|&order| order > HIGHEST_ORDER) {
         return Err(Refusal::Order { asked });
     }
-    let method = options.method.unwrap_or_else(|| default_method(oscillator));
+    // A drive has a method of its own.
+    let driven = Some(default_method(oscillator)).filter(|method| *method == Method::MultipleScales);
+    let Some(method) = options.method.or(driven) else {
+        let periodic = solve_by(Method::LindstedtPoincare, oscillator, options);
+        return match &periodic {
+            Err(refusal) if is_of_damping(refusal, oscillator) && options.cycle.is_none() => {
+                averaged_by_default(oscillator, options)
+            }
+            _ => periodic,
+        };
+    };
+    solve_by(method, oscillator, options)
+}
+
+/// Whether an expansion in periodic motions is refused for what drains or feeds energy.
+fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool {
+    let damped = || {
+        let parts = oscillator.parts();
+        parts.is_ok_and(|parts| !parts.damping.is_zero() && parts.forcing.is_zero())
+    };
+    match refusal {
+        Refusal::Unsuited {
+            reason: Unsuited::Damping { .. },
+            ..
+        }
+        | Refusal::AmplitudeNotFree { .. }
+        | Refusal::NoLimitCycle { .. } => damped(),
+        Refusal::Oscillator(
+            OscillatorError::NotSmall { .. } | OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_),
+        ) => damped(),
+        _ => false,
+    }
+}
+
+/// Averaging, to the order asked for or the highest that there is.
+fn averaged_by_default(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let asked = options.order.unwrap_or(1);
+    let mut given = asked;
+    loop {
+        let options = Options {
+            order: Some(given),
+            ..options.clone()
+        };
+        let lower = match solve_by(Method::Averaging, oscillator, &options) {
+            Ok(mut solution) => {
+                if given < asked {
+                    solution.validity.push(Note::HighestOrderHere { asked, given });
+                }
+                return Ok(solution);
+            }
+            Err(Refusal::Unsuited {
+                reason: Unsuited::HighestOrder { highest },
+                ..
+            }) if highest < given => highest,
+            Err(Refusal::Unsuited {
+                reason: Unsuited::PolynomialOnly { .. },
+                ..
+            }) if given > 1 => 1,
+            Err(refusal) => return Err(refusal),
+        };
+        given = lower;
+    }
+}
+
+/// Solves by one method.
+fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let entry = Entry::of(method);
     refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.

@@ -64,16 +64,23 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let order = numerator_degree + denominator_degree;
     let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
-    let highest = if in_amplitude { 2 * order } else { order };
-    let options = Options {
-        order: Some(highest),
-        ..options.clone()
+    let series_to = |highest: u32| {
+        let options = Options {
+            order: Some(highest),
+            ..options.clone()
+        };
+        lindstedt_poincare::solve(oscillator, &options)
     };
-    let mut solution = lindstedt_poincare::solve(oscillator, &options)?;
-    if solution.limit_cycle.is_some() {
-        return Err(refused("the amplitude is not free"));
+    let mut solution = series_to(if in_amplitude { 2 * order } else { order })?;
+    // The frequency of a limit cycle is mostly the same for both signs of what is small.
+    let of_cycle = solution.limit_cycle.is_some() && order > 0;
+    if of_cycle {
+        let further = series_to(2 * order)?;
+        if PowerSeries::of(&further, true).step == 2 {
+            solution = further;
+        }
     }
-    let series = PowerSeries::of(&solution, in_amplitude);
+    let series = PowerSeries::of(&solution, in_amplitude || of_cycle);
     let quotient = quotient(&series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);
     let value = Expr::divide(&Expr::from(&series.with_powers(&quotient.above)), &Expr::from(&below))?;

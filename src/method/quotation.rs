@@ -62,6 +62,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         | Unsuited::NoWave { term }
         | Unsuited::SecondDrive { term }
         | Unsuited::ResonanceWithoutDamping { term }
+        | Unsuited::NoProjection { term }
         | Unsuited::PolynomialOnly { term } => {
             replace(term, typed(term, oscillator, centred));
         }

@@ -3,9 +3,9 @@
 //! In: a [`Method`]. Out: its [`Entry`]: the function that solves, the options it takes, what it sees of a force.
 
 use super::{
-    Options, Refusal, amplitude_frequency, energy_balance, exact, frequency_formula, hamiltonian, harmonic_balance,
-    homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation, lindstedt_poincare, max_min,
-    multiple_scales, one_term, pade, parameter_expansion, variational_iteration,
+    Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula, hamiltonian,
+    harmonic_balance, homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation, lindstedt_poincare,
+    max_min, multiple_scales, one_term, pade, parameter_expansion, variational_iteration,
 };
 use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
@@ -191,6 +191,14 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         method: Method::FrequencyFormula,
         solve: frequency_formula::solve,
         definition: Some(frequency_formula::by_definition),
+        ..OF_THE_SHARED_INTEGRAL
+    },
+    Entry {
+        method: Method::Averaging,
+        solve: averaging::solve,
+        rounded_degree: |_, polynomial| polynomial.then_some(0),
+        definition: None,
+        signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
     Entry {

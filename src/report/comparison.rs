@@ -49,8 +49,12 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
         sections.push(vec![Block::TrueMotion(&comparison.validity)]);
     }
     let convention = comparison.rows.first().map(|row| row.solution.amplitude.to_string());
+    let over = match comparison.rows.iter().any(|row| row.solution.slow().is_some()) {
+        true => "all of that time, of the amplitude at the start",
+        false => "one period, of the amplitude",
+    };
     sections.push(vec![Block::Closing(format!(
-        "{}; deviation: largest over one period, of the amplitude",
+        "{}; deviation: largest over {over}",
         convention.unwrap_or_default()
     ))]);
     Document { sections }

@@ -4,10 +4,13 @@ use std::borrow::Cow;
 
 use super::{Block, Document};
 use crate::decimal::decimal;
+use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::solution::law::Shown;
-use crate::solution::{LeadingCycle, LimitCycle, Solution, constant_in_words};
+use crate::solution::modulation::Release;
+use crate::solution::{LeadingCycle, LimitCycle, Modulation, Solution, constant_in_words};
+use crate::symbol::Symbol;
 use crate::verify::Verification;
 
 /// The document of a solution: equation, title, law, limit cycle, motion with definitions, validity, verdict.
@@ -30,8 +33,11 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
         amplitude: solution.amplitude,
     };
     let shown = solution.law.shown();
-    let laws = shown.into_iter().flat_map(|law| law_blocks(solution, law));
-    let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws.collect()];
+    let laws = match solution.slow() {
+        Some(slow) => slow_equations(solution, slow),
+        None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),
+    };
+    let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws];
     if let Some(cycle) = &solution.limit_cycle {
         let amplitude = Block::CycleAmplitude {
             symbol: solution.amplitude.symbol(),
@@ -42,6 +48,9 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
     }
     let definitions = solution.definitions.iter().map(Block::Definition);
     sections.push(std::iter::once(Block::Motion(solution)).chain(definitions).collect());
+    if let Some(slow) = solution.slow() {
+        sections.extend(slow_motion(slow));
+    }
     let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
     let heading = Block::Heading("Validity".to_owned());
     sections.push(std::iter::once(heading).chain(notes).collect());
@@ -76,6 +85,66 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
                 .collect()
         }
     }
+}
+
+/// The slow equations: `a' = ...`, `psi' = ...`.
+fn slow_equations<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Block<'a>> {
+    let rates = [(slow.amplitude, &slow.amplitude_rate), (slow.phase, &slow.phase_rate)];
+    let polynomials = rates.map(|(_, right)| right.to_polynomial(&mut |_| None).ok().flatten());
+    // One form for both.
+    let both = polynomials.iter().all(Option::is_some);
+    let equation = |((name, right), polynomial): ((Symbol, &'a Expr), Option<Polynomial>)| {
+        let left = Expr::from(name.derivative());
+        match polynomial.filter(|_| both) {
+            Some(polynomial) => Block::Law {
+                left,
+                right: solution.ordered(&polynomial),
+            },
+            None => Block::Equality { left, right },
+        }
+    };
+    rates.into_iter().zip(polynomials).map(equation).collect()
+}
+
+/// The amplitudes that stay, and the motion from its start in closed form.
+fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
+    let mut sections = vec![];
+    if !slow.steady.is_empty() {
+        let line = |cycle: &LeadingCycle| {
+            let amplitude = constant_in_words(&cycle.amplitude);
+            Block::Remark(format!("{} = {amplitude} stays: {}", slow.amplitude, cycle.stability()))
+        };
+        sections.push(slow.steady.iter().map(line).collect());
+    }
+    let Some(transient) = &slow.transient else {
+        return sections;
+    };
+    let start = transient.start;
+    let phase = transient.phase.as_ref().map(|phase| Block::Equality {
+        left: Expr::from(slow.phase),
+        right: phase,
+    });
+    let ends = transient.ends.as_ref().map(|ends| {
+        let what = match slow.amplitude_rate.has_leading_minus() {
+            true => "the amplitude is zero",
+            false => "the amplitude grows beyond every bound",
+        };
+        Block::Remark(format!("until t = {ends}, where {what}"))
+    });
+    let heading = match slow.release.as_ref().is_some_and(Release::is_at_start) {
+        true => format!("Released at rest from {start}"),
+        false => format!("From {}(0) = {start}", slow.amplitude),
+    };
+    let amplitude = Block::Equality {
+        left: Expr::from(slow.amplitude),
+        right: &transient.amplitude,
+    };
+    let blocks = [Block::Heading(heading), amplitude]
+        .into_iter()
+        .chain(phase)
+        .chain(ends);
+    sections.push(blocks.collect());
+    sections
 }
 
 /// The verdict, with what of it is worth saying.

@@ -27,6 +27,8 @@ pub enum Method {
     VariationalIteration,
     /// The slope of the force at half the amplitude.
     FrequencyFormula,
+    /// Slow equations for amplitude and phase, by Krylov, Bogoliubov and Mitropolsky.
+    Averaging,
     /// A quotient of polynomials that agrees with the exact series.
     Pade,
     /// Amplitude and phase on slow times, one for each order.
@@ -56,7 +58,7 @@ pub enum Counts {
 
 impl Method {
     /// Every method, in the order in which they are listed to users.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::LindstedtPoincare,
         Self::HomotopyPerturbation,
         Self::HomotopyAnalysis,
@@ -69,6 +71,7 @@ impl Method {
         Self::Hamiltonian,
         Self::VariationalIteration,
         Self::FrequencyFormula,
+        Self::Averaging,
         Self::Pade,
         Self::MultipleScales,
         Self::Exact,
@@ -101,6 +104,7 @@ impl Method {
             Self::Hamiltonian => ("hamiltonian", "Hamiltonian approach", Counts::Nothing),
             Self::VariationalIteration => ("variational-iteration", "Variational iteration", Counts::Nothing),
             Self::FrequencyFormula => ("frequency-formula", "Frequency formula", Counts::Nothing),
+            Self::Averaging => ("averaging", "Averaging", Counts::Powers),
             Self::Pade => ("pade", "Pade approximant", Counts::Degrees),
             Self::MultipleScales => ("multiple-scales", "Multiple scales", Counts::Powers),
             Self::Exact => ("exact", "Exact frequency", Counts::Nothing),

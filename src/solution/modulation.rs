@@ -12,9 +12,10 @@
 //!
 //! The displacement of the solution is the series in `theta`, its coefficients in `a`.
 
-use super::{Definition, LeadingCycle};
+use super::{AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, LimitCycle, Solution};
+use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// The equations of amplitude and phase, and what is known of their solutions.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,8 @@ pub struct Modulation {
     pub small_with: Vec<Symbol>,
     /// What is in resonance with what; `None` for a free motion.
     pub resonance: Option<Resonance>,
+    /// Where a motion released at rest from `x = A` begins; `None` for a driven motion.
+    pub release: Option<Release>,
     /// The motion from a start in closed form, where there is one.
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first, each with its stability, where they can be written down.
@@ -50,23 +53,107 @@ pub struct Resonance {
     pub detuning: Definition,
 }
 
+/// Amplitude and phase at `t = 0` of a motion with `x(0) = A` about the equilibrium, `x'(0) = 0`, to the order of the equations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Release {
+    /// `a(0)`, in `A` and the parameters.
+    pub amplitude: Expr,
+    /// `psi(0)`, likewise.
+    pub phase: Expr,
+}
+
 /// A motion from its start in closed form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transient {
-    /// The symbol of the amplitude at `t = 0`.
+    /// The symbol of the amplitude at `t = 0`: `A`, or one that the definitions give in it.
     pub start: Symbol,
     /// `a(t)`.
     pub amplitude: Expr,
-    /// `psi(t)` from `psi(0) = 0`, where that is closed as well.
+    /// `psi(t)`, where that is closed as well.
     pub phase: Option<Expr>,
     /// The time from which on the amplitude is zero, or at which it grows without bound; `None` where the formula holds for all
     /// times.
     pub ends: Option<Expr>,
 }
 
+impl Release {
+    /// To leading order: `a(0) = A`, `psi(0) = 0`.
+    pub fn at_start() -> Self {
+        Self {
+            amplitude: Expr::from(AmplitudeConvention::Initial.symbol()),
+            phase: Expr::zero(),
+        }
+    }
+
+    /// Whether it is that.
+    pub fn is_at_start(&self) -> bool {
+        *self == Self::at_start()
+    }
+}
+
 impl Modulation {
+    /// Rounds the coefficients of rates that are polynomials.
+    pub(super) fn round(&mut self, round: &dyn Fn(&Rational) -> Rational) {
+        for rate in [&mut self.amplitude_rate, &mut self.phase_rate] {
+            if let Ok(Some(polynomial)) = rate.to_polynomial(&mut |_| None) {
+                *rate = Expr::from(&polynomial.map(round));
+            }
+        }
+    }
+
     /// Whether nothing drains or feeds energy at this order: the amplitude stays as it is.
     pub fn is_conservative(&self) -> bool {
         self.amplitude_rate.is_zero()
+    }
+}
+
+impl Solution {
+    /// The periodic motion at an amplitude that stays: the smallest that attracts for small positive parameters, else the smallest;
+    /// `None` where none is known.
+    pub fn on_cycle(&self) -> Option<Self> {
+        let modulation = self
+            .modulation
+            .as_ref()
+            .filter(|modulation| modulation.resonance.is_none())?;
+        let attracts = |cycle: &LeadingCycle| {
+            let condition = cycle.attracts_where.as_ref();
+            condition.is_some_and(|condition| !condition.has_leading_minus())
+        };
+        let number = modulation.steady.iter().position(attracts).unwrap_or(0);
+        let amplitude = modulation.steady.get(number)?.amplitude.clone();
+        let mut periodic = self.clone();
+        // An amplitude that is no polynomial has a name.
+        let unit = match amplitude.to_polynomial(&mut |_| None).ok()? {
+            Some(unit) => unit,
+            None => {
+                let symbol = fresh("a0", &self.names());
+                periodic.definitions.push(Definition {
+                    symbol,
+                    meaning: amplitude,
+                });
+                Polynomial::symbol(symbol)
+            }
+        };
+        let a = modulation.amplitude;
+        let settled = |polynomial: &Polynomial| polynomial.substitute(a, &unit);
+        periodic.law = match &self.law {
+            Law::Frequency(frequency) => Law::Frequency(settled(frequency)?),
+            Law::Closed(form) => Law::Closed(ClosedForm {
+                squared: form.squared,
+                value: form.value.substitute(a, &Expr::from(&unit)).ok()?,
+            }),
+            _ => return None,
+        };
+        periodic.displacement = self.displacement.map(POLYNOMIALS, |coefficient, _| {
+            settled(coefficient).unwrap_or_else(|| coefficient.clone())
+        });
+        periodic.limit_cycle = Some(LimitCycle {
+            amplitude: unit.clone(),
+            number: number + 1,
+            cycles: modulation.steady.clone(),
+            small_with: modulation.small_with.clone(),
+        });
+        periodic.modulation = None;
+        Some(periodic)
     }
 }

@@ -99,6 +99,38 @@ pub enum Note {
         /// As which power of the small parameter.
         power: usize,
     },
+    /// Where the steady amplitudes come from, where they are not written down.
+    SteadyAmplitudes {
+        /// The square of the amplitude.
+        square: Symbol,
+        /// What it is a root of.
+        polynomial: Polynomial,
+        /// Why they are not written down.
+        reason: &'static str,
+    },
+    /// Viscous damping of a motion in a force that is not linear.
+    Action {
+        /// What stands before the velocity.
+        rate: Expr,
+        /// Whether it is the pendulum, whose action is known.
+        pendulum: bool,
+    },
+    /// Dry friction on a motion in such a force.
+    HalfSwings {
+        /// The potential energy at a turning point less that at the next.
+        lost: Expr,
+        /// What stands before the sign of the velocity.
+        size: Expr,
+    },
+    /// A motion that nothing drains.
+    Grows,
+    /// An order that a method chosen by default does not reach.
+    HighestOrderHere {
+        /// The order asked for.
+        asked: u32,
+        /// The order given.
+        given: u32,
+    },
     /// A meaning that is taken to be positive.
     Positive(Definition),
     /// An expansion of a force with corners.
@@ -283,6 +315,33 @@ impl fmt::Display for Note {
             } => write!(
                 formatter,
                 "{amplitude}^2 is a root {square} of {polynomial} = 0; the value of {amplitude} is rounded to 15 digits"
+            ),
+            Self::Action { rate, pendulum } => {
+                write!(
+                    formatter,
+                    "for any amplitude the action J, 1/(2*pi) of the area of the orbit, decays as J(A)*exp(-({rate})*t)"
+                )?;
+                match pendulum {
+                    true => formatter.write_str("; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin(a/2)^2"),
+                    false => Ok(()),
+                }
+            }
+            Self::HalfSwings { lost, size } => write!(
+                formatter,
+                "exact from one turning point a_n to the next, a_m: {lost} = {size}*(a_n + a_m)"
+            ),
+            Self::Grows => formatter.write_str("the amplitude grows: energy is fed and nothing drains it"),
+            Self::HighestOrderHere { asked, given } => write!(
+                formatter,
+                "order {asked} was asked for; {given} is the highest for this equation"
+            ),
+            Self::SteadyAmplitudes {
+                square,
+                polynomial,
+                reason,
+            } => write!(
+                formatter,
+                "the amplitudes that stay follow from {polynomial} = 0, {square} = a^2, {reason}"
             ),
             Self::Positive(definition) => {
                 write!(

@@ -10,13 +10,13 @@ use super::orbit::TrueMotion;
 use super::reach::reach;
 use super::validity::{self, Reach};
 use super::{
-    Verdict, VerificationError, checked_numbers, formula_frequency, largest_deviation, meant, numbers_or_reason,
+    Verdict, VerificationError, checked_numbers, formula_frequency, judge, largest_deviation, meant, numbers_or_reason,
 };
-use crate::decimal::significant;
+use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::numbers::NoNumbers;
-use crate::method::{Options, Refusal, solve, with_resonance_at};
+use crate::method::{Options, Refusal, Unsuited, solve, with_resonance_at};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
@@ -94,17 +94,23 @@ pub enum ComparisonError {
     /// No method applies, each for its reason; the message has that of the first.
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
+    /// A motion whose amplitude changes.
+    #[error("there is no curve of omega against the amplitude of a motion whose amplitude changes")]
+    NoBackbone,
     /// There is no true motion to compare with.
     #[error(transparent)]
     Verification(#[from] VerificationError),
 }
 
-/// The variants of each method that are compared: the defaults and, for parameter expansion, the force as a polynomial as
-/// well as the force as it is.
-fn variants(small: Option<&str>) -> Vec<Options> {
+/// The variants of each method that are compared: the defaults, both orders of averaging and, for homotopy perturbation, the first
+/// order as well.
+fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
+    let conserves = oscillator.parts().is_ok_and(|parts| parts.damping.is_zero());
     let default = |method| Options {
         method: Some(method),
         small: small.map(str::to_owned),
+        // Of a motion that loses nothing every row has the same amplitude.
+        amplitude: (method == Method::Averaging && conserves).then_some(AmplitudeConvention::Initial),
         ..Options::default()
     };
     let mut variants = Vec::new();
@@ -113,6 +119,12 @@ fn variants(small: Option<&str>) -> Vec<Options> {
         if method == Method::HomotopyPerturbation {
             variants.push(Options {
                 order: Some(1),
+                ..default(method)
+            });
+        }
+        if method == Method::Averaging {
+            variants.push(Options {
+                order: Some(2),
                 ..default(method)
             });
         }
@@ -149,10 +161,20 @@ pub fn compare(
         });
         return Err(ComparisonError::NoMethod(refused.into()));
     }
-    let (mut solutions, mut refused) = (Vec::new(), Vec::new());
-    for options in variants(small) {
+    let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
+    for options in variants(oscillator, small) {
         let options = with_resonance_at(oscillator, &options, at);
         match (solve(oscillator, &options), options.method) {
+            // Slow equations are compared where their motion settles, as the others are.
+            (Ok(solution), _) if solution.slow().is_some() => match solution.on_cycle() {
+                Some(settled) => solutions.push(settled),
+                None => slow.push(solution),
+            },
+            // What nothing tells the start of is no motion to compare.
+            (Ok(solution), Some(method)) if super::periodic(&solution).is_err() => refused.push(Refused {
+                method,
+                reason: Unsuited::NoSteadyAmplitude.to(method),
+            }),
             (Ok(solution), _) => solutions.push(solution),
             (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
                 refused.push(Refused { method, reason });
@@ -160,12 +182,28 @@ pub fn compare(
             (Err(_), _) => {}
         }
     }
+    let applies = |method: Method| {
+        solutions
+            .iter()
+            .chain(&slow)
+            .any(|solution: &Solution| solution.method == method)
+    };
+    refused.retain(|refused: &Refused| !applies(refused.method));
     solutions.dedup_by(|second, first| second.method == first.method && second.formula() == first.formula());
     let Some(first) = solutions.first() else {
-        return Err(ComparisonError::NoMethod(refused));
+        return match slow.is_empty() {
+            true => Err(ComparisonError::NoMethod(refused)),
+            false => of_transients(oscillator, slow, refused, at, tolerance),
+        };
     };
     if first.response.is_some() {
         return driven(oscillator, at, tolerance, &solutions, refused);
+    }
+    if let Some(solution) = slow.first() {
+        refused.push(Refused {
+            method: solution.method,
+            reason: Unsuited::NoSteadyAmplitude.to(solution.method),
+        });
     }
     super::periodic(first)?;
     // Every row has the motion that starts at A, whatever its formula measures.
@@ -269,6 +307,59 @@ fn driven(
     })
 }
 
+/// The table of a motion that is not periodic, followed from its start.
+fn of_transients(
+    oscillator: &Oscillator,
+    slow: Vec<Solution>,
+    refused: Vec<Refused>,
+    at: &Values,
+    tolerance: f64,
+) -> Result<Comparison, ComparisonError> {
+    let (mut rows, mut truth, mut reason, mut validity) = (vec![], None, None, vec![]);
+    for solution in slow {
+        let judged = match judge(oscillator, &solution, at, tolerance) {
+            Ok(judged) => judged,
+            Err(error) if error.leaves_the_truth_open() => {
+                reason = Some(error);
+                continue;
+            }
+            Err(error) => return Err(error.into()),
+        };
+        truth = truth.or(Some(judged.true_frequency));
+        if let (Some(followed), true) = (&judged.followed, validity.is_empty()) {
+            validity.push(format!(
+                "released at rest from A and followed to t = {}: {}; its frequency is pi over the mean time between its \
+                 passages through the equilibrium",
+                decimal(followed.until),
+                followed.reason
+            ));
+        }
+        rows.push(Row {
+            frequency: judged.frequency,
+            reason: judged.reason,
+            chosen: judged.chosen,
+            relative_error: judged.relative_error,
+            max_deviation: judged.max_deviation,
+            reach: None,
+            verdict: Some(judged.verdict),
+            solution,
+        });
+    }
+    match rows.first() {
+        Some(first) => Ok(Comparison {
+            equation: first.solution.equation.clone(),
+            at: at.clone(),
+            true_frequency: truth,
+            reason,
+            tolerance,
+            rows,
+            refused,
+            validity,
+        }),
+        None => Err(reason.map_or(ComparisonError::NoMethod(refused), ComparisonError::Verification)),
+    }
+}
+
 fn row(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -330,6 +421,9 @@ pub fn backbones(
     const POINTS: usize = 120;
     let no_method = || ComparisonError::NoMethod(comparison.refused.clone());
     let first = &comparison.rows.first().ok_or_else(no_method)?.solution;
+    if first.slow().is_some() {
+        return Err(ComparisonError::NoBackbone);
+    }
     let numbers = checked_numbers(first, &comparison.at)?;
     let truth = validity::backbone(oscillator, first, &numbers);
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());

@@ -159,12 +159,26 @@ fn in_a_parameter(
     /// Longer products would cost more than the rest of the answer.
     const MOST_TERMS: usize = 8;
     const HIGHEST_POWER: u32 = 9;
-    let amplitude = *numbers.get(&solution.amplitude.symbol())?;
+    let cycle = solution.limit_cycle.as_ref();
+    // The frequency of most limit cycles has even powers alone.
+    let highest = if cycle.is_some() {
+        2 * SERIES_TERMS
+    } else {
+        SERIES_TERMS
+    };
+    let amplitude = match cycle {
+        // To leading order, which is where the series of a limit cycle begins.
+        Some(cycle) => {
+            let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
+            solution.evaluate(&solution.leading(&cycle.amplitude), &value_of).ok()?
+        }
+        None => *numbers.get(&solution.amplitude.symbol())?,
+    };
     let numerical = with_numbers(oscillator, numbers, small)?;
     let centred = crate::equilibrium::centred(&numerical, None).ok()?;
     let expanded = centred
         .oscillator
-        .expand(SmallParameter::Parameter(small), SERIES_TERMS as u32);
+        .expand(SmallParameter::Parameter(small), highest as u32);
     let force = expanded.ok()?;
     if force.terms.len() > MOST_TERMS
         || force
@@ -213,16 +227,30 @@ fn in_a_parameter(
         .collect();
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
-        amplitude: Amplitude::Free,
+        amplitude: match cycle {
+            Some(_) => Amplitude::Determined,
+            None => Amplitude::Free,
+        },
         detuning: Detuning::Acceleration,
     };
-    let expansion = expand(&Doubles, &terms, SERIES_TERMS, &scheme).ok()?;
+    let expansion = expand(&Doubles, &terms, highest, &scheme).ok()?;
+    let mut coefficients: Vec<f64> = expansion
+        .frequency_squared
+        .iter()
+        .map(|constant| constant.mean().0)
+        .collect();
+    // Of a limit cycle rounding leaves odd powers where there are none.
+    let odd = || (1..coefficients.len()).step_by(2);
+    let noise = |k: usize| coefficients[k].abs() < 1e-9 * coefficients[k - 1].abs();
+    if cycle.is_some() && odd().all(noise) {
+        coefficients
+            .iter_mut()
+            .skip(1)
+            .step_by(2)
+            .for_each(|value| *value = 0.0);
+    }
     Some(Series {
-        coefficients: expansion
-            .frequency_squared
-            .iter()
-            .map(|constant| constant.mean().0)
-            .collect(),
+        coefficients,
         unit: 1.0 / largest,
     })
 }

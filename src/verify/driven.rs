@@ -55,6 +55,7 @@ pub(super) fn motions(
     let times = (0..=SAMPLES).map(|k| question.truth.period * k as f64 / SAMPLES as f64);
     let motion = &question.motion;
     Ok(Some(Motions {
+        envelope: None,
         formula: times
             .clone()
             .map(|t| (t, motion.position(t, state), motion.velocity(t, state)))
@@ -144,6 +145,7 @@ pub(super) fn judge(
         phase: 0.0,
         motion: None,
         steady_states: states,
+        followed: None,
         verdict: Verdict::of(passed),
     })
 }

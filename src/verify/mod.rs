@@ -21,13 +21,16 @@ mod bounds;
 pub mod comparison;
 pub(crate) mod convergence;
 mod driven;
+mod free_motion;
 mod orbit;
 mod reach;
+mod transient;
 pub(crate) mod validity;
 pub(crate) mod well;
 
 pub use convergence::{Singularity, nearest_singularity};
 pub use driven::JudgedState;
+pub use transient::Followed;
 pub use validity::{Range, Reach};
 pub use well::{End, Well};
 
@@ -45,8 +48,9 @@ use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{Method, Solution};
+use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
+use crate::trajectory::TrajectoryError;
 use crate::values::Values;
 
 /// The error of the frequency below which a formula passes when the user names no tolerance: 1 %.
@@ -112,6 +116,8 @@ pub struct Verification {
     pub motion: Option<FourierSeries<Doubles>>,
     /// Driven motions: every steady motion by the slow equations, largest first, beside the true one.
     pub steady_states: Vec<JudgedState>,
+    /// Motions that are not periodic: what else is known of them.
+    pub followed: Option<Followed>,
     /// The verdict on the frequency; on the amplitude of a driven motion.
     pub verdict: Verdict,
 }
@@ -149,6 +155,24 @@ pub enum VerificationError {
     /// A motion whose amplitude changes.
     #[error("the amplitude of the motion changes, so it has no period to be compared with")]
     NotPeriodic,
+    /// The equation cannot be followed.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
+    /// A motion that ends where it begins.
+    #[error("the true motion cannot be followed past t = {}: a state or its rate has no value there", decimal(*time))]
+    NotFollowed {
+        /// When it ends.
+        time: f64,
+    },
+    /// A start off the limit cycle that a formula describes.
+    #[error("x(0) = A is a start off the limit cycle, and this method describes the cycle alone")]
+    OffCycle,
+    /// A motion that dies out or grows before it swings.
+    #[error("the true motion does not swing: it goes through its equilibrium less than twice")]
+    NoSwing,
+    /// A rate of the phase that is not positive at the start.
+    #[error("not real: the rate of the phase is not positive at the start")]
+    NoSlowFrequency,
     /// The amplitude is zero, and at rest there is nothing to compare.
     #[error(
         "at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against"
@@ -188,6 +212,13 @@ impl VerificationError {
 /// ```
 pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     let mut needed = solution.parameters.clone();
+    if solution.slow().is_some() {
+        // A motion that settles may be judged where it does.
+        if solution.on_cycle().is_none() {
+            needed.push(AmplitudeConvention::Initial.symbol());
+        }
+        return needed;
+    }
     // A law such as omega^2 = 1 for x'' + x + x^2 = 0 is free of A where the true motion is not.
     let linear = || {
         let oscillator = Oscillator::from_equation(&solution.equation);
@@ -224,8 +255,14 @@ pub fn judge(
     if let Some(response) = &solution.response {
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
-    periodic(solution)?;
+    let settled = on_cycle(solution, at);
+    if let (Some(slow), None) = (solution.slow(), &settled) {
+        let numbers = checked_numbers(solution, at)?;
+        return transient::judge(oscillator, solution, slow, at, &numbers, tolerance);
+    }
+    periodic(settled.as_ref().unwrap_or(solution))?;
     let numbers = checked_numbers(solution, at)?;
+    let solution = settled.as_ref().unwrap_or(solution);
     let meant = meant(oscillator, solution, &numbers);
     let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
@@ -269,6 +306,7 @@ pub fn judge(
             true => motion,
             false => motion.by_harmonic(half_a_period),
         }),
+        followed: None,
         verdict: Verdict::of(pass),
     })
 }
@@ -282,6 +320,20 @@ fn periodic(solution: &Solution) -> Result<(), VerificationError> {
     }
 }
 
+/// Slow equations where their motion has settled, unless a start is given.
+fn on_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
+    let started = at.get(AmplitudeConvention::Initial.symbol()).is_some();
+    solution.slow().filter(|_| !started).and_then(|_| solution.on_cycle())
+}
+
+/// What the amplitude among the values is called: that of the start, where it changes.
+fn amplitude_symbol(solution: &Solution) -> Symbol {
+    match solution.slow() {
+        Some(_) => AmplitudeConvention::Initial.symbol(),
+        None => solution.amplitude.symbol(),
+    }
+}
+
 /// The values as numbers.
 ///
 /// # Errors
@@ -290,7 +342,11 @@ fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, 
     let needed = needed_values(solution);
     let mut known = solution.parameters.clone();
     if solution.response.is_none() {
-        known.push(solution.amplitude.symbol());
+        known.push(amplitude_symbol(solution));
+    }
+    let start = AmplitudeConvention::Initial.symbol();
+    if solution.limit_cycle.is_some() && !known.contains(&start) && at.get(start).is_some() {
+        return Err(VerificationError::OffCycle);
     }
     if let Some((name, _)) = at.iter().find(|(name, _)| !known.contains(name)) {
         return Err(VerificationError::Unknown { name, known });
@@ -300,7 +356,7 @@ fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, 
         return Err(VerificationError::Missing(missing));
     }
     // Where the frequency does not depend on the amplitude, any will do to compare the motion.
-    let amplitude_symbol = solution.amplitude.symbol();
+    let amplitude_symbol = amplitude_symbol(solution);
     let numbers = at.with(amplitude_symbol, at.get(amplitude_symbol).unwrap_or(1.0));
     if solution.limit_cycle.is_none() && numbers[&amplitude_symbol] == 0.0 {
         return Err(VerificationError::AtRest);
@@ -317,10 +373,12 @@ pub struct Motions {
     pub formula: Vec<Sample>,
     /// By Runge-Kutta.
     pub truth: Vec<Sample>,
+    /// Motions whose amplitude changes: times and places of its two envelopes by the formula.
+    pub envelope: Option<[Vec<(f64, f64)>; 2]>,
 }
 
-/// The motion by the formula and the true one, at the same instants of one true period; `None` where the formula's
-/// frequency is not real.
+/// The motion by the formula and the true one, at the same instants of one true period, or as long as a motion that is not
+/// periodic is judged; `None` where the formula's frequency is not real.
 ///
 /// # Errors
 /// As for [`judge`].
@@ -343,8 +401,13 @@ pub fn motions(
     if let Some(response) = &solution.response {
         return driven::motions(oscillator, solution, response, at);
     }
-    let symbol = solution.amplitude.symbol();
+    let symbol = amplitude_symbol(solution);
     let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
+    let settled = on_cycle(solution, at);
+    if let (Some(slow), None) = (solution.slow(), &settled) {
+        return transient::motions(oscillator, solution, slow, &numbers).map(Some);
+    }
+    let solution = settled.as_ref().unwrap_or(solution);
     let meant = meant(oscillator, solution, &numbers);
     let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
     let Some((frequency, motion)) = formula_motion(oscillator, solution, &numbers) else {
@@ -362,6 +425,7 @@ pub fn motions(
     Ok(Some(Motions {
         formula: times.clone().map(formula).collect(),
         truth: times.map(|t| truth.sample(t)).collect(),
+        envelope: None,
     }))
 }
 

@@ -36,7 +36,31 @@ pub(super) fn ranges(
     tolerance: f64,
 ) -> Vec<Range> {
     let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
-    if solution.limit_cycle.is_some() || solution.amplitude != AmplitudeConvention::Initial {
+    if let Some(cycle) = &solution.limit_cycle {
+        let series = Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
+        // Where nothing feeds the motion there is no cycle to expand from.
+        let feeds = numbers
+            .get(&solution.small_parameter)
+            .is_some_and(|value| *value != 0.0);
+        let found = (series && feeds)
+            .then(|| convergence(oscillator, solution, numbers))
+            .flatten();
+        ranges.extend(found.map(
+            |range| match range.outside && solution.method == Method::LindstedtPoincare {
+                // A quotient has poles where the series ends.
+                true => Range {
+                    text: format!(
+                        "{}; beyond it a Pade approximant of the series holds farther",
+                        range.text
+                    ),
+                    ..range
+                },
+                false => range,
+            },
+        ));
+        return ranges;
+    }
+    if solution.amplitude != AmplitudeConvention::Initial {
         return ranges;
     }
     let Some(&amplitude) = numbers.get(&solution.amplitude.symbol()) else {

@@ -203,7 +203,7 @@ fn static_loads_in_symbols_are_those_in_numbers() {
         let at: BTreeMap<Symbol, f64> = exact
             .iter()
             .map(|(name, value)| (*name, value.evaluate(&BTreeMap::new()).unwrap()))
-            .chain([(Symbol::new("A"), amplitude)])
+            .chain(["A", "a"].map(|name| (Symbol::new(name), amplitude)))
             .collect();
         for method in Method::ALL {
             // Homotopy analysis chooses hbar by a residual; its value depends on nothing else.

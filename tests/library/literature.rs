@@ -18,7 +18,7 @@ use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, Refusal, Unsuited, solve};
 use lindstedt::oscillator::OscillatorError;
 use lindstedt::series::FourierSeries;
-use lindstedt::solution::{AmplitudeConvention, Solution};
+use lindstedt::solution::{AmplitudeConvention, Method, Solution};
 use lindstedt::verify::{self, Verification};
 use lindstedt::{Oscillator, Symbol};
 use num_traits::{One, Pow, Zero};
@@ -609,11 +609,12 @@ fn what_does_not_apply_is_refused_by_name() {
         solve(&oscillator, options).expect_err(equation)
     };
     let options = |order: Option<u32>, small: Option<&str>| Options {
+        method: Some(Method::LindstedtPoincare),
         order,
         small: small.map(str::to_owned),
         ..Options::default()
     };
-    let default = Options::default();
+    let default = options(None, None);
 
     for (equation, name) in [
         ("x'' + 2*zeta*x' + sin(x) = 0", "`2*zeta*x'`"),

@@ -1,5 +1,6 @@
 //! The library held against independent truth: one file a subject, all in one program, so that they share the processor's cores.
 
+mod averaging;
 mod conformance;
 mod contact;
 mod equilibria;

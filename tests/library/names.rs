@@ -233,9 +233,9 @@ impl Report {
     /// Every name in its formulas that a parameter could have.
     fn names(&self) -> Vec<String> {
         /// Words that stand in formulas' lines, names that an equation may not use, and a differential.
-        const OTHERS: [&str; 28] = [
-            "A", "a", "x", "t", "pi", "omega", "theta", "kappa", "in", "to", "at", "of", "is", "it", "by", "or", "as",
-            "no", "up", "an", "on", "H", "df", "The", "the", "and", "du", "dx",
+        const OTHERS: [&str; 29] = [
+            "A", "a", "be", "x", "t", "pi", "omega", "theta", "kappa", "in", "to", "at", "of", "is", "it", "by", "or",
+            "as", "no", "up", "an", "on", "H", "df", "The", "the", "and", "du", "dx",
         ];
         let mut names: Vec<String> = words(&self.words[0]).into_keys().map(str::to_owned).collect();
         let all = names.clone();

@@ -448,6 +448,8 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         for method in Method::ALL {
             let options = Options {
                 method: Some(method),
+                // Averaging begins with the first harmonic.
+                amplitude: (method == Method::Averaging).then_some(lindstedt::solution::AmplitudeConvention::Initial),
                 ..Options::default()
             };
             let Ok(solution) = solve(&oscillator, &options) else {

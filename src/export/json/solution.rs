@@ -157,6 +157,8 @@ pub struct Modulation {
     pub small_with: Vec<String>,
     /// What a driving force is in resonance with; null for a free motion.
     pub resonance: Option<Resonance>,
+    /// Where a motion released at rest from x = A begins; null for a driven motion.
+    pub release: Option<Release>,
     /// The motion from a start in closed form; null where none is known.
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first.
@@ -234,15 +236,25 @@ pub struct SteadyState {
     pub max_deviation: Option<f64>,
 }
 
+/// Amplitude and phase at t = 0 of a motion with x = A from the equilibrium and x' = 0 there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Release {
+    /// The amplitude, an expression.
+    pub amplitude: String,
+    /// The phase, an expression.
+    pub phase: String,
+}
+
 /// A motion from its start in closed form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Transient {
-    /// The symbol of the amplitude at t = 0.
+    /// The symbol of the amplitude at t = 0: A, or one of `definitions`.
     pub start: String,
     /// The amplitude, an expression in t.
     pub amplitude: String,
-    /// The phase from zero at t = 0, an expression in t; null where it has no closed form.
+    /// The phase, an expression in t; null where it has no closed form.
     pub phase: Option<String>,
     /// The time at which the amplitude reaches zero and stays, or grows without bound, an expression; null where the formulas hold
     /// for all times.
@@ -295,9 +307,33 @@ pub struct Verification {
     /// The steady motions of a driven equation, largest first; empty for any other.
     #[serde(default)]
     pub steady_states: Vec<SteadyState>,
+    /// What else is known of a motion that is not periodic; null for any other.
+    #[serde(default)]
+    pub followed: Option<Followed>,
     /// Whether |relative_error| is within the tolerance, 0.01 unless another was given.
     #[schemars(extend("enum" = [verify::Verdict::Pass.name(), verify::Verdict::Fail.name()]))]
     pub verdict: String,
+}
+
+/// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those of its crossings of the
+/// equilibrium: pi over the mean time between successive ones; `max_deviation` is over the whole time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Followed {
+    /// How long it was followed, in the time of the equation.
+    pub until: f64,
+    /// Why no longer, in words.
+    pub reason: String,
+    /// How many crossings of the formula and of the true motion were compared.
+    pub crossings: usize,
+    /// The largest error of the turning points, as a fraction of the amplitude at the start; null where it is not known.
+    pub amplitude_error: Option<f64>,
+    /// When the amplitude is a tenth of that at the start, by the formula; null where it was not seen.
+    pub tenth: Option<f64>,
+    /// The same by the action, which viscous damping drains at one rate whatever the force; null for any other damping.
+    pub tenth_by_action: Option<f64>,
+    /// The same in truth, between turning points on the logarithm; null where it was not seen.
+    pub true_tenth: Option<f64>,
 }
 
 /// One harmonic of a motion in numbers.
@@ -413,6 +449,10 @@ fn modulation(modulation: &solution::Modulation) -> Modulation {
             detuning: resonance.detuning.symbol.to_string(),
             detuning_means: resonance.detuning.meaning.to_string(),
         }),
+        release: modulation.release.as_ref().map(|release| Release {
+            amplitude: release.amplitude.to_string(),
+            phase: release.phase.to_string(),
+        }),
         transient: modulation.transient.as_ref().map(|transient| Transient {
             start: transient.start.to_string(),
             amplitude: transient.amplitude.to_string(),
@@ -491,6 +531,15 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
         steady_states: verification.steady_states.iter().map(steady_state).collect(),
+        followed: verification.followed.as_ref().map(|followed| Followed {
+            until: followed.until,
+            reason: followed.reason.to_owned(),
+            crossings: followed.crossings,
+            amplitude_error: finite(followed.amplitude_error),
+            tenth: finite(followed.tenth),
+            tenth_by_action: finite(followed.tenth_by_action),
+            true_tenth: finite(followed.true_tenth),
+        }),
         verdict: verification.verdict.name().to_owned(),
     }
 }
@@ -693,6 +742,12 @@ impl Modulation {
                 },
             })
         };
+        let release = |release: &Release| -> Result<_, JsonError> {
+            Ok(modulation::Release {
+                amplitude: expression(&release.amplitude, "amplitude")?,
+                phase: expression(&release.phase, "phase")?,
+            })
+        };
         let transient = |transient: &Transient| -> Result<_, JsonError> {
             Ok(modulation::Transient {
                 start: Symbol::new(&transient.start),
@@ -708,6 +763,7 @@ impl Modulation {
             phase_rate: expression(&self.phase_rate, "phase_rate")?,
             small_with: symbols(&self.small_with),
             resonance: self.resonance.as_ref().map(resonance).transpose()?,
+            release: self.release.as_ref().map(release).transpose()?,
             transient: self.transient.as_ref().map(transient).transpose()?,
             steady: self.steady.iter().map(Cycle::read).collect::<Result<_, JsonError>>()?,
         })

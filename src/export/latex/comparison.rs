@@ -2,9 +2,10 @@
 
 use super::{constant, expression, scientific, scientific_text, sum, symbol};
 use crate::decimal::{decimal, significant};
-use crate::expr::Equation;
+use crate::expr::{Equation, Expr};
 use crate::report::MethodRow;
 use crate::solution::law::Shown;
+use crate::symbol::Symbol;
 use crate::values::Values;
 
 pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> String {
@@ -67,7 +68,19 @@ fn with_hbar(method: &MethodRow) -> String {
 /// The law in one line, with the definitions it needs; in words where it is no formula.
 fn formula(method: &MethodRow) -> Result<String, &'static str> {
     let ordered = |law| sum(&method.row.solution.ordered(law));
+    let slow = method.row.solution.slow();
     let law = match method.law {
+        _ if slow.is_some() => {
+            let rate = |name: Symbol, right: &Expr| {
+                let left = expression(&Expr::from(name.derivative()));
+                format!("{left} = {}", expression(right))
+            };
+            let rates = slow.map(|slow| {
+                let amplitude = rate(slow.amplitude, &slow.amplitude_rate);
+                format!("{amplitude},\\quad {}", rate(slow.phase, &slow.phase_rate))
+            });
+            rates.unwrap_or_default()
+        }
         Shown::Squared(squared) => format!("\\omega^{{2}} = {}", ordered(squared)),
         Shown::Closed(_) if method.row.solution.numerical => return Err("closed form, rounded coefficients"),
         Shown::Closed(form) => {

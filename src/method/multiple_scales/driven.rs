@@ -545,6 +545,7 @@ fn answer(
                 times_linear: p,
                 detuning: sigma,
             }),
+            release: None,
             transient: None,
             steady: vec![],
         }),

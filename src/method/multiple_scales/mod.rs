@@ -157,6 +157,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         phase_rate: Expr::from(&phase_rate),
         small_with: scaling.small_with.clone(),
         resonance: None,
+        release: None,
         transient: None,
         steady: limit_cycle.iter().flat_map(|cycle| cycle.cycles.clone()).collect(),
     };

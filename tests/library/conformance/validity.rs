@@ -70,7 +70,7 @@ fn negative_amplitudes() {
         for method in Method::ALL {
             let Ok(solution) = by(equation, method) else { continue };
             let [plus, minus] = [0.7, -0.7].map(|a| {
-                evaluate(&oscillator, &solution, &numbers(&[("A", a)]))
+                evaluate(&oscillator, &solution, &numbers(&[("A", a), ("a", a)]))
                     .unwrap_or_else(|reason| panic!("{}: {reason}", method.name()))
             });
             assert!(

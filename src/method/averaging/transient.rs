@@ -1,0 +1,271 @@
+//! The amplitude equation solved from its start, where it has a closed solution, and the phase after it.
+//!
+//! References: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 3.3 (viscous, Coulomb and quadratic
+//! damping, van der Pol); E. L. Ince, *Ordinary Differential Equations*, Dover 1956, section 2.15 (Bernoulli's equation).
+//!
+//! ```text
+//! a' = c a^n               a = A exp(c t);     a^(1-n) = A^(1-n) + (1 - n) c t
+//! a' = c a + d             a = (A + d/c) exp(c t) - d/c
+//! a' = c a + d a^m         a^(1-m) = (A^(1-m) + d/c) exp((1 - m) c t) - d/c
+//! a' = -c - d a^2          a = sqrt(c/d) tan(atan(A sqrt(d/c)) - sqrt(c d) t)
+//! psi' = sum d_k a^k       by  (a^j)'/j = sum c_i a^(n_i + j - 1)  and  (log a)' = sum c_i a^(n_i - 1)
+//! ```
+//!
+//! Letters count as positive: they decide where a motion ends and which form of the same solution is written.
+
+use num_traits::{One as _, Signed as _};
+
+use crate::exact::Rational;
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::solution::LeadingCycle;
+use crate::solution::modulation::Transient;
+use crate::symbol::Symbol;
+
+/// The amplitude and the phase from their values at the start, the first of which is a symbol; `None` where the amplitude has no
+/// closed form here.
+pub(crate) fn closed(a: Symbol, rate: &Expr, phase_rate: &Expr, [start, begins]: [&Expr; 2]) -> Option<Transient> {
+    let law = PowerLaw::of(rate, a)?;
+    let (amplitude, ends) = law.solved(start)?;
+    let phase = law.phase(phase_rate, a, &amplitude, start);
+    Some(Transient {
+        start: start.as_symbol()?,
+        amplitude: tidy(&amplitude)?,
+        phase: phase.and_then(|phase| tidy(&(begins + &phase))),
+        ends,
+    })
+}
+
+/// Powers of exponentials as exponentials: `exp(u)^2 = exp(2 u)`.
+fn tidy(expression: &Expr) -> Option<Expr> {
+    let tidied: Result<Expr, ExprError> = expression.fold(|expr, children: &[Expr]| {
+        let whole = expr.with_children(children)?;
+        let (base, exponent) = whole.base_and_exponent();
+        match base.node() {
+            Node::Function(Function::Exp, arguments) if !exponent.is_one() => {
+                let argument = (&arguments[0] * &exponent).expand()?;
+                Expr::function(Function::Exp, vec![argument])
+            }
+            _ => Ok(whole),
+        }
+    });
+    tidied.ok()
+}
+
+/// The positive amplitude at which the two terms of a rate balance, with its stability; nothing for other rates.
+pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
+    let balance = || {
+        let law = PowerLaw::of(rate, a)?;
+        let [(p, c), (q, d)] = law.0.as_slice() else {
+            return None;
+        };
+        // The lower power first, where both are numbers.
+        let lower_is_first = p.as_number()? < q.as_number()?;
+        let (lower, power) = if lower_is_first { (c, q - p) } else { (d, p - q) };
+        let other = if lower_is_first { d } else { c };
+        let size = -&Expr::divide(lower, other).ok()?;
+        if size.has_leading_minus() || size.terms().len() > 1 {
+            return None;
+        }
+        let amplitude = Expr::power(&size, &Expr::divide(&Expr::one(), &power).ok()?).ok()?;
+        // Where what comes first feeds the motion, what takes over drains it.
+        let (number, factors) = lower.factors();
+        let sign = Expr::number(number.signum());
+        let letters = factors.iter().filter(|factor| !factor.symbols().is_empty()).cloned();
+        Some(LeadingCycle {
+            amplitude,
+            attracts_where: Some(sign * Expr::product(letters)),
+        })
+    };
+    balance().into_iter().collect()
+}
+
+/// A sum of powers of the amplitude: exponents, and what stands before.
+struct PowerLaw(Vec<(Expr, Expr)>);
+
+impl PowerLaw {
+    /// `None` where the amplitude stands elsewhere.
+    fn of(rate: &Expr, a: Symbol) -> Option<Self> {
+        let mut law: Vec<(Expr, Expr)> = Vec::new();
+        for term in rate.expand().ok()?.terms() {
+            let (number, factors) = term.factors();
+            let (mut exponent, mut coefficient) = (Expr::zero(), Expr::number(number));
+            for factor in factors {
+                let (base, power) = factor.base_and_exponent();
+                if base.as_symbol() == Some(a) && !power.contains(a) {
+                    exponent = exponent + power;
+                } else if factor.contains(a) {
+                    return None;
+                } else {
+                    coefficient = &coefficient * factor;
+                }
+            }
+            let exponent = exponent.expand().ok()?;
+            match law.iter_mut().find(|known| known.0 == exponent) {
+                Some(known) => known.1 = (&known.1 + &coefficient).expand().ok()?,
+                None => law.push((exponent, coefficient)),
+            }
+        }
+        law.retain(|(_, coefficient)| !coefficient.is_zero());
+        Some(Self(law))
+    }
+
+    /// `a(t)` and where it ends.
+    fn solved(&self, start: &Expr) -> Option<(Expr, Option<Expr>)> {
+        match self.0.as_slice() {
+            [(exponent, c)] => of_one_power(exponent, c, start),
+            [(p, c), (m, d)] if p.is_one() => bernoulli(c, m, d, start),
+            [(m, d), (p, c)] if p.is_one() => bernoulli(c, m, d, start),
+            [(p, c), (q, d)] | [(q, d), (p, c)] if p.is_zero() && *q == Expr::from(2) => {
+                of_constant_and_square(c, d, start)
+            }
+            _ => None,
+        }
+    }
+
+    /// `psi(t)`.
+    fn phase(&self, rate: &Expr, a: Symbol, amplitude: &Expr, start: &Expr) -> Option<Expr> {
+        let parts = Self::of(rate, a)?;
+        let mut sum = Vec::new();
+        for (k, coefficient) in &parts.0 {
+            let integral = self.integral(k, amplitude, start)?;
+            // A sum would be spread over the terms, and what cancels at the start would not show.
+            sum.push(coefficient * &integral);
+        }
+        Some(Expr::sum(sum))
+    }
+
+    /// `int_0^t a^k dt`.
+    fn integral(&self, k: &Expr, amplitude: &Expr, start: &Expr) -> Option<Expr> {
+        if k.is_zero() {
+            return Some(Expr::from(Symbol::new("t")));
+        }
+        // (a^j - A^j)/j, or log(a/A).
+        let rise = |j: &Expr| {
+            if j.is_zero() {
+                let quotient = Expr::divide(amplitude, start).ok()?;
+                return Expr::function(Function::Log, vec![quotient]).ok();
+            }
+            let difference = Expr::power(amplitude, j).ok()? - Expr::power(start, j).ok()?;
+            Expr::divide(&difference, j).ok()
+        };
+        match self.0.as_slice() {
+            [(n, c)] => {
+                let j = (k - n + Expr::one()).expand().ok()?;
+                Expr::divide(&rise(&j)?, c).ok()
+            }
+            [first, second] => {
+                let (k, [p, q]) = (k.as_number()?, [first.0.as_number()?, second.0.as_number()?]);
+                let ([(high, c), (low, d)], highest) = match p > q {
+                    true => ([(p, &first.1), (q, &second.1)], p),
+                    false => ([(q, &second.1), (p, &first.1)], q),
+                };
+                // The power above by the one below, down to one that is known.
+                let j = k - highest + Rational::one();
+                if j.is_negative() {
+                    return None;
+                }
+                let below = low + &j - Rational::one();
+                if below.is_negative() || !(high - low).is_positive() {
+                    return None;
+                }
+                let rise = rise(&Expr::number(j))?;
+                let below = self.integral(&Expr::number(below), amplitude, start)?;
+                Expr::divide(&(rise - d * &below), c).ok()
+            }
+            _ => None,
+        }
+    }
+}
+
+fn time() -> Expr {
+    Expr::symbol("t")
+}
+
+fn exponential(rate: &Expr) -> Option<Expr> {
+    let argument = (rate * &time()).expand().ok()?;
+    Expr::function(Function::Exp, vec![argument]).ok()
+}
+
+/// `1/number`.
+fn inverse(number: &Expr) -> Option<Expr> {
+    Expr::divide(&Expr::one(), number).ok()
+}
+
+/// `a' = c a^n`.
+fn of_one_power(n: &Expr, c: &Expr, start: &Expr) -> Option<(Expr, Option<Expr>)> {
+    if n.is_one() {
+        return Some((start * &exponential(c)?, None));
+    }
+    let below_one = n.as_number().is_some_and(|n| *n < Rational::one());
+    if below_one {
+        let rest = (Expr::one() - n).expand().ok()?;
+        let begins = Expr::power(start, &rest).ok()?;
+        let pace = (&rest * c).expand().ok()?;
+        let amplitude = Expr::power(&(&begins + &(&pace * &time())), &inverse(&rest)?).ok()?;
+        let ends = match pace.has_leading_minus() {
+            true => Some(Expr::divide(&begins, &-&pace).ok()?),
+            false => None,
+        };
+        return Some((amplitude, ends));
+    }
+    let excess = (n - &Expr::one()).expand().ok()?;
+    let pace = (&(&excess * c) * &Expr::power(start, &excess).ok()?).expand().ok()?;
+    let below = Expr::power(&(Expr::one() - &pace * &time()), &inverse(&excess)?).ok()?;
+    let ends = match pace.has_leading_minus() {
+        true => None,
+        false => Some(inverse(&pace)?),
+    };
+    Some((Expr::divide(start, &below).ok()?, ends))
+}
+
+/// `a' = c a + d a^m`.
+fn bernoulli(c: &Expr, m: &Expr, d: &Expr, start: &Expr) -> Option<(Expr, Option<Expr>)> {
+    let quotient = Expr::divide(d, c).ok()?.expand().ok()?;
+    let below_one = m.as_number().is_some_and(|m| *m < Rational::one());
+    if below_one {
+        let rest = (Expr::one() - m).expand().ok()?;
+        let begins = Expr::power(start, &rest).ok()? + &quotient;
+        let pace = (&rest * c).expand().ok()?;
+        let power = &begins * &exponential(&pace)? - &quotient;
+        let amplitude = Expr::power(&power, &inverse(&rest)?).ok()?;
+        // Both drain: the power comes down to zero.
+        let ends = match pace.has_leading_minus() && !quotient.has_leading_minus() {
+            true => {
+                let ratio = Expr::divide(&begins, &quotient).ok()?.expand().ok()?;
+                let log = Expr::function(Function::Log, vec![ratio]).ok()?;
+                Some(Expr::divide(&log, &-&pace).ok()?)
+            }
+            false => None,
+        };
+        return Some((amplitude, ends));
+    }
+    let excess = (m - &Expr::one()).expand().ok()?;
+    let root = inverse(&excess)?;
+    let pace = (&excess * c).expand().ok()?;
+    let size = Expr::power(start, &excess).ok()?;
+    if !c.has_leading_minus() && quotient.has_leading_minus() {
+        // It comes to the amplitude at which both balance.
+        let steady = inverse(&-&quotient)?;
+        let fades = (Expr::divide(&steady, &size).ok()? - Expr::one()) * exponential(&-&pace)?;
+        let below = Expr::power(&(Expr::one() + fades), &root).ok()?;
+        let steady = Expr::power(&steady, &root).ok()?;
+        return Some((Expr::divide(&steady, &below).ok()?, None));
+    }
+    let grows = (Expr::one() - exponential(&pace)?) * &(&quotient * &size);
+    let below = Expr::power(&(Expr::one() + grows), &root).ok()?;
+    Some((Expr::divide(&(start * &exponential(c)?), &below).ok()?, None))
+}
+
+/// `a' = c + d a^2` where both drain.
+fn of_constant_and_square(c: &Expr, d: &Expr, start: &Expr) -> Option<(Expr, Option<Expr>)> {
+    if !c.has_leading_minus() || !d.has_leading_minus() {
+        return None;
+    }
+    let [c, d] = [-c, -d];
+    let scale = Expr::divide(&c, &d).ok()?.sqrt().ok()?;
+    let pace = (&c * &d).expand().ok()?.sqrt().ok()?;
+    let angle = Expr::function(Function::Atan, vec![Expr::divide(start, &scale).ok()?]).ok()?;
+    let moving = &angle - &(&pace * &time());
+    let amplitude = &scale * &Expr::function(Function::Tan, vec![moving]).ok()?;
+    Some((amplitude, Some(Expr::divide(&angle, &pace).ok()?)))
+}

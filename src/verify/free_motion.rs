@@ -1,0 +1,168 @@
+//! The true motion that is not periodic: the equation as it was typed, followed from rest at its start.
+//!
+//! In: the equation, numbers, where and how long. Out: a [`FreeMotion`] with its turning points and its crossings of the
+//! equilibrium. How a formula came about is not known here, and `tests/library/layers.rs` holds that wall.
+
+use std::collections::BTreeMap;
+
+use super::VerificationError;
+use crate::exact::rational::from_f64;
+use crate::expr::{CompiledFunction, Expr};
+use crate::numeric::ode;
+use crate::numeric::ode::root::find_root;
+use crate::oscillator::Oscillator;
+use crate::symbol::Symbol;
+use crate::trajectory::{Course, Trajectory};
+
+/// What is followed.
+pub(super) struct Start {
+    /// What it swings about.
+    pub(super) equilibrium: f64,
+    /// Where it begins, at rest, from the equilibrium.
+    pub(super) distance: f64,
+    /// How long it is followed.
+    pub(super) duration: f64,
+    /// How often it is looked at, well below a quarter of a period.
+    pub(super) step: f64,
+}
+
+/// How a motion is known.
+enum Path {
+    /// From the equation, and held where friction holds it.
+    Series(Box<Trajectory>),
+    /// By Runge-Kutta on values of the force alone.
+    Evaluated(ode::Trajectory),
+}
+
+/// The motion by values of the force alone; `None` where there is none.
+fn evaluated(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, start: &Start) -> Option<ode::Trajectory> {
+    const TOLERANCE: f64 = 1e-10;
+    let known = numbers.iter();
+    let known = known.filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
+    let force = oscillator.force.substitute_all(&known.collect()).ok()?;
+    let force = CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
+    let begin = ode::State {
+        t: 0.0,
+        x: start.equilibrium + start.distance,
+        v: 0.0,
+    };
+    let options = ode::Options {
+        maximum_step: start.step,
+        ..ode::Options::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
+    };
+    ode::integrate(|_, x, v| -force.call(&[x, v]), begin, start.duration, &[], &options).ok()
+}
+
+/// A motion with what is read off it.
+pub(super) struct FreeMotion {
+    motion: Path,
+    equilibrium: f64,
+    end: f64,
+    /// Times and distances from the equilibrium at which it turns, the start left out.
+    pub(super) turns: Vec<(f64, f64)>,
+    /// Times at which it goes through the equilibrium.
+    pub(super) crossings: Vec<f64>,
+}
+
+impl FreeMotion {
+    /// Follows the motion.
+    ///
+    /// # Errors
+    /// It cannot be followed.
+    pub(super) fn of(
+        oscillator: &Oscillator,
+        numbers: &BTreeMap<Symbol, f64>,
+        start: &Start,
+    ) -> Result<Self, VerificationError> {
+        /// A millionth of the deviations that are told apart.
+        const TOLERANCE: f64 = 1e-11;
+        let mut course = Course::of_equation(oscillator);
+        let parameters = course.parameters();
+        let known = numbers.iter().filter(|(name, _)| parameters.contains(name));
+        course.values = known.map(|(name, value)| (*name, *value)).collect();
+        course.tolerance = TOLERANCE;
+        course.duration = start.duration;
+        course.begin(oscillator.coordinate, start.equilibrium + start.distance)?;
+        let motion = course.follow()?;
+        let (end, motion) = match motion.end() < start.duration {
+            // A root of the velocity, say, is no power series where it turns; by its values alone the motion goes on.
+            true => match evaluated(oscillator, numbers, start) {
+                Some(other) if other.end().t > motion.end() => (other.end().t, Path::Evaluated(other)),
+                _ => (motion.end(), Path::Series(Box::new(motion))),
+            },
+            false => (start.duration, Path::Series(Box::new(motion))),
+        };
+        if end < start.step {
+            return Err(VerificationError::NotFollowed { time: end });
+        }
+        let mut followed = Self {
+            end,
+            motion,
+            equilibrium: start.equilibrium,
+            turns: vec![],
+            crossings: vec![],
+        };
+        followed.look(start.step);
+        Ok(followed)
+    }
+
+    /// When it ends.
+    pub(super) fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Distance from the equilibrium and velocity.
+    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+        let found = match &self.motion {
+            Path::Series(motion) => motion
+                .at(time)
+                .and_then(|state| Some((*state.first()?, *state.get(1)?))),
+            Path::Evaluated(motion) => motion.at(time),
+        };
+        found.map_or((f64::NAN, f64::NAN), |(x, v)| (x - self.equilibrium, v))
+    }
+
+    /// Finds where it turns and where it crosses.
+    fn look(&mut self, step: f64) {
+        /// More looks than any motion here needs.
+        const MOST: usize = 1_000_000;
+        let count = (self.end / step).ceil();
+        let count = if count.is_finite() {
+            (count as usize).min(MOST)
+        } else {
+            0
+        };
+        let time = |k: usize| self.end * k as f64 / count as f64;
+        let (mut turns, mut crossings) = (vec![], vec![]);
+        let mut before = (0.0, self.at(0.0));
+        for k in 1..=count {
+            let now = (time(k), self.at(time(k)));
+            let ((t0, (x0, v0)), (t1, (x1, v1))) = (before, now);
+            if x0 * x1 < 0.0
+                && let Ok(t) = find_root(|t| self.at(t).0, t0, t1)
+            {
+                crossings.push(t);
+            }
+            // At the very start it is at rest, and where friction holds it for good it does not turn.
+            let turned = v0 * v1 < 0.0;
+            if turned && let Ok(t) = find_root(|t| self.at(t).1, t0, t1) {
+                turns.push((t, self.at(t).0));
+            }
+            before = now;
+        }
+        self.turns = turns;
+        self.crossings = crossings;
+    }
+
+    /// When the line through the sizes at the turning points, straight on the logarithm, comes down to this size.
+    pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
+        let start = (0.0, self.at(0.0).0);
+        let points: Vec<(f64, f64)> = std::iter::once(start)
+            .chain(self.turns.iter().copied())
+            .map(|(t, x)| (t, x.abs()))
+            .collect();
+        let pair = points.windows(2).find(|pair| pair[1].1 <= size && pair[0].1 > size)?;
+        let [(t0, x0), (t1, x1)] = [pair[0], pair[1]];
+        Some(t0 + (t1 - t0) * (x0 / size).ln() / (x0 / x1).ln())
+    }
+}

@@ -1,0 +1,478 @@
+//! Averaging: published slow equations, projections against their integrals, closed solutions put back into their equations, decay
+//! and limit cycles against the true motion.
+//!
+//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear Oscillations*, Gordon and
+//! Breach 1961, chapter 1; A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapters 2 and 3.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use lindstedt::expr::{CompiledFunction, Expr};
+use lindstedt::method::{Options, solve};
+use lindstedt::solution::{AmplitudeConvention, Method, Modulation, Solution};
+use lindstedt::trajectory::Course;
+use lindstedt::verify::{Verdict, Verification, judge};
+use lindstedt::{Oscillator, Symbol};
+
+fn averaged(equation: &str, order: u32) -> Solution {
+    let options = Options {
+        method: Some(Method::Averaging),
+        order: Some(order),
+        ..Options::default()
+    };
+    solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation)
+}
+
+fn slow(equation: &str, order: u32) -> Modulation {
+    averaged(equation, order).modulation.expect(equation)
+}
+
+fn judged(equation: &str, order: u32, at: &str) -> Verification {
+    let oscillator = Oscillator::parse(equation).expect(equation);
+    let at = at.parse().expect(at);
+    judge(&oscillator, &averaged(equation, order), &at, 0.01).expect(equation)
+}
+
+fn same(left: &Expr, right: &str) -> bool {
+    let right: Expr = right.parse().expect(right);
+    (left - &right).expand().expect("a difference").is_zero()
+}
+
+#[test]
+fn published_slow_equations() {
+    for (equation, order, amplitude_rate, phase_rate) in [
+        // Nayfeh and Mook, section 3.3.4 and, to second order, Bogoliubov and Mitropolsky, section 1.3.
+        (
+            "x'' - mu*(1 - x^2)*x' + x = 0",
+            2,
+            "mu*a/2*(1 - a^2/4)",
+            "1 - mu^2*(1/8 - a^2/8 + 7*a^4/256)",
+        ),
+        // Sections 3.3.1 to 3.3.3.
+        ("x'' + 2*zeta*x' + k*x = 0", 1, "-zeta*a", "omega0"),
+        ("x'' + x + alpha*sgn(x') = 0", 1, "-2*alpha/pi", "1"),
+        ("x'' + x + c*abs(x')*x' = 0", 1, "-4*c*a^2/(3*pi)", "1"),
+        // Section 2.3.1, and the exact frequency sqrt(1 - zeta^2) of a linear motion.
+        ("x'' + x + eps*x^3 = 0", 2, "0", "1 + 3*eps*a^2/8 - 15*eps^2*a^4/256"),
+        ("x'' + x + eps*x^2 = 0", 2, "0", "1 - 5*eps^2*a^2/12"),
+        ("x'' + 2*zeta*x' + x = 0", 2, "-zeta*a", "1 - zeta^2/2"),
+        // The pendulum, where the first harmonic of the sine is a Bessel function.
+        ("x'' + 2*zeta*x' + sin(x) = 0", 1, "-zeta*a", "1/2 + J1(a)/a"),
+    ] {
+        let found = slow(equation, order);
+        assert!(
+            same(&found.amplitude_rate, amplitude_rate),
+            "{equation}: {}",
+            found.amplitude_rate
+        );
+        assert!(same(&found.phase_rate, phase_rate), "{equation}: {}", found.phase_rate);
+    }
+    // By the initial displacement it is the series of Lindstedt and Poincare.
+    let options = Options {
+        method: Some(Method::Averaging),
+        order: Some(2),
+        amplitude: Some(AmplitudeConvention::Initial),
+        ..Options::default()
+    };
+    let oscillator = Oscillator::parse("x'' + x + eps*(x^2 + x^3) = 0").expect("an equation");
+    let [one, other] = [Method::Averaging, Method::LindstedtPoincare].map(|method| {
+        let options = Options {
+            method: Some(method),
+            ..options.clone()
+        };
+        solve(&oscillator, &options).expect("an answer")
+    });
+    assert_eq!(one.law.frequency(), other.law.frequency());
+}
+
+/// The rates of the first order are integrals over a period, here by the midpoint rule.
+#[test]
+fn projections_are_their_integrals() {
+    const POINTS: usize = 200_000;
+    for term in [
+        "x'",
+        "x^2*x'",
+        "x'^3",
+        "x*x'^2",
+        "sgn(x')",
+        "abs(x')*x'",
+        "abs(x')^(1/2)*x'",
+        "x'^(1/3)",
+        "abs(x)*sgn(x')",
+        "abs(x)*x'",
+        "x^2*abs(x')*x'",
+        "x*abs(x')",
+        "x^3*abs(x')",
+        "(2/pi)*atan(100*x')",
+        "x^2*atan(3*x')",
+        "x*x'*atan(3*x')",
+        "sinh(x')",
+        "cos(x)*x'",
+        "H(x - 1/2)*x'",
+        "sin(x)",
+        "x*abs(x)",
+        "(x - 1/2)*H(x - 1/2)",
+    ] {
+        let equation = format!("x'' + 9/4*x + eps*{term} = 0");
+        let found = slow(&equation, 1);
+        let force: Expr = term.parse().expect(term);
+        let force = CompiledFunction::new(&force, &["x".into(), "x'".into()]).expect(term);
+        let eps = BTreeMap::from([("eps".into(), Expr::one())]);
+        let rate =
+            |rate: &Expr| CompiledFunction::new(&rate.substitute_all(&eps).expect(term), &["a".into()]).expect(term);
+        let (amplitude_rate, phase_rate) = (rate(&found.amplitude_rate), rate(&found.phase_rate));
+        for a in [0.3, 0.8, 2.0] {
+            let sum = |of: fn(f64) -> f64| -> f64 {
+                let value = |k: usize| {
+                    let psi = 2.0 * PI * (k as f64 + 0.5) / POINTS as f64;
+                    force.call(&[a * psi.cos(), -1.5 * a * psi.sin()]) * of(psi)
+                };
+                2.0 * (0..POINTS).map(value).sum::<f64>() / POINTS as f64
+            };
+            let expected = [sum(f64::sin) / 3.0, 1.5 + sum(f64::cos) / (3.0 * a)];
+            let values = [amplitude_rate.call(&[a]), phase_rate.call(&[a])];
+            for (value, expected) in values.into_iter().zip(expected) {
+                assert!((value - expected).abs() < 1e-5, "{term} at {a}: {value}, {expected}");
+            }
+        }
+    }
+}
+
+/// `y = a^q` is linear in `exp(t)` or in `t`: put back into `y' = q a^(q-1) a'` nothing is left, exactly.
+#[test]
+fn closed_amplitudes_solve_their_equations() {
+    let (a, t) = (Symbol::new("a"), Symbol::new("t"));
+    for (equation, q) in [
+        ("x'' + 2*zeta*x' + x = 0", 1),
+        ("x'' + x + alpha*sgn(x') = 0", 1),
+        ("x'' + 2*zeta*x' + x + alpha*sgn(x') = 0", 1),
+        ("x'' + x + c*abs(x')*x' = 0", -1),
+        ("x'' + 2*zeta*x' + x + c*abs(x')*x' = 0", -1),
+        ("x'' + x + c*x'^3 = 0", -2),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", -2),
+        ("x'' - mu*(1 - x'^2/3)*x' + x = 0", -2),
+        ("x'' - mu*(1 - x^4)*x' + x = 0", -4),
+        ("x'' + x + c*x'^5 = 0", -4),
+        ("x'' - x'/10 + x = 0", 1),
+    ] {
+        let slow = slow(equation, 1);
+        let transient = slow.transient.as_ref().expect(equation);
+        let y = Expr::power(&transient.amplitude, &Expr::from(q))
+            .and_then(|y| y.expand())
+            .expect(equation);
+        // q a^(q-1) a' as a polynomial in y: every power of a there is 0 or q.
+        let symbol = Expr::from(a);
+        let slope = &Expr::from(q) * &symbol.integer_power(q - 1).expect("a power") * &slow.amplitude_rate;
+        let slope = slope.expand().expect(equation);
+        let power = symbol.integer_power(q).expect("a power");
+        let mut in_y = Expr::zero();
+        for term in slope.terms() {
+            in_y = in_y
+                + match term.contains(a) {
+                    true => Expr::divide(term, &power).expect(equation) * &y,
+                    false => term.clone(),
+                };
+        }
+        assert!(!in_y.contains(a), "{equation}: {in_y}");
+        let left = (y.differentiate(t).expect(equation) - in_y).expand().expect(equation);
+        assert!(left.is_zero(), "{equation}: {left}");
+        // It begins where it should.
+        let start = transient.amplitude.substitute(t, &Expr::zero()).expect(equation);
+        let start = Expr::power(&start, &Expr::from(q))
+            .and_then(|y| y.expand())
+            .expect(equation);
+        assert!(same(&start, &format!("A^({q})")), "{equation}: {start}");
+    }
+}
+
+/// Amplitude and phase in closed form, differentiated, are the slow equations.
+#[test]
+fn closed_phases_solve_their_equations() {
+    let t = Symbol::new("t");
+    for (equation, order) in [
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2),
+        ("x'' + 2*zeta*x' + x + alpha*sgn(x') + eps*x^3 = 0", 1),
+        ("x'' + x + c*abs(x')*x' + eps*x^3 = 0", 1),
+        ("x'' + x + c*abs(x')*x' + alpha*sgn(x') = 0", 1),
+        ("x'' + x + c*abs(x')*x' + 2*zeta*x' + eps*x*abs(x) = 0", 1),
+        ("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0", 1),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", 2),
+        ("x'' + x + c*abs(x')^p*x' + eps*x^3 = 0", 1),
+    ] {
+        let solution = averaged(equation, order);
+        let slow = solution.modulation.as_ref().expect(equation);
+        let transient = slow.transient.as_ref().expect(equation);
+        let phase = transient.phase.as_ref().expect(equation);
+        let slopes = [&transient.amplitude, phase].map(|of| of.differentiate(t).expect(equation));
+        let mut values = BTreeMap::from(
+            [
+                ("A", 0.7),
+                ("zeta", 0.03),
+                ("eps", 0.2),
+                ("c", 0.15),
+                ("alpha", 0.02),
+                ("mu", 0.3),
+                ("p", 0.75),
+            ]
+            .map(|(name, value)| (Symbol::new(name), value)),
+        );
+        let defined = solution
+            .defined_values(&|name| values.get(&name).copied())
+            .expect(equation);
+        values.extend(defined);
+        for time in [0.0, 0.5, 3.0, 11.0] {
+            values.insert(t, time);
+            let amplitude = transient.amplitude.evaluate(&values).expect(equation);
+            values.insert("a".into(), amplitude);
+            for (slope, rate) in slopes.iter().zip([&slow.amplitude_rate, &slow.phase_rate]) {
+                let [slope, rate] = [slope, rate].map(|value| value.evaluate(&values).expect(equation));
+                assert!((slope - rate).abs() < 1e-12, "{equation} at {time}: {slope}, {rate}");
+            }
+        }
+    }
+}
+
+/// The error of the frequency vanishes with one power of what is small more than the order.
+#[test]
+fn errors_vanish_as_the_order_says() {
+    for (equation, at) in [
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+            "zeta = 1/10 * D, eps = 2/5 * D, A = 1",
+        ),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", "mu = 2/5 * D, A = 1/2"),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^2 + eps*x^3 = 0",
+            "zeta = 1/10 * D, eps = 3/10 * D, A = 1",
+        ),
+    ] {
+        for (order, least) in [(1, 1.6), (2, 2.5)] {
+            let errors = ["1/2", "1/4"].map(|size| {
+                let verdict = judged(equation, order, &at.replace('D', size));
+                verdict.relative_error.expect(equation).abs()
+            });
+            let slope = (errors[0] / errors[1]).log2();
+            assert!(slope > least, "{equation} to order {order}: {slope}, {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn coulomb_friction_is_exact_at_every_turn() {
+    let verdict = judged("x'' + x + alpha*sgn(x') = 0", 1, "alpha = 1/100, A = 1");
+    let followed = verdict.followed.expect("followed");
+    assert!(
+        followed.amplitude_error.is_some_and(|error| error < 1e-9),
+        "{followed:?}"
+    );
+    assert_eq!(verdict.verdict, Verdict::Pass);
+    // Where a size at the velocity has no power series, values alone are followed.
+    let verdict = judged("x'' + x + c*abs(x')^p*x' = 0", 1, "c = 1/20, p = 1/2, A = 1");
+    let followed = verdict.followed.expect("followed");
+    assert!(
+        followed.amplitude_error.is_some_and(|error| error < 1e-3),
+        "{followed:?}"
+    );
+}
+
+/// The pendulum from 1.5 rad: by linear averaging log(10)/zeta, in truth and by its action sooner.
+#[test]
+fn a_pendulum_decays_by_its_action() {
+    let verdict = judged("x'' + 2*zeta*x' + sin(x) = 0", 1, "zeta = 1/100, A = 3/2");
+    let followed = verdict.followed.clone().expect("followed");
+    let near = |value: Option<f64>, expected: f64| value.is_some_and(|value| (value - expected).abs() < 5e-3);
+    assert!(near(followed.tenth, 230.2585), "{followed:?}");
+    assert!(near(followed.true_tenth, 224.2246), "{followed:?}");
+    assert!(near(followed.tenth_by_action, 224.2246), "{followed:?}");
+    assert!(verdict.ranges.iter().any(|range| range.outside), "{verdict:?}");
+    let solution = averaged("x'' + 2*zeta*x' + sin(x) = 0", 1);
+    assert!(
+        solution
+            .validity
+            .iter()
+            .any(|note| note.to_string().contains("J(A)*exp(-(2*zeta)*t)"))
+    );
+}
+
+/// cos a_(n+1) - cos a_n = alpha (a_n + a_(n+1)), from one turn of the simulated pendulum to the next.
+#[test]
+fn dry_friction_takes_its_work_from_turn_to_turn() {
+    let equation = "x'' + sin(x) + alpha*sgn(x') = 0";
+    let notes: Vec<String> = averaged(equation, 1).validity.iter().map(ToString::to_string).collect();
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.contains("cos(a_m) - cos(a_n) = alpha*(a_n + a_m)")),
+        "{notes:?}"
+    );
+    let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an equation"));
+    course.values.insert("alpha".into(), 0.02);
+    course.duration = 60.0;
+    course.tolerance = 1e-12;
+    course.begin("x".into(), 1.5).expect("a state");
+    let motion = course.follow().expect("a motion");
+    let state = |t: f64| motion.at(t).expect("a state");
+    let (mut turns, mut before) = (vec![1.5], 0.01);
+    for k in 1..6000 {
+        let t = f64::from(k) * 0.01;
+        if state(before)[1] * state(t)[1] < 0.0 {
+            let (mut low, mut high) = (before, t);
+            for _ in 0..60 {
+                let middle = (low + high) / 2.0;
+                if state(low)[1] * state(middle)[1] <= 0.0 {
+                    high = middle
+                } else {
+                    low = middle
+                }
+            }
+            turns.push(state(low)[0].abs());
+        }
+        before = t;
+    }
+    assert!(turns.len() > 12, "{turns:?}");
+    for pair in turns.windows(2) {
+        let lost = pair[1].cos() - pair[0].cos();
+        assert!((lost - 0.02 * (pair[0] + pair[1])).abs() < 1e-9, "{pair:?}");
+    }
+}
+
+#[test]
+fn amplitudes_that_stay_have_their_stability() {
+    // Roots of 1 - z/4 + z^2/80: irrational, the smaller one attracts.
+    let slow = slow("x'' - mu*(1 - x^2 + x^4/10)*x' + x = 0", 1);
+    let amplitudes: Vec<f64> = slow
+        .steady
+        .iter()
+        .map(|cycle| cycle.amplitude.evaluate(&BTreeMap::new()).expect("a number"))
+        .collect();
+    let expected = [10.0 - 20.0_f64.sqrt(), 10.0 + 20.0_f64.sqrt()].map(f64::sqrt);
+    assert!(
+        amplitudes
+            .iter()
+            .zip(expected)
+            .all(|(found, expected)| (found - expected).abs() < 1e-12),
+        "{amplitudes:?}"
+    );
+    let stability: Vec<String> = slow.steady.iter().map(|cycle| cycle.stability()).collect();
+    assert!(stability[0].starts_with("attracts for mu > 0") && stability[1].starts_with("attracts for mu < 0"));
+    // Without a start the cycle is judged, with one the way to it.
+    let at_cycle = judged("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 1/10");
+    assert!(at_cycle.followed.is_none() && at_cycle.relative_error.is_some_and(|error| error.abs() < 1e-6));
+    let transient = judged("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 1/10, A = 1/2");
+    assert!(
+        transient
+            .followed
+            .is_some_and(|followed| followed.reason.contains("within 1 %"))
+    );
+}
+
+/// Past the radius of its series, about 1.85, the frequency of van der Pol's cycle is resummed, and the judge says why.
+#[test]
+fn van_der_pol_beyond_the_radius_of_its_series() {
+    let equation = "x'' - mu*(1 - x^2)*x' + x = 0";
+    let oscillator = Oscillator::parse(equation).expect("an equation");
+    let at = "mu = 2".parse().expect("a value");
+    let series = Options {
+        order: Some(8),
+        ..Options::default()
+    };
+    let verdict = judge(&oscillator, &solve(&oscillator, &series).expect("a series"), &at, 0.01).expect("a verdict");
+    assert_eq!(verdict.verdict, Verdict::Fail);
+    let said = verdict
+        .ranges
+        .iter()
+        .find(|range| range.text.contains("converges for |mu| < about 1.8"));
+    assert!(
+        said.is_some_and(|range| range.outside && range.text.contains("Pade")),
+        "{:?}",
+        verdict.ranges
+    );
+    let quotient = Options {
+        method: Some(Method::Pade),
+        pade: Some((2, 2)),
+        ..Options::default()
+    };
+    let verdict = judge(
+        &oscillator,
+        &solve(&oscillator, &quotient).expect("a quotient"),
+        &at,
+        0.01,
+    )
+    .expect("a verdict");
+    assert!(
+        verdict.relative_error.is_some_and(|error| error.abs() < 0.005),
+        "{verdict:?}"
+    );
+}
+
+#[test]
+fn damped_equations_are_averaged_by_default() {
+    for (equation, order) in [
+        ("x'' + 2*zeta*x' + sin(x) = 0", None),
+        ("u'' + u + eps*u' = 0", None),
+        ("u'' + u + eps*sgn(u') = 0", None),
+        ("x'' - 0.1*x' + x = 0", None),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", Some(4)),
+    ] {
+        let options = Options {
+            order,
+            ..Options::default()
+        };
+        let solution = solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
+        assert_eq!(solution.method, Method::Averaging, "{equation}");
+        let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            notes.iter().any(|note| note.contains("grows")),
+            equation.contains("- 0.1"),
+            "{notes:?}"
+        );
+        assert_eq!(
+            notes.iter().any(|note| note.starts_with("order 4 was")),
+            order.is_some(),
+            "{notes:?}"
+        );
+    }
+    for (equation, term) in [
+        ("u'' + u + eps*u' = 0", "eps*u'"),
+        ("u'' + u + eps*sgn(u') = 0", "eps*sgn(u')"),
+    ] {
+        let options = Options {
+            method: Some(Method::LindstedtPoincare),
+            ..Options::default()
+        };
+        let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+        assert_eq!(refusal.term(), Some(term));
+        assert!(
+            refusal
+                .help()
+                .is_some_and(|help| help.to_string().contains("averaging"))
+        );
+    }
+    let options = Options::default();
+    let refusal = solve(
+        &Oscillator::parse("x'' + x + tanh(x') = 0").expect("an equation"),
+        &options,
+    );
+    assert_eq!(refusal.expect_err("no closed form").term(), Some("tanh(x')"));
+}
+
+/// The table of `docs/averaging.md` is what comes out.
+#[test]
+fn the_table_of_the_documentation_is_what_comes_out() {
+    let page = include_str!("../../docs/averaging.md");
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .filter(|line| line.starts_with("| `x''"))
+        .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+        .collect();
+    assert!(rows.len() >= 8, "{rows:?}");
+    for row in rows {
+        let [_, equation, order, amplitude_rate, phase_rate, _] = row.as_slice() else {
+            panic!("{row:?}");
+        };
+        let slow = slow(&format!("{equation} = 0"), order.parse().expect("an order"));
+        assert_eq!(slow.amplitude_rate.to_string(), *amplitude_rate, "{equation}");
+        assert_eq!(slow.phase_rate.to_string(), *phase_rate, "{equation}");
+    }
+}

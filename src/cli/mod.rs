@@ -18,6 +18,7 @@ mod materials;
 mod optimize;
 mod primary;
 mod problem;
+mod response;
 mod schema;
 mod simulate;
 mod stability;
@@ -61,6 +62,8 @@ enum Command {
     Impact(impact::Arguments),
     /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism
     Simulate(simulate::Arguments),
+    /// Steady states of a driven oscillator: every branch with its stability, folds, period doublings, backbone
+    Response(response::Arguments),
     /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
     Friction(friction::Arguments),
     /// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes
@@ -194,6 +197,7 @@ impl Command {
             Self::Compare(arguments) => arguments.common.clone(),
             Self::Impact(arguments) => arguments.common.clone(),
             Self::Simulate(arguments) => arguments.common.clone(),
+            Self::Response(arguments) => arguments.common.clone(),
             Self::Friction(arguments) => arguments.common.clone(),
             Self::Lagrange(arguments) => arguments.common.clone(),
             Self::Materials(arguments) => arguments.common.clone(),
@@ -213,6 +217,7 @@ impl Command {
             Self::Compare(arguments) => problem::path(&arguments.problem),
             Self::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
             Self::Simulate(arguments) => arguments.problem.as_deref().and_then(problem::path),
+            Self::Response(arguments) => problem::path(&arguments.problem),
             Self::Lagrange(arguments) => arguments.file.as_deref(),
             Self::Materials(arguments) => arguments.file.as_deref(),
             Self::Optimize(arguments) => arguments.file.as_deref(),
@@ -243,6 +248,7 @@ impl Command {
             Self::Compare(arguments) => compare::run(arguments),
             Self::Impact(arguments) => impact::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Response(arguments) => response::run(arguments),
             Self::Friction(arguments) => friction::run(arguments),
             Self::Lagrange(arguments) => lagrange::run(arguments),
             Self::Materials(arguments) => materials::run(arguments),
@@ -405,7 +411,7 @@ fn fail(code: u8, message: &str) -> ExitCode {
 /// Refuses `--format csv` where there is no trajectory.
 fn no_table<T>() -> Result<T, Failure> {
     Err(Failure::Usage(
-        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `friction`, `materials` or `optimize`"
+        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `response`, `friction`, `materials` or `optimize`"
             .to_owned(),
     ))
 }

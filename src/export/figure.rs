@@ -68,6 +68,16 @@ impl CurveStyle {
     pub const DOTS: Self = Self("#0072b2", POINTS, 1.1);
     /// Others that do.
     pub const SECOND_MARKED_POINTS: Self = Self("#000000", POINTS, 4.5);
+    /// A third kind of points that stand out.
+    pub const THIRD_MARKED_POINTS: Self = Self("#009e73", POINTS, 4.5);
+    /// A fourth kind.
+    pub const FOURTH_MARKED_POINTS: Self = Self("#cc79a7", POINTS, 4.5);
+    /// Motions that were simulated, beside the curve that they should lie on: small, light and over it.
+    pub const SIMULATED: Self = Self("#56b4e9", POINTS, 3.2);
+    /// Motions that do not last: in the colour of [`Self::DIFFERENCE`], dashed.
+    pub const UNSTABLE: Self = Self("#0072b2", "5 3", 1.3);
+    /// Free motions without damping: thin and grey.
+    pub const BACKBONE: Self = Self("#777777", "none", 0.9);
     /// One of many curves, of which only the whole is to be seen.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
     const GUIDE: Self = Self("#777777", "none", 1.0);

@@ -15,6 +15,7 @@ pub mod latex;
 pub mod materials;
 pub mod optimization;
 pub mod primary;
+pub mod response;
 pub mod simulation;
 pub mod stability;
 pub(crate) mod steps;

@@ -23,6 +23,10 @@ pub struct Problem {
     pub amplitude: Option<String>,
     /// The equilibrium to swing about: `"x = 1"`.
     pub about: Option<String>,
+    /// The parameter that varies, and its range: `"Omega=0.5:1.5"`.
+    pub vary: Option<String>,
+    /// Periods of the drive in a period of the motion.
+    pub periods: Option<u32>,
     /// Values for `--at`: numbers, or text such as "pi/3".
     pub values: toml::Table,
     /// The swing.

@@ -1,4 +1,4 @@
-//! What `derive` and `compare` read of a problem file: an equation, and how and where to solve it.
+//! What `derive`, `compare` and `response` read of a problem file: an equation, and how and where to solve it.
 
 use thiserror::Error;
 

@@ -27,9 +27,11 @@ pub enum Reader {
     Optimize,
     /// `lindstedt stability`
     Stability,
+    /// `lindstedt response`
+    Response,
 }
 
-use Reader::{Compare, Derive, Impact, Lagrange, Materials, Optimize, Simulate, Stability, Trajectory};
+use Reader::{Compare, Derive, Impact, Lagrange, Materials, Optimize, Response, Simulate, Stability, Trajectory};
 
 impl fmt::Display for Reader {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -42,22 +44,31 @@ impl fmt::Display for Reader {
             Lagrange => "lindstedt lagrange",
             Optimize => "lindstedt optimize",
             Stability => "lindstedt stability",
+            Response => "lindstedt response",
         })
     }
 }
 
 /// Those that read an equation of motion, and with it a mechanism.
-const MECHANISM: [Reader; 5] = [Derive, Compare, Impact, Trajectory, Lagrange];
+const MECHANISM: [Reader; 6] = [Derive, Compare, Impact, Trajectory, Lagrange, Response];
 
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
-pub const KEYS: [(&str, &[Reader]); 93] = [
-    ("equation", &[Derive, Compare, Impact, Simulate, Trajectory, Stability]),
-    ("method", &[Derive, Impact]),
-    ("order", &[Derive, Impact, Stability]),
+pub const KEYS: [(&str, &[Reader]); 95] = [
+    (
+        "equation",
+        &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
+    ),
+    ("method", &[Derive, Impact, Response]),
+    ("order", &[Derive, Impact, Stability, Response]),
+    ("vary", &[Response]),
+    ("periods", &[Response]),
     ("small", &[Derive, Compare, Stability]),
     ("amplitude", &[Derive, Impact]),
     ("about", &[Derive, Compare, Impact]),
-    ("[values]", &[Derive, Compare, Impact, Lagrange, Trajectory, Stability]),
+    (
+        "[values]",
+        &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response],
+    ),
     ("[lagrangian] coordinates", &MECHANISM),
     ("[lagrangian] kinetic", &MECHANISM),
     ("[lagrangian] potential", &MECHANISM),
@@ -200,7 +211,7 @@ impl Problem {
     /// [`UnreadKey`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
-        if matches!(reader, Derive | Compare | Stability)
+        if matches!(reader, Derive | Compare | Stability | Response)
             && self.equation.is_none()
             && self.lagrangian.is_none()
             && described

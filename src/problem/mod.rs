@@ -4,7 +4,7 @@
 //! masses, lengths and materials in SI units, the rest dimensionless as in the paper's equation (7), time in units of 1/omega, omega^2 = g/L.
 //! Out: a [`Problem`], and from it, with the keys that a command would ignore refused by name:
 //!
-//! - [`Problem::formula`], what `derive` and `compare` read;
+//! - [`Problem::formula`], what `derive`, `compare` and `response` read;
 //! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
 //! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept;
 //! - barriers of several materials, [`Problem::materials`];

@@ -14,6 +14,7 @@ mod materials;
 mod mechanism;
 mod optimization;
 mod primary;
+mod response;
 mod solution;
 mod stability;
 mod trajectory;
@@ -29,6 +30,9 @@ pub use materials::{material_sentences, materials};
 pub use mechanism::mechanism;
 pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, primary, primary_sweep};
+#[cfg(feature = "json")]
+pub(crate) use response::motion_frequency;
+pub use response::{bifurcation_in_words, response};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
 #[cfg(feature = "plot")]

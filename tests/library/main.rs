@@ -24,6 +24,7 @@ mod printed_integrals;
 mod quotations;
 mod random_equations;
 mod ranges;
+mod response;
 mod ring;
 mod section;
 mod series_properties;

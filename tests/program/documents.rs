@@ -9,8 +9,8 @@ use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
     ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
-    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, SimulationDocument, SolutionDocument,
-    StabilityDocument, SweepDocument,
+    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
+    SolutionDocument, StabilityDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -112,6 +112,7 @@ fn reads_back(document: &Value) {
         Kind::Optimization => again::<OptimizationDocument>(document),
         Kind::Audit => again::<AuditDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
+        Kind::Response => again::<ResponseDocument>(document),
     };
     assert_eq!(written.to_string(), document.to_string());
 }
@@ -137,6 +138,9 @@ fn documents() -> Vec<(String, Value)> {
     }
     for file in files("examples/optimize", ".toml") {
         add(&["optimize", &file.to_string_lossy()]);
+    }
+    for file in files("examples/response", ".toml") {
+        add(&["response", &file.to_string_lossy()]);
     }
     for file in files("examples/audit", ".toml") {
         add(&["audit", &file.to_string_lossy()]);
@@ -242,6 +246,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/sweep/1") => "/rows/0/final_state",
         Some("lindstedt/friction/1") => "/speeds/0/printed_value",
         Some("lindstedt/audit/1") => "/claims/0/entries/0",
+        Some("lindstedt/response/1") => "/branches/0/0",
         Some("lindstedt/lagrangian/1") => match document["equilibria"][0].is_null() {
             true => "/groups/0",
             false => "/equilibria/0",

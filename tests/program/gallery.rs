@@ -135,6 +135,58 @@ fn every_comparison_prints_what_it_printed() {
     });
 }
 
+/// Steady states in text; of one of them LaTeX, the head of the comma-separated values, and every twentieth point in JSON.
+#[test]
+fn every_response_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/response"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("response-text", output(&["response", path]));
+            }
+        );
+        let path = "examples/response/duffing.toml";
+        insta::assert_snapshot!("response-latex", output(&["response", path, "--format", "latex"]));
+        let table = output(&["response", path, "--format", "csv"]);
+        let head: Vec<&str> = table.lines().take(2).collect();
+        insta::assert_snapshot!("response-csv", head.join("\n"));
+        let mut document: Value =
+            serde_json::from_str(&output(&["response", path, "--format", "json"])).expect("the output is JSON");
+        for list in ["branches", "backbone"] {
+            for points in document[list].as_array_mut().expect("lists") {
+                let points = points.as_array_mut().expect("points");
+                *points = points.iter().step_by(20).cloned().collect();
+            }
+        }
+        rounded(&mut document);
+        noisy(&mut document);
+        insta::assert_json_snapshot!("response-json@duffing.toml", document);
+        insta::assert_snapshot!("help-response", output(&["response", "--help"]));
+    });
+}
+
+/// What is left of small errors to three digits: more of it is rounding.
+fn noisy(value: &mut Value) {
+    match value {
+        Value::Object(map) => {
+            for (key, entry) in map.iter_mut() {
+                match (key.as_str(), entry.as_f64()) {
+                    ("error", Some(error)) => {
+                        *entry = format!("{error:.0e}")
+                            .parse()
+                            .map_or(Value::Null, |error: f64| error.into());
+                    }
+                    _ => noisy(entry),
+                }
+            }
+        }
+        Value::Array(list) => list.iter_mut().for_each(noisy),
+        _ => {}
+    }
+}
+
 /// Claims of publications with their verdicts, in text, LaTeX and JSON.
 #[test]
 fn every_audit_prints_what_it_printed() {

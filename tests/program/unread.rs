@@ -51,10 +51,12 @@ const MECHANISM: &str = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 93] = [
+const LINES: [(&str, &str, &str); 95] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
+    ("vary", "vary = \"eps=0.5:1.5\"", FORMULA),
+    ("periods", "periods = 2", FORMULA),
     ("small", "small = \"A\"", FORMULA),
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
     ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
@@ -330,6 +332,34 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             let base = of_file("base", &without, &arguments);
             assert!(answer != base, "`{key}` changes nothing for {command}: {answer:?}");
         }
+    }
+}
+
+/// Steady states of a driven equation.
+#[test]
+fn every_key_of_a_response_changes_it_or_is_refused_by_name() {
+    let equation = "equation = \"x'' + x'/2 + x + eps*x^3 - F*cos(t) = 0\"\n";
+    let vary = "vary = \"F=0.5:0.6\"\n";
+    let values = "[values]\neps = 0.5\n";
+    let base = of_file("response-base", &format!("{equation}{vary}{values}"), &["response"]);
+    assert_eq!(base.0, Some(0), "{base:?}");
+    for (key, file) in [
+        (
+            "equation",
+            format!("{}{vary}{values}", equation.replace("x'/2", "x'/3")),
+        ),
+        ("vary", format!("{equation}{}{values}", vary.replace("0.6", "0.7"))),
+        ("FROM:TO", format!("{equation}{}{values}", vary.replace(":0.6", ""))),
+        ("[values]", format!("{equation}{vary}{}", values.replace("0.5", "0.6"))),
+        ("order", format!("{equation}{vary}order = 1\n{values}")),
+        ("periods", format!("{equation}{vary}periods = 2\n{values}")),
+        ("method", format!("{equation}{vary}method = \"pade\"\n{values}")),
+        ("small", format!("{equation}{vary}small = \"eps\"\n{values}")),
+        ("run", format!("{equation}{vary}{values}[run]\nduration = 5\n")),
+    ] {
+        let answer = of_file("response-key", &file, &["response"]);
+        assert!(answer != base, "{key}: {answer:?}");
+        assert!(answer.0 == Some(0) || answer.2.contains(key), "{key}: {answer:?}");
     }
 }
 
@@ -642,6 +672,14 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "--at",
         "Omega=2",
     ];
+    let driven = [
+        "response",
+        "x'' + x'/5 + x + x^3 - F*cos(Omega*t) = 0",
+        "--vary",
+        "Omega=0.5:1.5",
+        "--at",
+        "F=0.2",
+    ];
     let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
     // Command, what stands beside the option, the option.
     let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
@@ -841,6 +879,26 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec!["--runs", "2", "--budget", "600"],
             vec!["--timeout", "1e-9"],
         ),
+        (
+            "response",
+            vec![driven[1], "--at", "F=0.2"],
+            vec!["--vary", "Omega=0.5:1.5"],
+        ),
+        ("response", driven[1..4].to_vec(), vec!["--at", "F=2"]),
+        ("response", driven[1..].to_vec(), vec!["--method", "pade"]),
+        ("response", driven[1..].to_vec(), vec!["--order", "2"]),
+        ("response", driven[1..].to_vec(), vec!["--periods", "2"]),
+        ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
+        ("response", driven[1..].to_vec(), vec!["--format", "latex"]),
+        ("response", driven[1..].to_vec(), vec!["--output", file]),
+        ("response", driven[1..].to_vec(), vec!["--plot", "-"]),
+        (
+            "response",
+            [&driven[1..], &["--order", "3"]].concat(),
+            vec!["--tolerance", "1e-7"],
+        ),
+        ("response", driven[1..].to_vec(), vec!["--timeout", "1e-9"]),
+        ("response", driven[1..].to_vec(), vec!["--quiet"]),
         ("audit", vec![AUDIT], vec!["--strict"]),
         ("audit", vec![AUDIT], vec!["--format", "latex"]),
         ("audit", vec![AUDIT], vec!["--format", "csv"]),
@@ -869,6 +927,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "compare",
         "impact",
         "simulate",
+        "response",
         "lagrange",
         "friction",
         "materials",

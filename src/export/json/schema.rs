@@ -7,8 +7,8 @@ use serde_json::Value;
 use super::{
     AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
     JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
-    PrimaryDocument, PrimarySweepDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
-    unexpected,
+    PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument, StabilityDocument,
+    SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -35,6 +35,8 @@ pub enum Kind {
     PrimarySweep,
     /// `simulate --sweep`.
     Sweep,
+    /// `response`.
+    Response,
     /// `friction`.
     Friction,
     /// `lagrange`.
@@ -53,7 +55,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -64,6 +66,7 @@ impl Kind {
         Self::Primary,
         Self::PrimarySweep,
         Self::Sweep,
+        Self::Response,
         Self::Friction,
         Self::Lagrangian,
         Self::Materials,
@@ -86,6 +89,7 @@ impl Kind {
             Self::Primary => "lindstedt/primary/1",
             Self::PrimarySweep => "lindstedt/primary-sweep/1",
             Self::Sweep => "lindstedt/sweep/1",
+            Self::Response => "lindstedt/response/1",
             Self::Friction => "lindstedt/friction/1",
             Self::Lagrangian => "lindstedt/lagrangian/1",
             Self::Materials => "lindstedt/materials/1",
@@ -128,6 +132,7 @@ impl Kind {
             Self::Primary => generator.into_root_schema_for::<PrimaryDocument>(),
             Self::PrimarySweep => generator.into_root_schema_for::<PrimarySweepDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
+            Self::Response => generator.into_root_schema_for::<ResponseDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),

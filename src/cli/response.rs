@@ -1,0 +1,152 @@
+//! `lindstedt response PROBLEM --vary Omega=0.5:1.5`.
+
+use clap::Args;
+use lindstedt::export::{self, json, latex, text};
+use lindstedt::expr::parse_expression;
+use lindstedt::problem::{Order, Reader};
+use lindstedt::response::{MOST_HARMONICS, Question, Response, ResponseError, respond};
+use lindstedt::solution::Method;
+use lindstedt::{Interrupt, Oscillator, Symbol, report};
+
+use super::derive::{exact_values, formula};
+use super::problem::problem;
+use super::{Common, Failure, Format, Outcome, STOP, files, json_text, tolerance, whole};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
+    pub problem: String,
+    /// The parameter that varies, and from where to where: Omega=0.5:1.5
+    #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
+    vary: Option<String>,
+    /// How the branches are found: harmonic-balance
+    #[arg(long)]
+    method: Option<String>,
+    /// The highest harmonic kept; without it as many as bring the error below a tenth of the tolerance, 64 at most
+    #[arg(long, value_name = "H", value_parser = super::count, allow_hyphen_values = true)]
+    order: Option<u32>,
+    /// Periods of the drive in a period of the motion: 2 for motions after a period doubling, 3 for a third of the frequency
+    #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
+    periods: Option<u32>,
+    /// The value of another parameter, exact (1.5, 3/2, pi/3); repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let problem = problem(&arguments.problem)?;
+    let formula = formula(&problem, Reader::Response)?;
+    let oscillator = Oscillator::parse(formula.equation).map_err(|error| Failure::advised(&error, error.help()))?;
+    if let Some(name) = arguments.method.as_deref().or(formula.method) {
+        let known = Method::HarmonicBalance.name();
+        if name != known {
+            return Err(Failure::Usage(format!(
+                "--method {name}: steady states are found by {known}"
+            )));
+        }
+    }
+    let harmonics = match (arguments.order, formula.order) {
+        (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
+        (None, None) => None,
+        (None, Some(Order::Degrees(_))) => {
+            return Err(Failure::Refused(format!(
+                "the order of a response is a number of harmonics, 1 to {MOST_HARMONICS}"
+            )));
+        }
+    };
+    let Some(vary) = arguments.vary.as_deref().or(problem.vary.as_deref()) else {
+        let name = oscillator.parameters.first().map_or("Omega", |name| name.name());
+        return Err(Failure::Refused(format!(
+            "nothing varies\n  help: --vary {name}=FROM:TO, or vary = \"{name}=FROM:TO\" in the file"
+        )));
+    };
+    let (parameter, range) = range(vary)?;
+    let question = Question {
+        oscillator,
+        values: exact_values(&arguments.at, &problem)?.unwrap_or_default(),
+        parameter,
+        range,
+        harmonics: harmonics.map(|count| count as usize),
+        periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
+        tolerance: tolerance(&arguments.common),
+        interrupt: Interrupt::by(&STOP),
+    };
+    let response = respond(&question).map_err(refused)?;
+    let document = || report::response(&response);
+    let text = match arguments.common.format {
+        Format::Text => text::document(&document(), files::width(arguments.common.output.as_deref())),
+        Format::Latex => latex::document(&document()),
+        Format::Csv => export::response::csv(&response),
+        Format::Json => json_text(&json::response(&response))?,
+    };
+    let picture = arguments
+        .common
+        .plot
+        .as_ref()
+        .map(|path| (path.clone(), picture(&response)));
+    Ok(Outcome {
+        result: whole(text),
+        picture,
+        note: None,
+        verdict: Some(response.verdict),
+        partial: !response.complete,
+    })
+}
+
+/// A name and a range: `Omega=0.5:1.5`.
+fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
+    let form = || Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"));
+    let (name, range) = text.split_once('=').ok_or_else(form)?;
+    let (from, to) = range.split_once(':').ok_or_else(form)?;
+    let name = parse_expression(name)
+        .ok()
+        .and_then(|name| name.as_symbol())
+        .ok_or_else(form)?;
+    let number = |text: &str| {
+        let value = parse_expression(text).map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;
+        value.evaluate(&Default::default()).map_err(|_| form())
+    };
+    Ok((name, [number(from)?, number(to)?]))
+}
+
+fn refused(error: ResponseError) -> Failure {
+    let help = match &error {
+        ResponseError::NoDrive => Some("add a force that depends on time, such as - F*cos(Omega*t)".to_owned()),
+        ResponseError::NotPeriodic(_) => {
+            Some("time may stand inside sin, cos and tan alone, as cos(Omega*t + phi)".to_owned())
+        }
+        ResponseError::TwoFrequencies(_) => {
+            Some("choose frequencies in the ratio of whole numbers, such as Omega and 2*Omega".to_owned())
+        }
+        ResponseError::Missing(names) => {
+            let values: Vec<String> = names.iter().map(|name| format!("--at {name}=...")).collect();
+            Some(format!("add {}", values.join(" ")))
+        }
+        ResponseError::NoParameter { known, .. } => known.first().map(|name| format!("--vary {name}=FROM:TO")),
+        ResponseError::Given(name) => Some(format!("leave out its value, or vary another parameter than {name}")),
+        ResponseError::Frequency { parameter, .. } => {
+            Some(format!("--vary {parameter} over positive frequencies alone"))
+        }
+        ResponseError::NoMotion { undamped: true, .. } => Some("add damping, such as 2*zeta*x'".to_owned()),
+        ResponseError::NoMotion { .. } => {
+            Some("the motion escapes or never repeats itself there: try another range".to_owned())
+        }
+        _ => None,
+    };
+    match error {
+        ResponseError::Unknown(_) | ResponseError::Count { .. } => Failure::Usage(error.to_string()),
+        _ => Failure::refused(&error, help),
+    }
+}
+
+#[cfg(not(feature = "plot"))]
+fn picture(_: &Response) -> Result<String, Failure> {
+    super::no_pictures()
+}
+
+#[cfg(feature = "plot")]
+fn picture(response: &Response) -> Result<String, Failure> {
+    export::response::picture(response).map_err(|error| Failure::refused(&error, None))
+}

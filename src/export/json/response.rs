@@ -1,0 +1,249 @@
+//! Kind `response`: all steady states of a driven oscillator, with their stability.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Kind;
+use super::number::{Constant, Map};
+use crate::report::motion_frequency;
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::{self, Response};
+use crate::verify::Verdict;
+
+/// Steady states of a driven oscillator as a parameter varies. Units are those of the equation and the values given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ResponseDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Response.schema()))]
+    pub schema: String,
+    /// The equation of motion.
+    pub equation: String,
+    /// The values of all other parameters.
+    pub parameters: Map<Constant>,
+    /// The name of the parameter that varies.
+    pub parameter: String,
+    /// Its lowest and its highest value.
+    pub range: [f64; 2],
+    /// How the branches were found: `harmonic-balance`.
+    pub method: String,
+    /// The highest harmonic kept.
+    pub harmonics: usize,
+    /// How many periods of the drive a period of the motion takes.
+    pub periods: usize,
+    /// theta/t: the frequency of the motion, that of the drive over `periods`.
+    pub frequency: String,
+    /// Whether nothing damps the motion; `stable` then means that disturbances do not grow.
+    pub undamped: bool,
+    /// The branches, each a list of points in order.
+    pub branches: Vec<Vec<ResponsePoint>>,
+    /// Of each branch whether -x half a period of the drive later is a branch as well, which is not listed.
+    pub mirrored: Vec<bool>,
+    /// Where branches change.
+    pub bifurcations: Vec<ResponseBifurcation>,
+    /// The free motion without damping, a list of points for each stable place of rest; empty where the frequency of the drive does not
+    /// vary.
+    pub backbone: Vec<Vec<BackbonePoint>>,
+    /// Always null: a balance has no slow equations of amplitude and phase.
+    pub modulation: (),
+    /// Simulations that were let go beside stable points and have settled.
+    pub simulated: Vec<SimulatedPoint>,
+    /// Simulations that have settled on something that is not among the branches.
+    pub elsewhere: Vec<ElsewherePoint>,
+    /// The judgement of all points.
+    pub verification: ResponseVerification,
+    /// Whether it was followed to its end.
+    pub complete: bool,
+}
+
+/// A steady state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ResponsePoint {
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The amplitude of the first harmonic, amplitude*cos(theta - phase).
+    pub amplitude: f64,
+    /// Its phase, in radians.
+    pub phase: f64,
+    /// Half of the way from the lowest to the highest point of the motion.
+    pub peak: f64,
+    /// Whether small disturbances die out: both multipliers lie inside the unit circle; null where they could not be found.
+    pub stable: Option<bool>,
+    /// The multipliers of a period, each its real and imaginary part, the larger first; null where they could not be found.
+    pub multipliers: Option<[[f64; 2]; 2]>,
+    /// Position and velocity at t = 0, by shooting where that found the true motion.
+    pub start: [f64; 2],
+    /// The error of amplitude or peak, the larger, over the true peak; null where no true motion was found near.
+    pub error: Option<f64>,
+}
+
+/// A place where a branch changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ResponseBifurcation {
+    /// What happens: the branch turns back, another one crosses, motions of twice the period come off, a second frequency comes in.
+    #[schemars(extend("enum" = KINDS))]
+    pub kind: String,
+    /// The branch, counted from 0.
+    pub branch: usize,
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The amplitude of the first harmonic.
+    pub amplitude: f64,
+    /// Half of peak to peak.
+    pub peak: f64,
+}
+
+/// The names of the kinds of bifurcations.
+const KINDS: [&str; 4] = [
+    BifurcationKind::Fold.name(),
+    BifurcationKind::BranchPoint.name(),
+    BifurcationKind::PeriodDoubling.name(),
+    BifurcationKind::NeimarkSacker.name(),
+];
+
+/// A free motion without damping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct BackbonePoint {
+    /// The value of the parameter at which it has the frequency of the drive over `periods`.
+    pub parameter: f64,
+    /// The amplitude of its first harmonic.
+    pub amplitude: f64,
+}
+
+/// A simulation that has settled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SimulatedPoint {
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The amplitude of its first harmonic.
+    pub amplitude: f64,
+    /// Half of peak to peak.
+    pub peak: f64,
+    /// The error of the point of the branch against it, over its peak.
+    pub error: f64,
+}
+
+/// A simulation that has settled elsewhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ElsewherePoint {
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// After how many periods of the motion it repeats itself; null where it does not within eight.
+    pub periods: Option<usize>,
+}
+
+/// How far the branches are from true motions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ResponseVerification {
+    /// The largest error of all points and simulations; null where no true motion was found.
+    pub error: Option<f64>,
+    /// The error up to which it passes.
+    pub tolerance: f64,
+    /// Points beside which shooting found no true motion.
+    pub unjudged: usize,
+    /// The verdict.
+    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
+    pub verdict: String,
+}
+
+/// The document of kind `response`.
+///
+/// ```
+/// use lindstedt::response::{Question, respond};
+///
+/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let document = lindstedt::export::json::response(&respond(&question)?);
+/// assert!(document.branches.len() == 1 && document.verification.verdict == "pass");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn response(response: &Response) -> ResponseDocument {
+    let asked = &response.question;
+    let point = |point: &response::Point| ResponsePoint {
+        parameter: point.parameter,
+        amplitude: point.amplitude,
+        phase: point.phase,
+        peak: point.peak,
+        stable: point.stable,
+        multipliers: point.multipliers.map(|both| both.map(|one| [one.re, one.im])),
+        start: point.start,
+        error: point.error,
+    };
+    ResponseDocument {
+        schema: Kind::Response.schema().to_owned(),
+        equation: asked.oscillator.equation().to_string(),
+        parameters: asked
+            .values
+            .iter()
+            .map(|(name, value)| (name.to_string(), Constant::of(value)))
+            .collect(),
+        parameter: asked.parameter.to_string(),
+        range: asked.range,
+        method: "harmonic-balance".to_owned(),
+        harmonics: response.harmonics,
+        periods: asked.periods,
+        frequency: motion_frequency(response),
+        undamped: response.undamped,
+        branches: response
+            .branches
+            .iter()
+            .map(|branch| branch.points.iter().map(point).collect())
+            .collect(),
+        mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
+        bifurcations: response
+            .bifurcations
+            .iter()
+            .map(|found| ResponseBifurcation {
+                kind: found.kind.name().to_owned(),
+                branch: found.branch,
+                parameter: found.parameter,
+                amplitude: found.amplitude,
+                peak: found.peak,
+            })
+            .collect(),
+        backbone: response
+            .backbone
+            .iter()
+            .map(|curve| {
+                let points = curve.iter();
+                points
+                    .map(|point| BackbonePoint {
+                        parameter: point.parameter,
+                        amplitude: point.amplitude,
+                    })
+                    .collect()
+            })
+            .collect(),
+        modulation: (),
+        simulated: response
+            .simulated
+            .iter()
+            .map(|found| SimulatedPoint {
+                parameter: found.parameter,
+                amplitude: found.amplitude,
+                peak: found.peak,
+                error: found.error,
+            })
+            .collect(),
+        elsewhere: response
+            .elsewhere
+            .iter()
+            .map(|found| ElsewherePoint {
+                parameter: found.parameter,
+                periods: found.periods,
+            })
+            .collect(),
+        verification: ResponseVerification {
+            error: response.error,
+            tolerance: asked.tolerance,
+            unjudged: response.unjudged,
+            verdict: response.verdict.name().to_owned(),
+        },
+        complete: response.complete,
+    }
+}

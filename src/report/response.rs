@@ -1,0 +1,313 @@
+//! Steady states of a driven oscillator: branches with their stability, where they change, how far all is from the true motion.
+
+use std::borrow::Cow;
+
+use super::{Block, Document, Heading};
+use crate::decimal::{decimal, significant};
+use crate::derivation::Line;
+use crate::expr::Expr;
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::continuation::BranchEnd;
+use crate::response::{Branch, Point, Response};
+use crate::symbol::Symbol;
+use crate::values::Values;
+
+/// The rows of the table of a branch.
+const ROWS: usize = 13;
+
+/// Folds and the like that are listed.
+const MOST_BIFURCATIONS: usize = 40;
+
+/// The document of a response.
+///
+/// ```
+/// use lindstedt::response::{Question, respond};
+///
+/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let document = lindstedt::report::response(&respond(&question)?);
+/// let text = lindstedt::export::text::document(&document, 120);
+/// assert!(text.contains("verdict") && text.contains("branch 1"), "{text}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn response(response: &Response) -> Document<'static> {
+    let mut sections = vec![question(response)];
+    for (index, branch) in response.branches.iter().enumerate() {
+        sections.push(self::branch(response, index, branch));
+    }
+    sections.extend(changes(response));
+    sections.extend(backbone(response));
+    sections.push(judgement(response));
+    Document { sections }
+}
+
+fn question(response: &Response) -> Vec<Block<'static>> {
+    let asked = &response.question;
+    let equation = asked.oscillator.equation();
+    let mut blocks = vec![Block::Line(Cow::Owned(Line::equation(equation.left, equation.right)))];
+    blocks.extend(numbers(&asked.values).map(|(name, value)| Block::Value {
+        name,
+        value,
+        source: None,
+    }));
+    let (name, [low, high]) = (asked.parameter, asked.range);
+    blocks.push(Block::Sentence(format!(
+        "{name} from {} to {}; harmonic balance, harmonics 0 to {}; theta = {}, and a motion takes {} of the drive.",
+        decimal(low),
+        decimal(high),
+        response.harmonics,
+        phase(response),
+        match asked.periods {
+            1 => "one period".to_owned(),
+            periods => format!("{periods} periods"),
+        }
+    )));
+    blocks.push(Block::Sentence(format!(
+        "amplitude: of the first harmonic, amplitude*cos(theta - phase); peak: half of peak to peak; {}.",
+        match response.undamped {
+            true => "nothing damps the motion: stable is what does not grow",
+            false => "stable: both multipliers of the true motion lie inside the unit circle",
+        }
+    )));
+    blocks
+}
+
+/// The frequency of the motion, as a factor of time.
+#[cfg(feature = "json")]
+pub(crate) fn motion_frequency(response: &Response) -> String {
+    let frequency = &response.frequency;
+    let text = match frequency.terms().len() > 1 {
+        true => format!("({frequency})"),
+        false => frequency.to_string(),
+    };
+    match response.question.periods {
+        1 => text,
+        periods => format!("{text}/{periods}"),
+    }
+}
+
+/// theta in time.
+fn phase(response: &Response) -> String {
+    let time = Expr::product([response.frequency.clone(), Expr::symbol("t")]);
+    match (time.terms().len(), response.question.periods) {
+        (_, 1) => time.to_string(),
+        (1, periods) => format!("{time}/{periods}"),
+        (_, periods) => format!("({time})/{periods}"),
+    }
+}
+
+fn numbers(values: &Values) -> impl Iterator<Item = (Symbol, f64)> {
+    values.numbers().into_iter()
+}
+
+fn heads(names: &[&'static str]) -> Vec<Heading> {
+    names
+        .iter()
+        .map(|name| Heading {
+            text: name,
+            latex: name,
+        })
+        .collect()
+}
+
+/// The indices of the rows: the ends, equal steps between, and the points beside every change of stability.
+fn rows(points: &[Point]) -> Vec<usize> {
+    let count = points.len();
+    let steps = ROWS.min(count).max(2) - 1;
+    let mut rows: Vec<usize> = (0..=steps).map(|step| step * (count.max(1) - 1) / steps).collect();
+    rows.dedup();
+    rows
+}
+
+fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'static>> {
+    let name = response.question.parameter.name();
+    let stable = |state: Option<bool>| match state {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "-",
+    };
+    let row = |index: usize| {
+        let point = &branch.points[index];
+        let largest = point.multipliers.map(|multipliers| multipliers[0].norm());
+        vec![
+            decimal(point.parameter),
+            decimal(point.amplitude),
+            decimal(point.phase),
+            decimal(point.peak),
+            stable(point.stable).to_owned(),
+            largest.map_or("-".to_owned(), |largest| significant(largest, 4)),
+            point.error.map_or("-".to_owned(), |error| significant(error, 2)),
+        ]
+    };
+    let mut blocks = vec![
+        Block::Heading(format!("branch {}: {}", index + 1, extent_in_words(response, branch))),
+        Block::Table {
+            head: heads(&[name, "amplitude", "phase", "peak", "stable", "multiplier", "error"]),
+            rows: rows(&branch.points).into_iter().map(row).collect(),
+        },
+    ];
+    if branch.mirrored {
+        blocks.push(Block::Sentence(
+            "Its mirror image, -x half a period of the drive later, is a branch as well, with the same amplitudes."
+                .to_owned(),
+        ));
+    }
+    for (end, point) in branch.ends.iter().zip([branch.points.first(), branch.points.last()]) {
+        let Some(point) = point else { continue };
+        let place = format!("{name} = {}", significant(point.parameter, 4));
+        let words = match end {
+            BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
+            BranchEnd::Lost => {
+                format!("It could not be followed beyond {place}: the force has a jump or no value there.")
+            }
+            BranchEnd::Points => format!("It was followed no farther than {place}: it has too many points."),
+            BranchEnd::Interrupted => format!("It was followed no farther than {place}: interrupted."),
+            BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing => continue,
+        };
+        blocks.push(Block::Sentence(words));
+    }
+    blocks
+}
+
+/// From where to where, how many points, how many of them stable.
+fn extent_in_words(response: &Response, branch: &Branch) -> String {
+    let points = &branch.points;
+    let name = response.question.parameter;
+    let stable = points.iter().filter(|point| point.stable == Some(true)).count();
+    let low = points.iter().map(|point| point.parameter).fold(f64::INFINITY, f64::min);
+    let high = points
+        .iter()
+        .map(|point| point.parameter)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let closed = if branch.ends[0] == BranchEnd::Closed {
+        "closed, "
+    } else {
+        ""
+    };
+    format!(
+        "{closed}{} points, {stable} of them stable, {name} from {} to {}",
+        points.len(),
+        decimal(low),
+        decimal(high)
+    )
+}
+
+/// What a kind of bifurcation means, in words.
+pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
+    match kind {
+        BifurcationKind::Fold => "fold",
+        BifurcationKind::BranchPoint => "branch point",
+        BifurcationKind::PeriodDoubling => "period doubling",
+        BifurcationKind::NeimarkSacker => "Neimark-Sacker",
+    }
+}
+
+fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
+    let all = &response.bifurcations;
+    if all.is_empty() {
+        return None;
+    }
+    let name = response.question.parameter.name();
+    let row = |bifurcation: &crate::response::Bifurcation| {
+        vec![
+            bifurcation_in_words(bifurcation.kind).to_owned(),
+            decimal(bifurcation.parameter),
+            decimal(bifurcation.amplitude),
+            decimal(bifurcation.peak),
+            (bifurcation.branch + 1).to_string(),
+        ]
+    };
+    let mut blocks = vec![
+        Block::Heading("where branches change".to_owned()),
+        Block::Table {
+            head: heads(&["", name, "amplitude", "peak", "branch"]),
+            rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
+        },
+    ];
+    if all.len() > MOST_BIFURCATIONS {
+        blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
+    }
+    let meaning = |kind: BifurcationKind| match kind {
+        BifurcationKind::Fold => "At a fold the motion jumps to another branch.",
+        BifurcationKind::BranchPoint => "At a branch point another branch crosses.",
+        BifurcationKind::PeriodDoubling => "At a period doubling motions of twice the period come off.",
+        BifurcationKind::NeimarkSacker => "At a Neimark-Sacker point a second frequency comes in.",
+    };
+    let mut kinds: Vec<BifurcationKind> = all.iter().map(|bifurcation| bifurcation.kind).collect();
+    kinds.sort();
+    kinds.dedup();
+    let words: Vec<&str> = kinds.into_iter().map(meaning).collect();
+    blocks.push(Block::Sentence(words.join(" ")));
+    Some(blocks)
+}
+
+fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
+    const FEW: usize = 6;
+    if response.backbone.is_empty() {
+        return None;
+    }
+    let name = response.question.parameter.name();
+    let mut blocks = vec![Block::Heading("backbone: the free motion without damping".to_owned())];
+    for curve in &response.backbone {
+        let count = curve.len();
+        let chosen = (0..FEW).map(|index| &curve[index * (count - 1) / (FEW - 1)]);
+        blocks.push(Block::Table {
+            head: heads(&[name, "amplitude"]),
+            rows: chosen
+                .map(|point| vec![decimal(point.parameter), decimal(point.amplitude)])
+                .collect(),
+        });
+    }
+    Some(blocks)
+}
+
+fn judgement(response: &Response) -> Vec<Block<'static>> {
+    let name = response.question.parameter.name();
+    let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
+    let mut facts = vec![(
+        "largest error",
+        match response.error {
+            Some(error) => format!(
+                "{} of the true peak, of {} points against shooting and {} against simulation",
+                significant(error, 2),
+                points - response.unjudged,
+                response.simulated.len()
+            ),
+            None => "unknown: no true motion was found".to_owned(),
+        },
+    )];
+    if response.unjudged > 0 {
+        facts.push((
+            "not judged",
+            format!("{} points: shooting found no true motion near", response.unjudged),
+        ));
+    }
+    facts.push((
+        "verdict",
+        format!(
+            "{} (error <= {})",
+            response.verdict.name(),
+            significant(response.question.tolerance, 3)
+        ),
+    ));
+    let mut blocks = vec![
+        Block::Heading("judged against the true motion".to_owned()),
+        Block::Facts(facts),
+    ];
+    let mut periods: Vec<Option<usize>> = response.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
+    periods.sort();
+    periods.dedup();
+    for count in periods {
+        let places = response.elsewhere.iter().filter(|elsewhere| elsewhere.periods == count);
+        let mut places: Vec<String> = places.map(|elsewhere| significant(elsewhere.parameter, 4)).collect();
+        places.dedup();
+        let places = places.join(", ");
+        blocks.push(Block::Sentence(match count {
+            Some(count) => format!(
+                "At {name} = {places} a simulation settles on a motion of {} periods of the drive, which is not among these branches.",
+                count * response.question.periods
+            ),
+            None => format!("At {name} = {places} a simulation does not come to repeat itself."),
+        }));
+    }
+    blocks
+}

@@ -1,0 +1,188 @@
+//! Backbones: the frequency of the free motion without damping against its amplitude, about every stable place of rest.
+//!
+//! ```text
+//! X(theta) = a_0 + a cos theta + a_2 cos(2 theta) + ...,   R(a_0, omega, a_2, ..., a_H) = 0 for the given a
+//! ```
+//!
+//! Resonance bends along it. In: an oscillator without drive and damping, a frequency as an expression in the parameter that varies.
+//! Out: the parameter at which the free motion has the frequency of the drive, for amplitudes from small to large; the same balance as
+//! that of the driven motion, with the frequency as an unknown.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::ResponseError;
+use super::balance::{Balance, CONVERGED};
+use super::driven::Driven;
+use crate::expr::Expr;
+use crate::oscillator::Oscillator;
+
+/// A free motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BackbonePoint {
+    /// The parameter at which the motion has this frequency.
+    pub parameter: f64,
+    /// The amplitude of its first harmonic.
+    pub amplitude: f64,
+}
+
+/// Amplitudes of a curve.
+const POINTS: usize = 120;
+
+/// The backbones of an oscillator about its places of rest, as far as they lie in the range: those of mirrored places once. `size` is
+/// the largest amplitude of interest.
+///
+/// # Errors
+/// A force that cannot be differentiated.
+pub fn backbones(
+    oscillator: &Oscillator,
+    driven: &Driven,
+    harmonics: usize,
+    range: [f64; 2],
+    size: f64,
+) -> Result<Vec<Vec<BackbonePoint>>, ResponseError> {
+    let Ok(parts) = oscillator.parts() else {
+        return Ok(vec![]);
+    };
+    let is_size = size > 0.0 && size.is_finite();
+    if !is_size || !driven.frequency.contains(driven.parameter) {
+        return Ok(vec![]);
+    }
+    let force = Expr::sum([parts.restoring, parts.inertia]);
+    if force.contains(driven.parameter) {
+        return Ok(vec![]);
+    }
+    let free = Oscillator {
+        force,
+        ..oscillator.clone()
+    };
+    let free = Driven::of_frequency(&free, driven.frequency.clone(), driven.parameter, driven.periods)?;
+    let balance = Balance::new(&free, harmonics);
+    let mut curves: Vec<Vec<BackbonePoint>> = Vec::new();
+    for place in places_of_rest(&free, range[0], size) {
+        let curve = curve(&balance, place, range, size);
+        let same = |other: &Vec<BackbonePoint>| {
+            other.len() == curve.len()
+                && other.iter().zip(&curve).all(|(one, two)| {
+                    (one.parameter - two.parameter).abs() <= 1e-6 * (range[1] - range[0])
+                        && (one.amplitude - two.amplitude).abs() <= 1e-6 * size
+                })
+        };
+        if curve.len() > 1 && !curves.iter().any(same) {
+            curves.push(curve);
+        }
+    }
+    Ok(curves)
+}
+
+/// The stable places of rest nearest to zero.
+pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<f64> {
+    const CELLS: i32 = 400;
+    const REACH: f64 = 3.0;
+    const MOST: usize = 3;
+    let mean_force = |x: f64| {
+        const PHASES: u32 = 16;
+        let force = |phase: u32| {
+            let theta = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASES);
+            driven.force(&[x, 0.0, theta * driven.periods as f64, parameter])
+        };
+        (0..PHASES).map(force).sum::<f64>() / f64::from(PHASES)
+    };
+    // Off the middle, so that zero lies inside a cell.
+    let place = |cell: i32| REACH * size * (f64::from(cell) + 0.5) / f64::from(CELLS);
+    let mut found: Vec<f64> = (-CELLS..CELLS)
+        .filter(|cell| mean_force(place(*cell)) < 0.0 && mean_force(place(cell + 1)) > 0.0)
+        .filter_map(|cell| crate::numeric::ode::root::find_root(mean_force, place(cell), place(cell + 1)).ok())
+        .collect();
+    found.sort_by(|one, other| one.abs().total_cmp(&other.abs()).then(other.total_cmp(one)));
+    found.truncate(MOST);
+    found
+}
+
+/// The points of one curve that lie in the range.
+fn curve(balance: &Balance, place: f64, range: [f64; 2], size: f64) -> Vec<BackbonePoint> {
+    let mut points = Vec::new();
+    let mut last: Option<(DVector<f64>, f64)> = None;
+    for index in 1..=POINTS {
+        let amplitude = size * index as f64 / POINTS as f64;
+        let guess = match &last {
+            Some((coefficients, parameter)) => {
+                let mut guess = coefficients.clone();
+                guess[1] = amplitude;
+                Some((guess, *parameter))
+            }
+            None => first_guess(balance, place, amplitude, range),
+        };
+        let Some((guess, parameter)) = guess else { continue };
+        match solved(balance, guess, parameter) {
+            Some((coefficients, parameter)) => {
+                points.push(BackbonePoint { parameter, amplitude });
+                last = Some((coefficients, parameter));
+            }
+            // A motion that leaves its well has no neighbour beyond.
+            None if last.is_some() => break,
+            None => {}
+        }
+    }
+    points.retain(|point| (range[0]..=range[1]).contains(&point.parameter));
+    points
+}
+
+/// One harmonic about a place: its frequency by the first harmonic of the force.
+fn first_guess(balance: &Balance, place: f64, amplitude: f64, range: [f64; 2]) -> Option<(DVector<f64>, f64)> {
+    const PHASES: u32 = 64;
+    let driven = balance.driven;
+    let mut sum = 0.0;
+    for phase in 0..PHASES {
+        let theta = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASES);
+        sum += driven.force(&[place + amplitude * theta.cos(), 0.0, theta, range[0]]) * theta.cos();
+    }
+    let square = 2.0 * sum / f64::from(PHASES) / amplitude;
+    if square.is_nan() || square <= 0.0 {
+        return None;
+    }
+    let wanted = square.sqrt();
+    let mut parameter = 0.5 * (range[0] + range[1]);
+    for _ in 0..20 {
+        let step = (driven.frequency_at(parameter) - wanted) / driven.frequency_slope(parameter);
+        parameter -= step;
+        if !parameter.is_finite() {
+            return None;
+        }
+    }
+    let mut coefficients = DVector::zeros(balance.size());
+    coefficients[0] = place;
+    coefficients[1] = amplitude;
+    Some((coefficients, parameter))
+}
+
+/// Newton's method for the mean, the parameter and the higher cosines, the first being given.
+fn solved(balance: &Balance, mut coefficients: DVector<f64>, mut parameter: f64) -> Option<(DVector<f64>, f64)> {
+    const MOST: usize = 30;
+    let count = balance.harmonics + 1;
+    // The cosine of a harmonic: its place among the coefficients.
+    let cosine = |harmonic: usize| if harmonic == 0 { 0 } else { 2 * harmonic - 1 };
+    for _ in 0..MOST {
+        let linear = balance.linearised(&coefficients, parameter)?;
+        let matrix = DMatrix::from_fn(count, count, |row, column| match column {
+            1 => linear.by_parameter[cosine(row)],
+            _ => linear.jacobian[(cosine(row), cosine(column))],
+        });
+        let right = DVector::from_fn(count, |row, _| linear.residual[cosine(row)]);
+        let step = matrix.lu().solve(&right)?;
+        for harmonic in (0..count).filter(|harmonic| *harmonic != 1) {
+            coefficients[cosine(harmonic)] -= step[harmonic];
+        }
+        parameter -= step[1];
+        let size = coefficients.norm();
+        let frequency = balance.driven.frequency_at(parameter);
+        if !size.is_finite() || !parameter.is_finite() || frequency.is_nan() || frequency <= 0.0 {
+            return None;
+        }
+        let moved = step.iter().enumerate().filter(|(index, _)| *index != 1);
+        let moved = moved.fold(0.0_f64, |most, (_, part)| most.max(part.abs()));
+        if moved <= CONVERGED * size && step[1].abs() <= CONVERGED * parameter.abs() {
+            return Some((coefficients, parameter));
+        }
+    }
+    None
+}

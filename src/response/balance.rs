@@ -1,0 +1,277 @@
+//! Harmonic balance with many harmonics: the equation of a driven motion as equations for its Fourier coefficients.
+//!
+//! ```text
+//! X(theta) = a_0 + sum_(k = 1..H) a_k cos(k theta) + b_k sin(k theta),   u = (a_0, a_1, b_1, ..., a_H, b_H)
+//! R(u, p) = the same coefficients of omega^2 X'' + f(X, omega X', theta; p)
+//! ```
+//!
+//! The force is sampled at equal steps of the phase and taken apart into its harmonics again: alternating time and frequency (T. M.
+//! Cameron and J. H. Griffin, *J. Appl. Mech.* 56 (1989) 149; G. von Groll and D. J. Ewins, *J. Sound Vib.* 241 (2001) 223; M. Krack
+//! and J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019). The Jacobian comes from the harmonics of the
+//! derivatives of the force at the same samples. In: coefficients and a parameter. Out: residual and derivatives, in the units of the
+//! equation.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::driven::Driven;
+
+/// Samples for each harmonic, and of all of them: forces of the seventh power are exact.
+const SMOOTH: [usize; 2] = [8, 32];
+
+/// Likewise where the force has corners: with fewer the branch would waver as a corner moves from sample to sample.
+const CORNERED: [usize; 2] = [32, 512];
+
+/// The equations for so many harmonics.
+#[derive(Clone, Debug)]
+pub struct Balance<'a> {
+    /// The equation.
+    pub driven: &'a Driven,
+    /// H: the highest harmonic.
+    pub harmonics: usize,
+    /// cos of all phases that are sampled; their number is a power of two.
+    cosines: Vec<f64>,
+}
+
+/// The residual and its derivatives at a point.
+#[derive(Clone, Debug)]
+pub struct Linearised {
+    /// R.
+    pub residual: DVector<f64>,
+    /// dR/du.
+    pub jacobian: DMatrix<f64>,
+    /// dR/dp.
+    pub by_parameter: DVector<f64>,
+    /// The size of the terms that cancel in R.
+    pub scale: f64,
+}
+
+/// Harmonics 0 to `count` of samples: twice the mean, then cosines; sines.
+struct Harmonics {
+    cosines: Vec<f64>,
+    sines: Vec<f64>,
+}
+
+impl Harmonics {
+    /// The cosine of an index of either sign.
+    fn cosine(&self, index: isize) -> f64 {
+        self.cosines[index.unsigned_abs()]
+    }
+
+    /// The sine of an index of either sign.
+    fn sine(&self, index: isize) -> f64 {
+        let value = self.sines[index.unsigned_abs()];
+        if index < 0 { -value } else { value }
+    }
+}
+
+impl<'a> Balance<'a> {
+    /// The equations of `harmonics` harmonics, one at least.
+    pub fn new(driven: &'a Driven, harmonics: usize) -> Self {
+        let harmonics = harmonics.max(1);
+        let [each, least] = if driven.smooth { SMOOTH } else { CORNERED };
+        let samples = (each * (harmonics + 1)).next_power_of_two().max(least);
+        let phase = |index: usize| std::f64::consts::TAU * index as f64 / samples as f64;
+        Self {
+            driven,
+            harmonics,
+            cosines: (0..samples).map(|index| phase(index).cos()).collect(),
+        }
+    }
+
+    /// The number of coefficients: 2 H + 1.
+    pub fn size(&self) -> usize {
+        2 * self.harmonics + 1
+    }
+
+    /// The number of samples.
+    pub fn samples(&self) -> usize {
+        self.cosines.len()
+    }
+
+    /// cos(k theta) and sin(k theta) at a sample.
+    fn wave(&self, harmonic: usize, sample: usize) -> (f64, f64) {
+        let samples = self.cosines.len();
+        let index = (harmonic * sample) % samples;
+        (
+            self.cosines[index],
+            self.cosines[(index + samples - samples / 4) % samples],
+        )
+    }
+
+    /// X, X' and X'' by the phase, at every sample.
+    pub fn motion(&self, coefficients: &DVector<f64>) -> Vec<[f64; 3]> {
+        let at = |sample: usize| {
+            let mut point = [coefficients[0], 0.0, 0.0];
+            for harmonic in 1..=self.harmonics {
+                let (cosine, sine) = self.wave(harmonic, sample);
+                let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
+                let k = harmonic as f64;
+                let value = a * cosine + b * sine;
+                point[0] += value;
+                point[1] += k * (b * cosine - a * sine);
+                point[2] -= k * k * value;
+            }
+            point
+        };
+        (0..self.samples()).map(at).collect()
+    }
+
+    /// The harmonics of samples, up to `count`.
+    fn harmonics_of(&self, values: &[f64], count: usize) -> Harmonics {
+        let factor = 2.0 / values.len() as f64;
+        let harmonic = |harmonic: usize| {
+            let (mut cosines, mut sines) = (0.0, 0.0);
+            for (sample, value) in values.iter().enumerate() {
+                let (cosine, sine) = self.wave(harmonic, sample);
+                cosines += value * cosine;
+                sines += value * sine;
+            }
+            (factor * cosines, factor * sines)
+        };
+        let (cosines, sines) = (0..=count).map(harmonic).unzip();
+        Harmonics { cosines, sines }
+    }
+
+    /// The coefficients of samples at the phases of the balance.
+    fn coefficients(&self, values: &[f64]) -> DVector<f64> {
+        self.in_order(&self.harmonics_of(values, self.harmonics))
+    }
+
+    /// The coefficients of a motion that is known at any number of equal steps of a period, twice as many as harmonics at least.
+    pub fn coefficients_of(&self, positions: &[f64]) -> DVector<f64> {
+        let count = positions.len().max(1) as f64;
+        let harmonic = |harmonic: usize| {
+            let wave = |(index, value): (usize, &f64)| {
+                let (sine, cosine) = (std::f64::consts::TAU * (harmonic * index) as f64 / count).sin_cos();
+                (value * cosine, value * sine)
+            };
+            let sums = positions.iter().enumerate().map(wave);
+            let (cosines, sines) = sums.fold((0.0, 0.0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
+            (2.0 * cosines / count, 2.0 * sines / count)
+        };
+        let (cosines, sines) = (0..=self.harmonics).map(harmonic).unzip();
+        self.in_order(&Harmonics { cosines, sines })
+    }
+
+    fn in_order(&self, harmonics: &Harmonics) -> DVector<f64> {
+        DVector::from_fn(self.size(), |index, _| match index {
+            0 => 0.5 * harmonics.cosines[0],
+            odd if odd % 2 == 1 => harmonics.cosines[odd.div_ceil(2)],
+            even => harmonics.sines[even / 2],
+        })
+    }
+
+    /// The residual and its derivatives; nothing where the force has no finite value on the motion.
+    pub fn linearised(&self, coefficients: &DVector<f64>, parameter: f64) -> Option<Linearised> {
+        let driven = self.driven;
+        let (omega, omega_slope) = (driven.frequency_at(parameter), driven.frequency_slope(parameter));
+        let step = std::f64::consts::TAU / self.samples() as f64;
+        let motion = self.motion(coefficients);
+        let count = motion.len();
+        let (mut inertia, mut force) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut slopes: [Vec<f64>; 3] = std::array::from_fn(|_| Vec::with_capacity(count));
+        for (sample, [position, by_phase, curvature]) in motion.iter().enumerate() {
+            let velocity = omega * by_phase;
+            let at = [*position, velocity, step * sample as f64, parameter];
+            let [by_position, by_velocity, by_parameter] = driven.slopes(&at);
+            inertia.push(omega * omega * curvature);
+            force.push(driven.force(&at));
+            slopes[0].push(by_position);
+            slopes[1].push(by_velocity);
+            slopes[2].push(by_parameter + omega_slope * (2.0 * omega * curvature + by_velocity * by_phase));
+        }
+        let sum: Vec<f64> = inertia.iter().zip(&force).map(|(one, other)| one + other).collect();
+        if !sum.iter().chain(slopes.iter().flatten()).all(|value| value.is_finite()) {
+            return None;
+        }
+        let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let jacobian = self.jacobian(&slopes, omega);
+        Some(Linearised {
+            residual: self.coefficients(&sum),
+            jacobian,
+            by_parameter: self.coefficients(&slopes[2]),
+            scale: size(&inertia).max(size(&force)),
+        })
+    }
+
+    /// dR/du from the derivatives of the force at the samples.
+    fn jacobian(&self, [by_position, by_velocity, _]: &[Vec<f64>; 3], omega: f64) -> DMatrix<f64> {
+        let stiffness = self.harmonics_of(by_position, 2 * self.harmonics);
+        let damping = self.harmonics_of(by_velocity, 2 * self.harmonics);
+        // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these harmonics.
+        let coupled = |s: &Harmonics, (k, k_sine): (isize, bool), (l, l_sine): (isize, bool)| {
+            0.5 * match (k_sine, l_sine) {
+                (false, false) => s.cosine(k - l) + s.cosine(k + l),
+                (false, true) => s.sine(k + l) + s.sine(l - k),
+                (true, false) => s.sine(k + l) + s.sine(k - l),
+                (true, true) => s.cosine(k - l) - s.cosine(k + l),
+            }
+        };
+        DMatrix::from_fn(self.size(), self.size(), |row, column| {
+            let place = |index: usize| (index.div_ceil(2) as isize, index > 0 && index.is_multiple_of(2));
+            let ((k, k_sine), (l, l_sine)) = (place(row), place(column));
+            // A cosine turns into minus a sine, a sine into a cosine.
+            let turned = if l_sine { 1.0 } else { -1.0 } * omega * l as f64;
+            let mut value =
+                coupled(&stiffness, (k, k_sine), (l, l_sine)) + turned * coupled(&damping, (k, k_sine), (l, !l_sine));
+            if k == 0 {
+                value *= 0.5;
+            }
+            if row == column {
+                value -= (omega * k as f64).powi(2);
+            }
+            value
+        })
+    }
+
+    /// Newton's method for the coefficients at a fixed parameter; nothing where it does not settle.
+    pub fn solve(&self, guess: &DVector<f64>, parameter: f64) -> Option<DVector<f64>> {
+        const MOST: usize = 40;
+        let mut coefficients = guess.clone();
+        for _ in 0..MOST {
+            let linear = self.linearised(&coefficients, parameter)?;
+            let step = linear.jacobian.lu().solve(&linear.residual)?;
+            coefficients -= &step;
+            let size = coefficients.norm();
+            if !size.is_finite() {
+                return None;
+            }
+            if step.norm() <= CONVERGED * size || linear.residual.norm() <= 1e-14 * linear.scale {
+                return Some(coefficients);
+            }
+        }
+        None
+    }
+
+    /// Position and velocity at phase zero.
+    pub fn start(&self, coefficients: &DVector<f64>, parameter: f64) -> [f64; 2] {
+        let omega = self.driven.frequency_at(parameter);
+        let mut start = [coefficients[0], 0.0];
+        for harmonic in 1..=self.harmonics {
+            start[0] += coefficients[2 * harmonic - 1];
+            start[1] += omega * harmonic as f64 * coefficients[2 * harmonic];
+        }
+        start
+    }
+
+    /// Position and velocity at a phase.
+    pub fn at(&self, coefficients: &DVector<f64>, parameter: f64, phase: f64) -> [f64; 2] {
+        let omega = self.driven.frequency_at(parameter);
+        let mut point = [coefficients[0], 0.0];
+        let (step_sine, step_cosine) = phase.sin_cos();
+        let (mut cosine, mut sine) = (1.0, 0.0);
+        for harmonic in 1..=self.harmonics {
+            (cosine, sine) = (
+                cosine * step_cosine - sine * step_sine,
+                sine * step_cosine + cosine * step_sine,
+            );
+            let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
+            point[0] += a * cosine + b * sine;
+            point[1] += omega * harmonic as f64 * (b * cosine - a * sine);
+        }
+        point
+    }
+}
+
+/// A step of Newton's method that is smaller than this part of the motion is its last.
+pub(super) const CONVERGED: f64 = 1e-10;

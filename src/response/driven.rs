@@ -1,0 +1,243 @@
+//! The equation of a driven oscillator in the phase of its motion, ready for numbers.
+//!
+//! ```text
+//! x'' + f(x, x', t; p) = 0,   theta = omega t,   omega = Omega(p)/n   ->   omega^2 X'' + f(X, omega X', theta/omega; p) = 0
+//! ```
+//!
+//! In: an oscillator with exact numbers for all parameters but one, p, which varies, and how many periods of the drive, n, a period
+//! of the motion takes. Out: f and its derivatives by x, x' and p at a fixed phase as straight lists of operations. Time may stand
+//! inside `sin`, `cos` and `tan` alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
+
+use num_integer::Integer as _;
+use num_traits::{Signed, Zero};
+
+use super::ResponseError;
+use crate::exact::Rational;
+use crate::expr::{CompiledFunction, Expr, Function, Node};
+use crate::oscillator::Oscillator;
+use crate::symbol::{Symbol, fresh};
+
+/// A driven equation of which one parameter varies.
+#[derive(Clone, Debug)]
+pub struct Driven {
+    /// The frequency of the drive in the parameter.
+    pub frequency: Expr,
+    /// The parameter that varies.
+    pub parameter: Symbol,
+    /// Periods of the drive in a period of the motion.
+    pub periods: usize,
+    /// f(x, x', theta; p).
+    force: CompiledFunction,
+    /// Its derivatives by x, x' and p.
+    slopes: [CompiledFunction; 3],
+    /// f(x, x', t; p), as it was given.
+    in_time: CompiledFunction,
+    /// omega(p) and its derivative.
+    base: [CompiledFunction; 2],
+    /// Whether it has no odd power of the velocity.
+    pub undamped: bool,
+    /// Whether the force has no corner or jump: no `abs`, `sgn`, `H`, `max` or `min`.
+    pub smooth: bool,
+}
+
+/// The functions with a corner or a jump.
+const CORNERS: [Function; 5] = [
+    Function::Absolute,
+    Function::Sign,
+    Function::Step,
+    Function::Maximum,
+    Function::Minimum,
+];
+
+impl Driven {
+    /// Of an oscillator without other parameters than the one that varies.
+    ///
+    /// # Errors
+    /// No drive, or one that is not periodic; several frequencies that are no multiples of one; a derivative that cannot be written.
+    pub fn new(oscillator: &Oscillator, parameter: Symbol, periods: usize) -> Result<Self, ResponseError> {
+        let frequency = drive_frequency(oscillator)?;
+        Self::of_frequency(oscillator, frequency, parameter, periods)
+    }
+
+    /// Of an oscillator whose motions have this frequency, driven or free.
+    pub(super) fn of_frequency(
+        oscillator: &Oscillator,
+        frequency: Expr,
+        parameter: Symbol,
+        periods: usize,
+    ) -> Result<Self, ResponseError> {
+        let time = Symbol::new("t");
+        let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+        let names: Vec<Symbol> = oscillator.names().into_iter().chain([velocity, parameter]).collect();
+        let phase = fresh("theta", &names);
+        let base = Expr::divide(&frequency, &Expr::from(i64::try_from(periods).unwrap_or(1)))?;
+        let moment = Expr::divide(&Expr::from(phase), &base)?;
+        let force = in_phase(&oscillator.force, time, &moment)?;
+        let arguments = [position, velocity, phase, parameter];
+        let compiled = |expression: &Expr| CompiledFunction::new(expression, &arguments).map_err(ResponseError::from);
+        let slope = |by: Symbol| compiled(&force.differentiate(by)?);
+        let undamped = oscillator
+            .parts()
+            .is_ok_and(|parts| parts.damping.is_zero() && !parts.forcing.contains(velocity));
+        Ok(Self {
+            slopes: [slope(position)?, slope(velocity)?, slope(parameter)?],
+            force: compiled(&force)?,
+            in_time: CompiledFunction::new(&oscillator.force, &[position, velocity, time, parameter])?,
+            base: [
+                CompiledFunction::new(&base, &[parameter])?,
+                CompiledFunction::new(&base.differentiate(parameter)?, &[parameter])?,
+            ],
+            frequency,
+            parameter,
+            periods,
+            undamped,
+            smooth: !CORNERS.iter().any(|corner| oscillator.force.contains_function(*corner)),
+        })
+    }
+
+    /// omega: that of the motion, a whole part of that of the drive.
+    pub fn frequency_at(&self, parameter: f64) -> f64 {
+        self.base[0].call(&[parameter])
+    }
+
+    /// Its derivative by the parameter.
+    pub fn frequency_slope(&self, parameter: f64) -> f64 {
+        self.base[1].call(&[parameter])
+    }
+
+    /// f at a position, a velocity and a phase of the motion.
+    pub fn force(&self, at: &[f64; 4]) -> f64 {
+        self.force.call(at)
+    }
+
+    /// Its derivatives by position, velocity and parameter, the phase being fixed.
+    pub fn slopes(&self, at: &[f64; 4]) -> [f64; 3] {
+        self.slopes.each_ref().map(|slope| slope.call(at))
+    }
+
+    /// f as it was given, in time.
+    pub fn force_in_time(&self, at: &[f64; 4]) -> f64 {
+        self.in_time.call(at)
+    }
+}
+
+/// The expression with the phase in place of time; the arguments of `sin` and the like are written out, so that
+/// `Omega*theta/Omega` is `theta`.
+fn in_phase(expression: &Expr, time: Symbol, moment: &Expr) -> Result<Expr, ResponseError> {
+    Ok(expression.fold(|node, children: &[Expr]| match node.node() {
+        Node::Symbol(name) if *name == time => Ok(moment.clone()),
+        Node::Function(..) if node.contains(time) => {
+            let arguments: Result<Vec<Expr>, _> = children.iter().map(Expr::expand).collect();
+            node.with_children(&arguments?)
+        }
+        _ if children.is_empty() => Ok(node.clone()),
+        _ => node.with_children(children),
+    })?)
+}
+
+/// The frequency of which all frequencies of the drive are whole multiples.
+fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
+    let time = Symbol::new("t");
+    if !oscillator.force.contains(time) {
+        return Err(ResponseError::NoDrive);
+    }
+    let own = [oscillator.coordinate, oscillator.velocity(), time];
+    let mut found: Vec<Expr> = Vec::new();
+    for term in oscillator.force.terms() {
+        // Whether time stands outside of every periodic function.
+        let bare = term.fold(|node, children: &[bool]| match node.node() {
+            Node::Symbol(name) => Ok::<bool, ResponseError>(*name == time),
+            Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) if node.contains(time) => {
+                let frequency = arguments.first().map(|argument| argument.differentiate(time));
+                let frequency = frequency.unwrap_or_else(|| Ok(Expr::zero()))?.expand()?;
+                if own.iter().any(|name| frequency.contains(*name)) {
+                    return Ok(true);
+                }
+                found.push(frequency);
+                Ok(false)
+            }
+            _ => Ok(children.contains(&true)),
+        })?;
+        if bare {
+            return Err(ResponseError::NotPeriodic(term.to_string()));
+        }
+    }
+    let Some(first) = found.first().cloned() else {
+        return Err(ResponseError::NoDrive);
+    };
+    let mut common: Option<Rational> = None;
+    for frequency in &found {
+        let ratio = Expr::divide(frequency, &first)?.expand()?;
+        let Some(ratio) = ratio.as_number().filter(|ratio| !ratio.is_zero()) else {
+            return Err(ResponseError::TwoFrequencies([
+                first.to_string(),
+                frequency.to_string(),
+            ]));
+        };
+        let ratio = ratio.abs();
+        common = Some(match common {
+            None => ratio,
+            Some(common) => Rational::new(common.numer().gcd(ratio.numer()), common.denom().lcm(ratio.denom())),
+        });
+    }
+    let factor = common.unwrap_or_else(num_traits::One::one);
+    let frequency = Expr::number(factor) * first;
+    Ok(if frequency.has_leading_minus() {
+        -frequency
+    } else {
+        frequency
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frequency(text: &str) -> Result<String, String> {
+        let oscillator = Oscillator::parse(text).unwrap();
+        let found = drive_frequency(&oscillator);
+        found.map(|found| found.to_string()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_drive_has_one_frequency() {
+        for (text, expected) in [
+            ("x'' + x - F*cos(Omega*t) = 0", "Omega"),
+            ("x'' + x - F*cos(2*t)^2 = 0", "2"),
+            ("x'' + x*(1 + sin(3*Omega*t + 1)) = cos(2*Omega*t)", "Omega"),
+            ("x'' + x = cos(t/2) + sin(t/3)", "1/6"),
+            ("x'' + x = sgn(sin(Omega*t - x))", "Omega"),
+            ("x'' + x = cos(-k*t)", "k"),
+            ("x'' + x = exp(cos((a + b)*t))", "a + b"),
+        ] {
+            assert_eq!(frequency(text).as_deref(), Ok(expected), "{text}");
+        }
+        for (text, words) in [
+            ("x'' + x = 0", "no drive"),
+            ("x'' + x = exp(-t)", "exp(-t)"),
+            ("x'' + x = t*cos(t)", "t*cos(t)"),
+            ("x'' + x = cos(t^2)", "cos(t^2)"),
+            ("x'' + x = cos(t) + cos(pi*t)", "no whole multiples"),
+            ("x'' + x = cos(Omega*t) + cos(t)", "no whole multiples"),
+        ] {
+            let refused = frequency(text).unwrap_err();
+            assert!(refused.contains(words), "{text}: {refused}");
+        }
+    }
+
+    #[test]
+    fn the_phase_takes_the_place_of_time() {
+        let oscillator = Oscillator::parse("x'' + x'/5 + x + x^3 = 2*cos(3*Omega*t + x)").unwrap();
+        let driven = Driven::new(&oscillator, "Omega".into(), 2).unwrap();
+        let (x, v, theta, omega) = (0.3, -0.7, 1.1, 1.7);
+        let base = driven.frequency_at(omega);
+        assert!((base - 3.0 * omega / 2.0).abs() < 1e-15 && driven.frequency_slope(omega) == 1.5);
+        let there = driven.force(&[x, v, theta, omega]);
+        let expected = v / 5.0 + x + x * x * x - 2.0 * (2.0 * theta + x).cos();
+        assert!((there - expected).abs() < 1e-14);
+        assert!((driven.force_in_time(&[x, v, theta / base, omega]) - expected).abs() < 1e-14);
+        let slopes = driven.slopes(&[x, v, theta, omega]);
+        let by_position = 1.0 + 3.0 * x * x + 2.0 * (2.0 * theta + x).sin();
+        assert!((slopes[0] - by_position).abs() < 1e-14 && slopes[1] == 0.2 && slopes[2] == 0.0);
+    }
+}

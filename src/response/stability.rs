@@ -1,0 +1,291 @@
+//! The true motion beside a balance, and whether it lasts: Floquet's multipliers.
+//!
+//! ```text
+//! M' = [0 1; -f_x -f_v] M,  M(0) = 1:   the multipliers are the eigenvalues of M(T),   det M(T) = exp(-integral of f_v over T)
+//! ```
+//!
+//! In: a start near a motion of period T. Out: the motion itself, found by shooting (Newton's method for the start that comes back
+//! after a period), its first harmonic and its peaks, and its multipliers; it is stable if both lie inside the unit circle (A. H.
+//! Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by Runge-Kutta on
+//! the equation as it was given; of the balance only the start is taken.
+
+use nalgebra::{Matrix2, Vector2};
+use num_complex::Complex;
+
+use super::driven::Driven;
+use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
+
+/// Samples of a period from which its harmonics and its peaks are taken.
+const SAMPLES: usize = 256;
+
+/// What a small disturbance of a periodic motion has become after a period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floquet {
+    /// M(T).
+    pub monodromy: Matrix2<f64>,
+}
+
+impl Floquet {
+    /// The eigenvalues of M(T), the larger first.
+    pub fn multipliers(&self) -> [Complex<f64>; 2] {
+        let (half, determinant) = (0.5 * self.monodromy.trace(), self.monodromy.determinant());
+        let square = half * half - determinant;
+        if square < 0.0 {
+            let root = (-square).sqrt();
+            return [Complex::new(half, root), Complex::new(half, -root)];
+        }
+        // The smaller one by the product, which does not cancel.
+        let large = half + half.signum() * square.sqrt();
+        let small = if large == 0.0 { 0.0 } else { determinant / large };
+        [Complex::new(large, 0.0), Complex::new(small, 0.0)]
+    }
+
+    /// The size of the larger one.
+    pub fn largest(&self) -> f64 {
+        self.multipliers()
+            .iter()
+            .fold(0.0, |largest, multiplier| multiplier.norm().max(largest))
+    }
+}
+
+/// A periodic motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueMotion {
+    /// Position and velocity at phase zero.
+    pub start: [f64; 2],
+    /// The multipliers.
+    pub floquet: Floquet,
+    /// Coefficients of cos(theta) and sin(theta).
+    pub first_harmonic: [f64; 2],
+    /// Half of the way from the lowest to the highest point.
+    pub peak: f64,
+}
+
+/// Relative error of a step where motions are judged.
+pub(super) const TOLERANCE: f64 = 1e-10;
+
+/// Steps that a period may take.
+const STEPS: usize = 4_000;
+
+fn options(size: f64, tolerance: f64) -> Options {
+    Options {
+        absolute_tolerance: tolerance * size.clamp(1e-12, 1.0),
+        maximum_steps: STEPS,
+        ..Options::with_tolerance(tolerance)
+    }
+}
+
+/// The motion over a period with its variations; nothing where it cannot be followed.
+fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<Trajectory<Point<[f64; 6]>>> {
+    let omega = driven.frequency_at(parameter);
+    let period = std::f64::consts::TAU / omega;
+    let rates = |t: f64, y: &[f64; 6], rates: &mut [f64; 6]| {
+        let at = [y[0], y[1], omega * t, parameter];
+        let [by_position, by_velocity, _] = driven.slopes(&at);
+        *rates = [
+            y[1],
+            -driven.force(&at),
+            y[3],
+            -by_position * y[2] - by_velocity * y[3],
+            y[5],
+            -by_position * y[4] - by_velocity * y[5],
+        ];
+    };
+    let begin = Point {
+        t: 0.0,
+        y: [start[0], start[1], 1.0, 0.0, 0.0, 1.0],
+    };
+    let size = start[0].abs().max(start[1].abs() / omega);
+    let path = integrate_first_order(rates, begin, period, &[], &options(size, TOLERANCE)).ok()?;
+    path.is_complete().then_some(path)
+}
+
+fn monodromy(end: &[f64; 6]) -> Floquet {
+    Floquet {
+        monodromy: Matrix2::new(end[2], end[4], end[3], end[5]),
+    }
+}
+
+/// The periodic motion whose start is near this one; nothing where shooting does not settle, or goes far away.
+pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f64) -> Option<TrueMotion> {
+    const MOST: usize = 12;
+    /// Parts of the size of the motion by which the start may move.
+    const FAR: f64 = 0.3;
+    let omega = driven.frequency_at(parameter);
+    let mut start = guess;
+    let measure = |step: [f64; 2]| step[0].hypot(step[1] / omega);
+    let mut before = f64::INFINITY;
+    for _ in 0..MOST {
+        let path = with_variations(driven, start, parameter)?;
+        let end = path.end().y;
+        let floquet = monodromy(&end);
+        let missed = Vector2::new(end[0] - start[0], end[1] - start[1]);
+        let step = (Matrix2::identity() - floquet.monodromy).lu().solve(&missed)?;
+        let moved = measure([step[0], step[1]]);
+        // Near a fold rounding is magnified: what does not shrink any more has come as near as it will.
+        let settled = moved <= 1e-6 * size && moved >= 0.5 * before;
+        if settled || moved <= 1e-9 * size || measure([missed[0], missed[1]]) <= 1e-12 * size {
+            return Some(described(&path, start, floquet));
+        }
+        before = moved;
+        start = [start[0] + step[0], start[1] + step[1]];
+        let away = measure([start[0] - guess[0], start[1] - guess[1]]);
+        if away.is_nan() || away > FAR * size {
+            return None;
+        }
+    }
+    None
+}
+
+/// The multipliers of a motion that is given, not followed: `motion` has position and velocity at a phase.
+pub fn multipliers_along(driven: &Driven, parameter: f64, motion: impl Fn(f64) -> [f64; 2]) -> Option<Floquet> {
+    let omega = driven.frequency_at(parameter);
+    let rates = |t: f64, y: &[f64; 4], rates: &mut [f64; 4]| {
+        let [position, velocity] = motion(omega * t);
+        let [by_position, by_velocity, _] = driven.slopes(&[position, velocity, omega * t, parameter]);
+        *rates = [
+            y[1],
+            -by_position * y[0] - by_velocity * y[1],
+            y[3],
+            -by_position * y[2] - by_velocity * y[3],
+        ];
+    };
+    let begin = Point {
+        t: 0.0,
+        y: [1.0, 0.0, 0.0, 1.0],
+    };
+    let path = integrate_first_order(
+        rates,
+        begin,
+        std::f64::consts::TAU / omega,
+        &[],
+        &options(1.0, TOLERANCE),
+    )
+    .ok()?;
+    let end = path.end().y;
+    path.is_complete().then_some(Floquet {
+        monodromy: Matrix2::new(end[0], end[2], end[1], end[3]),
+    })
+}
+
+fn described(path: &Trajectory<Point<[f64; 6]>>, start: [f64; 2], floquet: Floquet) -> TrueMotion {
+    let positions: Vec<f64> = path
+        .samples(SAMPLES + 1)
+        .take(SAMPLES)
+        .map(|point| point.y[0])
+        .collect();
+    TrueMotion {
+        start,
+        floquet,
+        first_harmonic: first_harmonic(&positions),
+        peak: half_of_peak_to_peak(&positions),
+    }
+}
+
+/// Coefficients of cos(theta) and sin(theta) of a period in equal steps.
+pub fn first_harmonic(positions: &[f64]) -> [f64; 2] {
+    let count = positions.len() as f64;
+    let mut sums = [0.0; 2];
+    for (index, position) in positions.iter().enumerate() {
+        let (sine, cosine) = (std::f64::consts::TAU * index as f64 / count).sin_cos();
+        sums[0] += position * cosine;
+        sums[1] += position * sine;
+    }
+    sums.map(|sum| 2.0 * sum / count)
+}
+
+/// Half of the way from the lowest to the highest point of a period in equal steps, by the parabola through three of them.
+pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
+    let count = positions.len();
+    let top = |sign: f64| {
+        let highest = (0..count).max_by(|one, other| (sign * positions[*one]).total_cmp(&(sign * positions[*other])));
+        let Some(middle) = highest else {
+            return 0.0;
+        };
+        let value = |offset: usize| sign * positions[(middle + offset) % count];
+        let [before, here, after] = [value(count - 1), value(0), value(1)];
+        let curvature = before - 2.0 * here + after;
+        match curvature < 0.0 {
+            true => here - (after - before).powi(2) / (8.0 * curvature),
+            false => here,
+        }
+    };
+    0.5 * (top(1.0) + top(-1.0))
+}
+
+/// Where a simulation has come to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// Position and velocity at phase zero.
+    pub state: [f64; 2],
+    /// The periods of the motion after which it comes back; nothing where it does not within eight.
+    pub returns_after: Option<usize>,
+    /// Its positions over the last period, at equal steps.
+    pub positions: Vec<f64>,
+}
+
+/// Follows the equation as it was given from a start, period by period, until it repeats itself to `closely` (of its size), or
+/// `most` periods are over; the tolerance of a step is a thousandth of that. Nothing where it cannot be followed: it escapes, or there
+/// are no evaluations of the force left in the `budget` that several simulations share.
+pub fn settle(
+    driven: &Driven,
+    start: [f64; 2],
+    parameter: f64,
+    (most, closely): (usize, f64),
+    budget: &mut usize,
+) -> Option<Settled> {
+    /// Periods in which a repetition is looked for.
+    const LONGEST: usize = 8;
+    const BOUND: f64 = 1e8;
+    let omega = driven.frequency_at(parameter);
+    let period = std::f64::consts::TAU / omega;
+    let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
+        *rates = [y[1], -driven.force_in_time(&[y[0], y[1], t, parameter])];
+    };
+    let settings = |size: f64| options(size, (1e-3 * closely).clamp(1e-13, 1e-6));
+    let mut states = vec![start];
+    let mut quiet = 0;
+    let mut last = None;
+    for _ in 0..most {
+        let begin = states.last().copied()?;
+        let size = begin[0].abs().max(begin[1].abs() / omega);
+        let path = integrate_first_order(rates, Point { t: 0.0, y: begin }, period, &[], &settings(size)).ok()?;
+        let end = path.end().y;
+        *budget = budget.saturating_sub(path.evaluations());
+        if !path.is_complete() || size > BOUND || *budget == 0 {
+            return None;
+        }
+        let moved = (end[0] - begin[0]).hypot((end[1] - begin[1]) / omega);
+        let extent = path
+            .samples(33)
+            .fold(0.0_f64, |most, point| most.max((point.y[0] - begin[0]).abs()));
+        states.push(end);
+        last = Some(path);
+        // A motion that stands still is one that repeats itself.
+        quiet = if moved <= closely * extent.max(1e-12) {
+            quiet + 1
+        } else {
+            0
+        };
+        if quiet >= 3 {
+            break;
+        }
+    }
+    let path = last?;
+    let positions: Vec<f64> = path
+        .samples(SAMPLES + 1)
+        .take(SAMPLES)
+        .map(|point| point.y[0])
+        .collect();
+    let state = states.last().copied()?;
+    let extent = half_of_peak_to_peak(&positions).max(1e-12);
+    let repeats = |count: &usize| {
+        let before = states.len().checked_sub(1 + count).and_then(|index| states.get(index));
+        before.is_some_and(|before| (state[0] - before[0]).hypot((state[1] - before[1]) / omega) <= 1e-3 * extent)
+    };
+    Some(Settled {
+        state,
+        returns_after: (1..=LONGEST).find(repeats),
+        positions,
+    })
+}

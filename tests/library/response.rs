@@ -1,0 +1,515 @@
+//! Steady states against what is known of them otherwise: closed forms, simulation by Taylor series, Liouville's theorem.
+
+use lindstedt::response::bifurcation::BifurcationKind;
+use lindstedt::response::continuation::BranchEnd;
+use lindstedt::response::{Bifurcation, Point, Question, Response, respond};
+use lindstedt::solution::AmplitudeConvention;
+use lindstedt::trajectory::Course;
+use lindstedt::verify::Verdict;
+use lindstedt::{Oscillator, Symbol, solve};
+
+fn question(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> Question {
+    Question::new(equation, parameter, range, values).expect(equation)
+}
+
+fn response(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> Response {
+    respond(&question(equation, parameter, range, values)).expect(equation)
+}
+
+const DUFFING: &str = "x'' + c*x' + x + x^3 - F*cos(Omega*t) = 0";
+
+fn duffing() -> Response {
+    response(DUFFING, "Omega", [0.5, 2.5], "c = 1/10, F = 3/10")
+}
+
+fn places(response: &Response, kind: BifurcationKind) -> Vec<Bifurcation> {
+    let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
+    of_kind.copied().collect()
+}
+
+/// The points of all branches nearest to a value of the parameter, one for each time that a branch passes it.
+fn passing(response: &Response, parameter: f64) -> Vec<Point> {
+    let mut found = Vec::new();
+    for branch in &response.branches {
+        for pair in branch.points.windows(2) {
+            let between = (pair[0].parameter - parameter) * (pair[1].parameter - parameter);
+            if between <= 0.0 && pair[0].parameter != pair[1].parameter {
+                let nearer = pair.iter().min_by(|one, other| {
+                    let distance = |point: &Point| (point.parameter - parameter).abs();
+                    distance(one).total_cmp(&distance(other))
+                });
+                found.extend(nearer.cloned());
+            }
+        }
+    }
+    found
+}
+
+/// The equation by its Taylor series, or piece by piece, which shares nothing with the balance: position and velocity after so many periods, and the
+/// amplitude of the first harmonic and half of peak to peak of the last one.
+fn simulated(
+    equation: &str,
+    numbers: &[(&str, f64)],
+    start: [f64; 2],
+    period: f64,
+    periods: u32,
+) -> ([f64; 2], f64, f64) {
+    let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+    let end = f64::from(periods) * period;
+    course.values = numbers
+        .iter()
+        .map(|(name, value)| (Symbol::new(name), *value))
+        .collect();
+    course.begin("x".into(), start[0]).expect("a state");
+    course.begin("x'".into(), start[1]).expect("a state");
+    (course.duration, course.tolerance) = (end, 1e-12);
+    let path = course.follow().expect("a motion");
+    assert!(path.is_complete(), "{equation}");
+    const SAMPLES: u32 = 512;
+    let sample = |index: u32| end - period + period * f64::from(index) / f64::from(SAMPLES);
+    let positions: Vec<f64> = (0..SAMPLES)
+        .map(|index| path.at(sample(index)).expect("a state")[0])
+        .collect();
+    let sum = |wave: fn(f64) -> f64| {
+        let phase = |index: usize| std::f64::consts::TAU * index as f64 / f64::from(SAMPLES);
+        let terms = positions.iter().enumerate().map(|(index, x)| x * wave(phase(index)));
+        terms.sum::<f64>() * 2.0 / f64::from(SAMPLES)
+    };
+    let highest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = positions.iter().copied().fold(f64::INFINITY, f64::min);
+    let state = path.at(end).expect("a state");
+    (
+        [state[0], state[1]],
+        sum(f64::cos).hypot(sum(f64::sin)),
+        0.5 * (highest - lowest),
+    )
+}
+
+#[test]
+fn a_linear_oscillator_is_exact() {
+    let (c, force) = (0.2, 0.7);
+    let found = response(
+        "x'' + c*x' + x - F*sin(Omega*t) = 0",
+        "Omega",
+        [0.3, 2.0],
+        "c = 1/5, F = 7/10",
+    );
+    assert_eq!(
+        (found.branches.len(), found.bifurcations.len(), found.verdict),
+        (1, 0, Verdict::Pass)
+    );
+    for point in &found.branches[0].points {
+        let omega = point.parameter;
+        let stiffness = 1.0 - omega * omega;
+        let amplitude = force / stiffness.hypot(c * omega);
+        let phase = (c * omega).atan2(stiffness) + std::f64::consts::FRAC_PI_2;
+        let turned = (point.phase - phase).sin();
+        assert!((point.amplitude / amplitude - 1.0).abs() < 1e-9, "{point:?}");
+        assert!(turned.abs() < 1e-9 && (point.phase - phase).cos() > 0.0, "{point:?}");
+        assert!((point.peak / amplitude - 1.0).abs() < 1e-4 && point.stable == Some(true));
+        let [one, other] = point.multipliers.expect("multipliers");
+        let decay = (-c * std::f64::consts::TAU / omega).exp();
+        assert!(((one * other).re / decay - 1.0).abs() < 1e-7, "{point:?}");
+    }
+    let curve = &found.backbone[0];
+    assert!(curve.iter().all(|point| (point.parameter - 1.0).abs() < 1e-9));
+}
+
+/// With one harmonic: `s ((1 - Omega^2 + 3 s/4)^2 + (c Omega)^2) = F^2` with s the square of the amplitude, and at a fold its
+/// derivative by s is zero.
+#[test]
+fn folds_of_one_harmonic_are_those_of_the_closed_form() {
+    let found = respond(&Question {
+        harmonics: Some(1),
+        ..question(DUFFING, "Omega", [0.5, 2.5], "c = 1/10, F = 3/10")
+    })
+    .expect("a response");
+    let folds = places(&found, BifurcationKind::Fold);
+    assert_eq!(folds.len(), 2);
+    for fold in folds {
+        let (s, omega) = (fold.amplitude.powi(2), fold.parameter);
+        let stiffness = 1.0 - omega * omega + 0.75 * s;
+        let damping = (0.1 * omega).powi(2);
+        let force = s * (stiffness * stiffness + damping);
+        let slope = stiffness * stiffness + damping + 1.5 * s * stiffness;
+        assert!(
+            (force - 0.09).abs() < 1e-9 && slope.abs() < 1e-6,
+            "{fold:?}: {force} {slope}"
+        );
+    }
+    for point in &found.branches[0].points {
+        let (s, omega) = (point.amplitude.powi(2), point.parameter);
+        let stiffness = 1.0 - omega * omega + 0.75 * s;
+        assert!((s * (stiffness * stiffness + (0.1 * omega).powi(2)) - 0.09).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn both_stable_motions_are_where_a_simulation_settles() {
+    let found = duffing();
+    assert_eq!((found.verdict, found.unjudged), (Verdict::Pass, 0));
+    assert!(found.error.is_some_and(|error| error < 1e-5), "{:?}", found.error);
+    for (parameter, expected) in [(0.7, 1), (1.5, 3), (2.2, 1)] {
+        let motions = passing(&found, parameter);
+        assert_eq!(motions.len(), expected, "{parameter}");
+        for point in motions.iter().filter(|point| point.stable == Some(true)) {
+            let numbers = [("c", 0.1), ("F", 0.3), ("Omega", point.parameter)];
+            let period = std::f64::consts::TAU / point.parameter;
+            // A tenth aside: it comes back.
+            let start = [1.1 * point.start[0], 0.9 * point.start[1]];
+            let (_, amplitude, peak) = simulated(DUFFING, &numbers, start, period, 80);
+            assert!(
+                (point.amplitude / amplitude - 1.0).abs() < 1e-5,
+                "{point:?}: {amplitude}"
+            );
+            assert!((point.peak / peak - 1.0).abs() < 1e-4, "{point:?}: {peak}");
+        }
+        assert_eq!(
+            motions.iter().filter(|point| point.stable == Some(false)).count(),
+            expected / 2
+        );
+    }
+}
+
+#[test]
+fn a_simulation_jumps_at_the_folds() {
+    let found = duffing();
+    let [upper, lower] = &places(&found, BifurcationKind::Fold)[..] else {
+        panic!("{:?}", found.bifurcations)
+    };
+    let points = &found.branches[0].points;
+    let near = |fold: &Bifurcation, high: bool| {
+        let beside = |point: &&Point| point.stable == Some(true) && (point.amplitude > 1.0) == high;
+        let distance = |point: &Point| (point.parameter - fold.parameter).abs();
+        let of_part = points.iter().filter(beside);
+        of_part
+            .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+            .expect("a point")
+            .clone()
+    };
+    // Up beyond the upper fold it falls, down beyond the lower one it rises; on this side it stays.
+    for (fold, high, step) in [(upper, true, 1.0), (lower, false, -1.0)] {
+        let point = near(fold, high);
+        let after = |offset: f64| {
+            let parameter = fold.parameter * (1.0 + 0.004 * offset * step);
+            let numbers = [("c", 0.1), ("F", 0.3), ("Omega", parameter)];
+            simulated(DUFFING, &numbers, point.start, std::f64::consts::TAU / parameter, 150).1
+        };
+        let (before, beyond) = (after(-1.0), after(1.0));
+        assert_eq!(before > 1.0, high, "{fold:?}: {before}");
+        assert_eq!(beyond > 1.0, !high, "{fold:?}: {beyond}");
+    }
+}
+
+#[test]
+fn a_symmetric_motion_has_no_even_harmonics_and_multipliers_obey_liouville() {
+    let found = duffing();
+    for point in &found.branches[0].points {
+        let even = point.harmonics.iter().step_by(2);
+        assert!(even.flatten().all(|value| value.abs() < 1e-11), "{point:?}");
+        let [one, other] = point.multipliers.expect("multipliers");
+        let decay = (-0.1 * std::f64::consts::TAU / point.parameter).exp();
+        assert!(((one * other).re / decay - 1.0).abs() < 1e-6, "{point:?}");
+    }
+}
+
+#[test]
+fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
+    let wells = "x'' + x'/4 - x + x^3 - F*cos(Omega*t) = 0";
+    let found = response(wells, "F", [0.05, 0.2], "Omega = 1");
+    assert_eq!(found.verdict, Verdict::Pass);
+    assert_eq!(
+        found.branches.iter().filter(|branch| branch.mirrored).count(),
+        1,
+        "one well stands for both"
+    );
+    let doublings = places(&found, BifurcationKind::PeriodDoubling);
+    let [doubling] = &doublings[..] else {
+        panic!("{doublings:?}")
+    };
+    let beside = |offset: f64| {
+        let distance = |point: &Point| (point.parameter - doubling.parameter * (1.0 + offset)).abs();
+        let on = found.branches[doubling.branch].points.iter();
+        let upper = on.filter(|point| point.amplitude > 0.5);
+        upper
+            .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+            .expect("a point")
+            .clone()
+    };
+    let returns = |offset: f64| {
+        let point = beside(offset);
+        let force = doubling.parameter * (1.0 + offset);
+        let numbers = [("F", force), ("Omega", 1.0)];
+        let period = std::f64::consts::TAU;
+        let start = [point.start[0] + 1e-3, point.start[1]];
+        let (settled, ..) = simulated(wells, &numbers, start, period, 240);
+        let after = |periods: u32| {
+            let (state, ..) = simulated(wells, &numbers, settled, period, periods);
+            (state[0] - settled[0]).hypot(state[1] - settled[1])
+        };
+        (after(1), after(2))
+    };
+    let before = returns(-0.02);
+    assert!(before.0 < 1e-5, "{before:?}");
+    let beyond = returns(0.02);
+    assert!(beyond.0 > 1e-2 && beyond.1 < 1e-4, "{beyond:?}");
+    // The doubled motions are a branch of their own, born there.
+    let doubled = respond(&Question {
+        periods: 2,
+        ..question(wells, "F", [0.15, 0.2], "Omega = 1")
+    })
+    .expect("a response");
+    let born = doubled
+        .bifurcations
+        .iter()
+        .filter(|found| found.kind == BifurcationKind::BranchPoint);
+    assert!(
+        born.clone()
+            .any(|born| (born.parameter / doubling.parameter - 1.0).abs() < 1e-5),
+        "{:?}",
+        doubled.bifurcations
+    );
+    let lasting = |point: &&Point| point.stable == Some(true) && point.amplitude > 0.02;
+    assert!(
+        doubled
+            .branches
+            .iter()
+            .flat_map(|branch| &branch.points)
+            .any(|point| lasting(&point))
+    );
+}
+
+/// By Liouville's theorem the determinant of M is 1 where the mean of the damping is zero: the mean of x^2 is 1 there.
+#[test]
+fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
+    let van_der_pol = "x'' - mu*(1 - x^2)*x' + x - F*cos(Omega*t) = 0";
+    let found = response(van_der_pol, "Omega", [0.7, 1.4], "mu = 1/5, F = 1/2");
+    let unlocked = places(&found, BifurcationKind::NeimarkSacker);
+    assert_eq!(unlocked.len(), 2, "{:?}", found.bifurcations);
+    for place in &unlocked {
+        // Seen closely, so that a straight line between two points will do.
+        let close = [0.998, 1.002].map(|factor| factor * place.parameter);
+        let closely = response(van_der_pol, "Omega", close, "mu = 1/5, F = 1/2");
+        let again = places(&closely, BifurcationKind::NeimarkSacker);
+        assert!(
+            again.len() == 1 && (again[0].parameter - place.parameter).abs() < 1e-6,
+            "{again:?}"
+        );
+        let passes =
+            |pair: &&[Point]| (pair[0].parameter - place.parameter) * (pair[1].parameter - place.parameter) <= 0.0;
+        let pair = closely.branches[0].points.windows(2).find(passes).expect("two points");
+        let mean_damping = |point: &Point| {
+            let squares = point
+                .harmonics
+                .iter()
+                .skip(1)
+                .flatten()
+                .map(|value| 0.5 * value * value);
+            point.harmonics[0][0].powi(2) + squares.sum::<f64>() - 1.0
+        };
+        let [before, after] = [mean_damping(&pair[0]), mean_damping(&pair[1])];
+        let part = (place.parameter - pair[0].parameter) / (pair[1].parameter - pair[0].parameter);
+        let there = before + part * (after - before);
+        assert!(before * after < 0.0 && there.abs() < 1e-5, "{before} {after}: {there}");
+    }
+    // Outside it never repeats itself.
+    assert!(
+        found
+            .elsewhere
+            .iter()
+            .any(|elsewhere| elsewhere.periods.is_none() && elsewhere.parameter == 0.7)
+    );
+}
+
+#[test]
+fn a_contact_bends_the_resonance() {
+    let stop = "x'' + x'/10 + x + k*(x - 1/2)^(3/2)*H(x - 1/2) - F*cos(Omega*t) = 0";
+    let found = response(stop, "Omega", [0.7, 1.8], "k = 20, F = 1/10");
+    assert_eq!(found.verdict, Verdict::Pass, "{:?} {}", found.error, found.unjudged);
+    assert_eq!(
+        places(&found, BifurcationKind::Fold).len(),
+        2,
+        "{:?}",
+        found.bifurcations
+    );
+    for parameter in [0.9, 1.15, 1.6] {
+        for point in passing(&found, parameter)
+            .iter()
+            .filter(|point| point.stable == Some(true))
+        {
+            let numbers = [("k", 20.0), ("F", 0.1), ("Omega", point.parameter)];
+            let period = std::f64::consts::TAU / point.parameter;
+            let start = [1.05 * point.start[0], point.start[1]];
+            let (_, amplitude, peak) = simulated(stop, &numbers, start, period, 70);
+            assert!(
+                (point.amplitude / amplitude - 1.0).abs() < 2e-3,
+                "{point:?}: {amplitude}"
+            );
+            assert!((point.peak / peak - 1.0).abs() < 2e-3, "{point:?}: {peak}");
+        }
+    }
+}
+
+/// Motions of a third of the frequency are a closed branch, or one that never touches that of the main resonance.
+#[test]
+fn subharmonic_motions_are_found_apart() {
+    let cubic = "x'' + x'/20 + x + x^3/10 - F*cos(Omega*t) = 0";
+    let found = respond(&Question {
+        periods: 3,
+        ..question(cubic, "Omega", [3.0, 6.0], "F = 30")
+    })
+    .expect("a response");
+    let third = |point: &&Point| point.amplitude > 0.2 * point.peak && point.stable == Some(true);
+    let lasting: Vec<&Point> = found
+        .branches
+        .iter()
+        .flat_map(|branch| &branch.points)
+        .filter(third)
+        .collect();
+    assert!(lasting.len() > 10, "{}", lasting.len());
+    let point = lasting[lasting.len() / 2];
+    let numbers = [("F", 30.0), ("Omega", point.parameter)];
+    let period = 3.0 * std::f64::consts::TAU / point.parameter;
+    let start = [point.start[0] + 1e-2, point.start[1]];
+    let (_, amplitude, peak) = simulated(cubic, &numbers, start, period, 120);
+    assert!(
+        (point.amplitude / amplitude - 1.0).abs() < 1e-4,
+        "{amplitude} {point:?}"
+    );
+    assert!((point.peak / peak - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn the_backbone_is_the_law_of_the_free_motion() {
+    let found = duffing();
+    let options = lindstedt::Options {
+        order: Some(6),
+        amplitude: Some(AmplitudeConvention::FirstHarmonic),
+        ..lindstedt::Options::default()
+    };
+    let free = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
+    let law = solve(&free, &options).expect("a law");
+    let mut seen = 0;
+    for point in found.backbone[0].iter().filter(|point| point.amplitude < 0.5) {
+        let at = format!("eps = 1, a = {}", point.amplitude).parse().expect("values");
+        let frequency = lindstedt::judge(&free, &law, &at, 0.01).expect("a verdict").frequency;
+        let frequency = frequency.expect("a frequency");
+        assert!(
+            (point.parameter / frequency - 1.0).abs() < 1e-5,
+            "{point:?}: {frequency}"
+        );
+        seen += 1;
+    }
+    assert!(seen > 20);
+    // Resonance bends along it: the fold at the top is beside it.
+    let fold = places(&found, BifurcationKind::Fold)[0];
+    let on = found.backbone[0].iter().min_by(|one, other| {
+        let distance = |amplitude: f64| (amplitude - fold.amplitude).abs();
+        distance(one.amplitude).total_cmp(&distance(other.amplitude))
+    });
+    assert!((on.expect("a point").parameter / fold.parameter - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn without_damping_a_linear_resonance_is_unbounded() {
+    let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", [0.6, 1.5], "F = 1/10");
+    let unbounded = found
+        .branches
+        .iter()
+        .flat_map(|branch| branch.ends)
+        .filter(|end| *end == BranchEnd::Unbounded);
+    assert_eq!((found.branches.len(), unbounded.count()), (2, 2));
+    for point in found.branches.iter().flat_map(|branch| &branch.points) {
+        let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
+        assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
+    }
+    let refused = respond(&question("x'' + x - F*cos(Omega*t) = 0", "F", [0.1, 1.0], "Omega = 1"));
+    let message = refused.expect_err("no motion").to_string();
+    assert!(message.contains("unbounded at resonance"), "{message}");
+}
+
+#[test]
+fn what_cannot_be_answered_is_refused_by_name() {
+    for (equation, parameter, range, values, words) in [
+        ("x'' + c*x' + x = 0", "c", [0.1, 1.0], "", "no drive"),
+        (
+            "x'' + c*x' + x - exp(-t) = 0",
+            "c",
+            [0.1, 1.0],
+            "",
+            "`-exp(-t)` is not periodic",
+        ),
+        (DUFFING, "Omega", [0.5, 1.5], "c = 1/10", "no value for `F`"),
+        (DUFFING, "omega", [0.5, 1.5], "c = 1/10, F = 1", "no parameter `omega`"),
+        (
+            DUFFING,
+            "Omega",
+            [0.5, 1.5],
+            "c = 1/10, F = 1, q = 2",
+            "a value for `q`",
+        ),
+        (
+            DUFFING,
+            "Omega",
+            [0.5, 1.5],
+            "c = 1/10, F = 1, Omega = 2",
+            "varies and is given",
+        ),
+        (DUFFING, "Omega", [1.5, 0.5], "c = 1/10, F = 1", "must go from"),
+        (
+            DUFFING,
+            "Omega",
+            [0.5, f64::INFINITY],
+            "c = 1/10, F = 1",
+            "must go from",
+        ),
+        (DUFFING, "Omega", [-0.5, 0.5], "c = 1/10, F = 1", "must be positive"),
+        (
+            "x'' + x'/9 + x - cos(t) - cos(Omega*t) = 0",
+            "Omega",
+            [0.5, 1.5],
+            "",
+            "no whole multiples",
+        ),
+    ] {
+        let message = respond(&question(equation, parameter, range, values))
+            .expect_err(equation)
+            .to_string();
+        assert!(message.contains(words), "{equation}: {message}");
+    }
+    for (harmonics, periods) in [(Some(0), 1), (Some(65), 1), (None, 0), (None, 13)] {
+        let refused = respond(&Question {
+            harmonics,
+            periods,
+            ..question(DUFFING, "Omega", [0.5, 1.5], "c = 1/10, F = 1")
+        });
+        assert!(refused.is_err(), "{harmonics:?} {periods}");
+    }
+}
+
+/// The table of `docs/response.md` is what is computed: both folds and the largest error by the number of harmonics.
+#[test]
+fn the_page_says_how_many_harmonics_are_enough() {
+    let page = include_str!("../../docs/response.md");
+    let mut rows = 0;
+    for line in page.lines() {
+        let cells: Vec<f64> = line.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+        let [harmonics, down, up, error] = cells[..] else {
+            continue;
+        };
+        let found = respond(&Question {
+            harmonics: Some(harmonics as usize),
+            ..question(DUFFING, "Omega", [0.5, 2.0], "c = 1/10, F = 3/10")
+        })
+        .expect("a response");
+        let folds: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
+        assert!(
+            folds.len() == 2 && (folds[0] - down).abs() < 6e-6 && (folds[1] - up).abs() < 6e-6,
+            "{line}: {folds:?}"
+        );
+        let largest = found.error.expect("an error");
+        assert!((0.5..2.0).contains(&(largest / error)), "{line}: {largest}");
+        rows += 1;
+    }
+    assert_eq!(rows, 5);
+}

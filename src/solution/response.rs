@@ -101,8 +101,8 @@ impl Solution {
             phase: wrapped(times * (-v).atan2(u)),
             eigenvalues: plane.eigenvalues([u, v]),
         };
-        for amplitude in positive_roots(&relation) {
-            if let Some(place) = plane.at_rest_on(amplitude) {
+        for amplitude in amplitudes(&relation) {
+            if let Some(place) = plane.at_rest_on(amplitude, times) {
                 states.push(state(place));
             }
         }
@@ -138,6 +138,18 @@ fn coefficients(
         .iter()
         .map(|part| solution.evaluate(part, value_of).ok())
         .collect()
+}
+
+/// The positive roots of a polynomial in the amplitude, of one in its square where it has no odd powers.
+fn amplitudes(relation: &[f64]) -> Vec<f64> {
+    let odd = relation.iter().skip(1).step_by(2).any(|value| *value != 0.0);
+    match odd {
+        true => positive_roots(relation),
+        false => {
+            let in_square: Vec<f64> = relation.iter().step_by(2).copied().collect();
+            positive_roots(&in_square).into_iter().map(f64::sqrt).collect()
+        }
+    }
 }
 
 /// The positive roots of a polynomial, lowest coefficient first: between the zeros of its slope.
@@ -226,21 +238,30 @@ impl<'a> Field<'a> {
         [(found[0].re, found[0].im), (found[1].re, found[1].im)]
     }
 
-    /// The place of rest on the circle of this radius: the best of many directions, and Newton's steps from there.
-    fn at_rest_on(&self, radius: f64) -> Option<[f64; 2]> {
-        const DIRECTIONS: usize = 720;
+    /// Where on the circle of this radius both rates vanish: they are waves `P + P_c cos(psi) + P_s sin(psi)` of the phase, so
+    /// three places tell all, and Newton's steps lead on from there.
+    fn at_rest_on(&self, radius: f64, times: f64) -> Option<[f64; 2]> {
         const STEPS: usize = 40;
-        let on_circle = |k: usize| {
-            let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
-            [radius * angle.cos(), radius * angle.sin()]
+        let on_circle = |phase: f64| {
+            let angle = phase / times;
+            [radius * angle.cos(), -radius * angle.sin()]
         };
-        let size = |place: [f64; 2]| {
-            let [u, v] = self.at(place);
-            u.hypot(v)
+        // a' and a psi'/m.
+        let polar = |phase: f64| {
+            let [u, v] = on_circle(phase);
+            let [du, dv] = self.at([u, v]);
+            [(u * du + v * dv) / radius, (v * du - u * dv) / radius]
         };
-        let start = (0..DIRECTIONS)
-            .map(on_circle)
-            .min_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+        let [ahead, across, behind] = [0.0, 0.5, 1.0].map(|part| polar(part * std::f64::consts::PI));
+        let waves = |k: usize| {
+            let mean = (ahead[k] + behind[k]) / 2.0;
+            [mean, (ahead[k] - behind[k]) / 2.0, across[k] - mean]
+        };
+        let ([rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]) = (waves(0), waves(1));
+        let determinant = rate_cos * turn_sin - rate_sin * turn_cos;
+        let cosine = (rate_sin * turn - rate * turn_sin) / determinant;
+        let sine = (turn_cos * rate - rate_cos * turn) / determinant;
+        let start = on_circle(sine.atan2(cosine));
         let mut place = start;
         for _ in 0..STEPS {
             let [u, v] = self.at(place);

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 use num_traits::{Signed, Zero};
 
-use super::scaling::{Scaling, scaling};
+use super::scaling::{Scaling, bounded, scaling};
 use super::slow_times::{Complex, DrivenTerm, Expansion, Quadrature, Scaled};
 use super::{Names, undriven};
 use crate::exact::polynomial::Monomial;
@@ -308,6 +308,10 @@ impl<'a> Question<'a> {
         let mut forced = None;
         for driven in drives {
             let term = self.scaled(driven)?;
+            bounded(
+                std::iter::once(term.position.saturating_add(term.velocity)),
+                self.scaling.order,
+            )?;
             if term.position + term.velocity == 0 && p != q {
                 let size = Polynomial::symbol(self.lambda);
                 let zero = Polynomial::zero();

@@ -193,8 +193,19 @@ fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusa
 /// An error where powers are so high that an expansion would take too long.
 fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::SecularError> {
     let terms = force.terms.iter();
-    secular::bounded(
-        terms.map(|term| (term.order, term.position + term.velocity)),
-        order as usize + 1,
-    )
+    bounded(terms.map(|term| term.position + term.velocity), order)
+}
+
+/// As [`within_reach`], for the powers alone.
+pub(super) fn bounded(powers: impl Iterator<Item = u32>, order: u32) -> Result<(), secular::SecularError> {
+    /// Every harmonic of a power has coefficients in `B` and its conjugate, which grow with the order.
+    const MOST: u32 = 200;
+    let degree = powers.max().unwrap_or(0);
+    match degree.saturating_mul(order.max(1).saturating_pow(2)) > MOST && degree > 9 {
+        true => Err(secular::SecularError::TooManyHarmonics {
+            degree,
+            harmonics: (degree as usize).saturating_mul(order as usize),
+        }),
+        false => Ok(()),
+    }
 }

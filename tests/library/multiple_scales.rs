@@ -459,3 +459,54 @@ fn drives_that_are_refused_by_name() {
     let expected = Unsuited::NoResonance { asked: (2, 1), others }.to(Method::MultipleScales);
     assert_eq!(solve(&oscillator, &asked), Err(expected));
 }
+
+/// What is small may stand in the equation as one letter, as several or as numbers: the motions at the same numbers are the same.
+#[test]
+fn a_motion_does_not_depend_on_how_the_small_terms_are_spelt() {
+    let spellings = [
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
+            "zeta = 1/50, eps = 1/10, F = 1/20",
+        ),
+        (
+            "x'' + 2*eps*mu*x' + x + eps*x^3 = eps*f*cos(Omega*t)",
+            "mu = 1/5, eps = 1/10, f = 1/2",
+        ),
+        (
+            "x'' + 2*eps*mu*x' + x + eps*x^3 = F*cos(Omega*t)",
+            "mu = 1/5, eps = 1/10, F = 1/20",
+        ),
+        ("x'' + x'/25 + x + x^3/10 = cos(Omega*t)/20", ""),
+    ];
+    for order in [1, 2] {
+        for omega in [0.98, 1.02, 1.06] {
+            let states = spellings.map(|(equation, at)| {
+                let values: Values = at.parse().unwrap_or_default();
+                let value_of = |name: Symbol| match name.name() {
+                    "Omega" => Some(omega),
+                    _ => values.get(name),
+                };
+                // Numbers leave the amplitude to count, in which a cube is of the second order.
+                let order = if at.is_empty() { 2 * order } else { order };
+                driven(equation, (1, 1), order).steady_states(&value_of)
+            });
+            assert!(!states[0].is_empty());
+            for (other, (equation, _)) in states.iter().zip(spellings) {
+                assert_eq!(
+                    states[0].len(),
+                    other.len(),
+                    "{equation}, order {order}, Omega = {omega}"
+                );
+                for (one, other) in states[0].iter().zip(other) {
+                    let apart = (one.amplitude - other.amplitude)
+                        .abs()
+                        .max((one.phase - other.phase).abs());
+                    assert!(
+                        apart < 1e-9,
+                        "{equation}, order {order}, Omega = {omega}: {one:?} and {other:?}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -61,6 +61,7 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
     let scaling = scaling(&free, &free.parts()?, options, [1, 2], [HIGHEST, 2 * HIGHEST])?;
+    let scaling = scaling.spelt_out(&oscillator.names());
     let direct = |driven: &&Driven| {
         let own = [oscillator.coordinate, oscillator.velocity()];
         own.iter().all(|&name| !driven.factor.contains(name))

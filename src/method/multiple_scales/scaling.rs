@@ -15,7 +15,7 @@ use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, Definition, Method, Note};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// A force with its orders.
 pub(super) struct Scaling {
@@ -52,6 +52,30 @@ impl Scaling {
             Polynomial::add_term(&mut result, monomial.without(marker), number * power);
         }
         result
+    }
+
+    /// The same with the small parameter, or the number, in the coefficients and a marker that is one: for a motion in which something
+    /// is small without having it, such as the detuning. An expansion in the amplitude stays as it is.
+    pub(super) fn spelt_out(mut self, taken: &[Symbol]) -> Self {
+        let (Some(marker), None) = (self.marker, &self.marks) else {
+            return self;
+        };
+        let factor = match self
+            .bookkeeping
+            .as_ref()
+            .and_then(|definition| definition.meaning.as_number())
+        {
+            Some(number) => Polynomial::constant(number.clone()),
+            None => Polynomial::symbol(marker),
+        };
+        for term in &mut self.force.terms {
+            for _ in 0..term.order {
+                term.coefficient = term.coefficient.product(&factor);
+            }
+        }
+        self.marker = Some(fresh("delta", &[taken, &[marker]].concat()));
+        self.marks = Some(Rational::one());
+        self
     }
 
     /// How the expansion is cut.

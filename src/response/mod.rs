@@ -22,13 +22,15 @@
 pub mod backbone;
 pub mod balance;
 pub mod bifurcation;
+mod branches;
 pub mod continuation;
 pub mod driven;
+mod judgement;
+mod seeds;
 pub mod stability;
 
 use std::collections::BTreeMap;
 
-use nalgebra::DVector;
 use num_complex::Complex;
 use thiserror::Error;
 
@@ -40,14 +42,14 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
 
-use backbone::{BackbonePoint, backbones, places_of_rest};
+use backbone::{BackbonePoint, backbones};
 use balance::Balance;
 use bifurcation::BifurcationKind;
-use continuation::{BranchEnd, Node, Path, Walk, extent};
+use branches::largest;
+use continuation::{BranchEnd, Node, Walk};
 use driven::Driven;
-use stability::{
-    Floquet, Settled, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
-};
+use judgement::Judged;
+use seeds::{Seed, size_of};
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -357,25 +359,6 @@ impl Question {
     }
 }
 
-/// A motion to begin with.
-#[derive(Clone, Debug)]
-struct Seed {
-    parameter: f64,
-    positions: Vec<f64>,
-}
-
-/// The multipliers at a point of a branch, and the true motion beside it.
-type Judged = (Option<Floquet>, Option<TrueMotion>);
-
-/// How a motion is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Known {
-    /// It lies on a branch.
-    Itself,
-    /// Its mirror image lies on this one.
-    Mirrored(usize),
-}
-
 /// A question with its equation ready for numbers.
 struct Asked<'a> {
     question: &'a Question,
@@ -454,240 +437,6 @@ impl<'a> Asked<'a> {
             size,
             interrupt: self.question.interrupt,
         }
-    }
-
-    /// Motions to begin with: where simulations settle, from rest and from a ring of starts as large as the motions of the first
-    /// branches; and what did not repeat itself.
-    fn seeds(&self, harmonics: usize) -> Result<(Vec<Seed>, Vec<Elsewhere>), ResponseError> {
-        /// Values of the parameter at which simulations begin.
-        const VALUES: u32 = 5;
-        const RINGS: [f64; 2] = [0.5, 1.3];
-        const SAMPLES: usize = 256;
-        let [low, high] = self.question.range;
-        let balance = Balance::new(&self.driven, harmonics);
-        let values: Vec<f64> = (0..VALUES)
-            .map(|index| low + (high - low) * f64::from(index) / f64::from(VALUES - 1))
-            .collect();
-        let mut seeds = Vec::new();
-        let mut elsewhere = Vec::new();
-        let mut budget = MOST_EVALUATIONS;
-        let mut size = 0.0_f64;
-        for parameter in &values {
-            let mut places = places_of_rest(&self.driven, *parameter, size.max(1.0));
-            // Between two wells there is a motion as well, though it does not last.
-            if !places.contains(&0.0) {
-                places.push(0.0);
-            }
-            for place in places {
-                // Beside the motion that a balance finds from rest, if it does.
-                let mut still = DVector::zeros(balance.size());
-                still[0] = place;
-                if let Some(found) = balance.solve(&still, *parameter) {
-                    size = size.max(extent(&found));
-                    let positions = (0..SAMPLES).map(|sample| {
-                        let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
-                        balance.at(&found, *parameter, phase)[0]
-                    });
-                    seeds.push(Seed {
-                        parameter: *parameter,
-                        positions: positions.collect(),
-                    });
-                }
-                elsewhere.extend(self.settled([place, 0.0], *parameter, &mut seeds, &mut budget));
-            }
-        }
-        size = size.max(size_of(&seeds));
-        // The ring is as wide as the branches that are known by now.
-        let first: Vec<Path> = self.branches(&balance, &seeds, size);
-        let widest = first
-            .iter()
-            .flat_map(|path| &path.nodes)
-            .map(|node| extent(&node.coefficients));
-        size = widest.fold(size, f64::max);
-        if !self.driven.undamped {
-            for parameter in &values {
-                let omega = self.driven.frequency_at(*parameter);
-                for (radius, turn) in RINGS
-                    .iter()
-                    .flat_map(|radius| (0..4_u32).map(move |turn| (radius, turn)))
-                {
-                    if self.question.interrupt.is_requested() {
-                        return Ok((seeds, elsewhere));
-                    }
-                    let (sine, cosine) = (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
-                    let start = [radius * size * cosine, -radius * size * omega * sine];
-                    elsewhere.extend(self.settled(start, *parameter, &mut seeds, &mut budget));
-                }
-            }
-        }
-        elsewhere.sort_by(|one: &Elsewhere, other| {
-            let parameters = one.parameter.total_cmp(&other.parameter);
-            parameters.then(one.periods.cmp(&other.periods))
-        });
-        elsewhere.dedup();
-        if seeds.is_empty() {
-            return Err(match self.question.interrupt.is_requested() {
-                true => ResponseError::Interrupted,
-                false => ResponseError::NoMotion {
-                    parameter: self.question.parameter,
-                    at: low,
-                    undamped: self.driven.undamped,
-                },
-            });
-        }
-        Ok((seeds, elsewhere))
-    }
-
-    /// Adds where a simulation settles, or says that it does not repeat itself.
-    fn settled(&self, start: [f64; 2], parameter: f64, seeds: &mut Vec<Seed>, budget: &mut usize) -> Option<Elsewhere> {
-        const PERIODS: usize = 250;
-        const CLOSELY: f64 = 1e-4;
-        if self.driven.undamped {
-            return None;
-        }
-        let settled = settle(&self.driven, start, parameter, (PERIODS, CLOSELY), budget)?;
-        if settled.returns_after != Some(1) {
-            return Some(Elsewhere {
-                parameter,
-                periods: settled.returns_after,
-            });
-        }
-        seeds.push(Seed {
-            parameter,
-            positions: settled.positions,
-        });
-        None
-    }
-
-    /// The branches through these motions, each once.
-    fn branches(&self, balance: &Balance, seeds: &[Seed], size: f64) -> Vec<Path> {
-        let mut paths: Vec<Path> = Vec::new();
-        for seed in seeds {
-            if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
-                break;
-            }
-            let guess = balance.coefficients_of(&seed.positions);
-            let Some(found) = balance.solve(&guess, seed.parameter) else {
-                continue;
-            };
-            let walk = self.walk(
-                seeds,
-                paths.iter().map(largest).fold(size.max(extent(&found)), f64::max),
-            );
-            if self.was_known(balance, &mut paths, &found, seed.parameter) {
-                continue;
-            }
-            if let Some(path) = walk.through(balance, &found, seed.parameter) {
-                self.keep(balance, path, &mut paths);
-            }
-        }
-        paths
-    }
-
-    /// Whether a motion is known; where it is a mirror image, its branch is marked.
-    fn was_known(&self, balance: &Balance, paths: &mut [Path], coefficients: &DVector<f64>, parameter: f64) -> bool {
-        let known = self.known(balance, paths, coefficients, parameter);
-        if let Some(Known::Mirrored(index)) = known {
-            paths[index].mirrored = true;
-        }
-        known.is_some()
-    }
-
-    /// Keeps a branch that is none of those that are known, nor the mirror image of one.
-    fn keep(&self, balance: &Balance, mut path: Path, paths: &mut Vec<Path>) {
-        if path.nodes.len() < 2 {
-            return;
-        }
-        self.cut_at_crossing(balance, &mut path);
-        let [first, middle, last] = [0, path.nodes.len() / 2, path.nodes.len() - 1].map(|index| &path.nodes[index]);
-        let ends = match path.ends[0] {
-            BranchEnd::Closed => vec![middle],
-            _ if path.ends[1] == BranchEnd::Crossing => vec![first],
-            _ => vec![first, last],
-        };
-        let known = |node: &Node| self.known(balance, paths, &node.coefficients, node.parameter);
-        match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
-            Some(Known::Itself) => {}
-            Some(Known::Mirrored(index)) => paths[index].mirrored = true,
-            None => paths.push(path),
-        }
-    }
-
-    /// A branch that is born where another one is crossed comes back from there as its own image: that half is left out.
-    fn cut_at_crossing(&self, balance: &Balance, path: &mut Path) {
-        let turns = |pair: &[Node]| pair[0].orientation != pair[1].orientation;
-        let Some(index) = path.nodes.windows(2).position(turns) else {
-            return;
-        };
-        let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
-        let half = Path {
-            nodes: before.to_vec(),
-            ends: path.ends,
-            mirrored: false,
-        };
-        let image = |node: &Node| self.known(balance, std::slice::from_ref(&half), &node.coefficients, node.parameter);
-        // The middle of that half, which is surely no longer than the first.
-        if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
-            path.mirrored = matches!(known, Known::Mirrored(_));
-            // The first point beyond stays, so that the crossing lies between two points.
-            path.nodes.truncate(index + 2);
-            path.ends[1] = BranchEnd::Crossing;
-        }
-    }
-
-    /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the drive later, or a mirror image.
-    fn known(&self, balance: &Balance, paths: &[Path], coefficients: &DVector<f64>, parameter: f64) -> Option<Known> {
-        /// The part of a motion by which a guess between two points may be off.
-        const NEAR: f64 = 0.2;
-        const SAME: f64 = 1e-5;
-        let size = extent(coefficients).max(1e-3 * coefficients.norm());
-        let period = std::f64::consts::TAU / self.question.periods as f64;
-        let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
-        let shifted: Vec<DVector<f64>> = shifts.clone().map(|shift| later(coefficients, shift)).collect();
-        let mirrored: Vec<DVector<f64>> = shifts.map(|shift| -later(coefficients, shift + 0.5 * period)).collect();
-        // Places between which the force does not change, such as those a turn of a pendulum apart, are one.
-        let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
-            let near = |shifted: &DVector<f64>| {
-                let mut apart = motion - shifted;
-                let mean = apart[0];
-                apart[0] = 0.0;
-                let allowed = within * size.max(extent(motion));
-                apart.norm() <= allowed && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
-            };
-            of.iter().any(near)
-        };
-        let between = |pair: &[Node], of: &[DVector<f64>]| {
-            let [one, other] = pair else { return false };
-            let way = other.parameter - one.parameter;
-            let part = if way == 0.0 {
-                0.0
-            } else {
-                (parameter - one.parameter) / way
-            };
-            if !(-1e-9..=1.0 + 1e-9).contains(&part) {
-                return false;
-            }
-            let guess = &one.coefficients + (&other.coefficients - &one.coefficients) * part;
-            let solved = || balance.solve(&guess, parameter);
-            is_one(&guess, of, NEAR, true) && solved().is_some_and(|found| is_one(&found, of, SAME, false))
-        };
-        let on = |of: &[DVector<f64>]| {
-            let holds = |path: &Path| path.nodes.windows(2).any(|pair| between(pair, of));
-            paths.iter().position(holds)
-        };
-        match on(&shifted) {
-            Some(_) => Some(Known::Itself),
-            None => on(&mirrored).map(Known::Mirrored),
-        }
-    }
-
-    /// Whether the force is the same this far away.
-    fn repeats_after(&self, distance: f64, parameter: f64) -> bool {
-        (0..8).all(|index| {
-            let (x, v) = (0.37 * f64::from(index) - 1.1, 0.9 - 0.23 * f64::from(index));
-            let force = |x: f64| self.driven.force(&[x, v, f64::from(index), parameter]);
-            (force(x + distance) - force(x)).abs() <= 1e-4 * (force(x).abs() + force(x + 1.0).abs())
-        })
     }
 
     /// Everything with so many harmonics.
@@ -793,172 +542,4 @@ impl<'a> Asked<'a> {
             complete,
         })
     }
-
-    /// Follows the branch that crosses another one here.
-    fn follow_crossing(&self, balance: &Balance, walk: &Walk, at: &Node, paths: &mut Vec<Path>) {
-        for node in walk.crossing(balance, at) {
-            if self.was_known(balance, paths, &node.coefficients, node.parameter) {
-                continue;
-            }
-            if let Some(path) = walk.along(balance, &node.coefficients, node.parameter, &node.tangent) {
-                self.keep(balance, path, paths);
-            }
-        }
-    }
-
-    /// The multipliers at a point of a branch, and the true motion beside it.
-    fn judged(&self, balance: &Balance, node: &Node) -> Judged {
-        /// Parts of its size by which the true motion may differ: beyond it is another one.
-        const OTHER: f64 = 0.3;
-        let start = balance.start(&node.coefficients, node.parameter);
-        let size = extent(&node.coefficients);
-        let truth = periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
-            let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
-            (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size.max(1e-12)
-        });
-        let floquet = truth.map(|truth| truth.floquet);
-        let along = || {
-            multipliers_along(&self.driven, node.parameter, |phase| {
-                balance.at(&node.coefficients, node.parameter, phase)
-            })
-        };
-        (floquet.or_else(along), truth)
-    }
-
-    fn point(&self, balance: &Balance, node: &Node, (floquet, truth): Judged, size: f64) -> Point {
-        let u = &node.coefficients;
-        let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
-        /// Of the largest motion: less is rounding.
-        const NOTHING: f64 = 1e-12;
-        let (amplitude, peak) = (u[1].hypot(u[2]), half_of_peak_to_peak(&positions));
-        let (amplitude, phase) = match amplitude > NOTHING * size {
-            // Half a turn is pi, whatever rounding has left of the sine.
-            true if u[2].abs() <= NOTHING * amplitude => {
-                (amplitude, if u[1] < 0.0 { std::f64::consts::PI } else { 0.0 })
-            }
-            true => (amplitude, u[2].atan2(u[1])),
-            false => (0.0, 0.0),
-        };
-        let error = truth.map(|truth| {
-            let [cosine, sine] = truth.first_harmonic;
-            relative_error([amplitude, peak], [cosine.hypot(sine), truth.peak], size)
-        });
-        // On the circle itself only rounding tells.
-        let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
-        Point {
-            parameter: node.parameter,
-            harmonics: (0..=balance.harmonics)
-                .map(|harmonic| match harmonic {
-                    0 => [u[0], 0.0],
-                    _ => [u[2 * harmonic - 1], u[2 * harmonic]],
-                })
-                .collect(),
-            amplitude,
-            phase,
-            peak,
-            start: truth.map_or_else(|| balance.start(u, node.parameter), |truth| truth.start),
-            stable: floquet.map(|floquet| floquet.largest() < allowed),
-            multipliers: floquet.map(|floquet| floquet.multipliers()),
-            error,
-        }
-    }
-
-    /// Simulations beside some stable points, disturbed a little and followed until they have settled.
-    fn simulated(&self, branches: &[Branch]) -> Vec<Simulated> {
-        /// Points of a stable part of a branch, and of all of them.
-        const EACH: usize = 6;
-        const MOST: usize = 30;
-        /// Of the size of the motion: the second where the first leads to another motion.
-        const DISTURBANCES: [f64; 2] = [1e-2, 1e-5];
-        const OTHER: f64 = 0.05;
-        const PERIODS: f64 = 1500.0;
-        const CLOSELY: f64 = 1e-8;
-        if self.driven.undamped {
-            return vec![];
-        }
-        let size = branches
-            .iter()
-            .flat_map(|branch| &branch.points)
-            .map(|point| point.peak)
-            .fold(0.0, f64::max);
-        let mut found = Vec::new();
-        let mut budget = MOST_EVALUATIONS;
-        for branch in branches {
-            for part in branch.points.chunk_by(|one, other| one.stable == other.stable) {
-                if part.first().is_none_or(|point| point.stable != Some(true)) {
-                    continue;
-                }
-                let steps = EACH.min(part.len());
-                for index in 0..steps {
-                    let point = &part[(2 * index + 1) * part.len() / (2 * steps)];
-                    let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
-                    let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
-                    let stopped = self.question.interrupt.is_requested();
-                    if !(needed > 0.0 && needed < PERIODS) || found.len() >= MOST || stopped {
-                        continue;
-                    }
-                    let most = needed.ceil() as usize + 8;
-                    let mut run = |disturbance: f64| {
-                        let start = [point.start[0] + disturbance * point.peak, point.start[1]];
-                        let settled = settle(&self.driven, start, point.parameter, (most, CLOSELY), &mut budget)?;
-                        Some(simulated(point, &settled, size))
-                    };
-                    // Where the first leads to another motion the second, much smaller, decides.
-                    let first = run(DISTURBANCES[0]);
-                    let near = match first {
-                        Some(first) if first.error <= OTHER => Some(first),
-                        _ => run(DISTURBANCES[1]).or(first),
-                    };
-                    found.extend(near);
-                }
-            }
-        }
-        found
-    }
-}
-
-fn simulated(point: &Point, settled: &Settled, size: f64) -> Simulated {
-    let [cosine, sine] = first_harmonic(&settled.positions);
-    let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&settled.positions));
-    Simulated {
-        parameter: point.parameter,
-        amplitude,
-        peak,
-        error: relative_error([point.amplitude, point.peak], [amplitude, peak], size),
-    }
-}
-
-/// The larger error of amplitude and peak, over the true peak; of motions that are little beside the largest, over a thousandth of it.
-fn relative_error([amplitude, peak]: [f64; 2], [true_amplitude, true_peak]: [f64; 2], size: f64) -> f64 {
-    let apart = (amplitude - true_amplitude).abs().max((peak - true_peak).abs());
-    let over = true_peak.max(1e-3 * size);
-    if over > 0.0 { apart / over } else { 0.0 }
-}
-
-/// The size of the largest of the motions to begin with.
-fn size_of(seeds: &[Seed]) -> f64 {
-    seeds
-        .iter()
-        .map(|seed| half_of_peak_to_peak(&seed.positions))
-        .fold(0.0, f64::max)
-}
-
-/// The size of the largest motion of a branch.
-fn largest(path: &Path) -> f64 {
-    path.nodes
-        .iter()
-        .map(|node| extent(&node.coefficients))
-        .fold(0.0, f64::max)
-}
-
-/// The motion begun later by a phase.
-fn later(coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
-    let mut turned = coefficients.clone();
-    for harmonic in 1..=(coefficients.len() - 1) / 2 {
-        let (sine, cosine) = (phase * harmonic as f64).sin_cos();
-        let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
-        turned[2 * harmonic - 1] = a * cosine + b * sine;
-        turned[2 * harmonic] = b * cosine - a * sine;
-    }
-    turned
 }

@@ -1,0 +1,182 @@
+//! The branches, each once: not begun later, not its mirror image, not the other half of one that came back.
+
+use nalgebra::DVector;
+
+use super::balance::Balance;
+use super::continuation::{BranchEnd, Node, Path, Walk, extent};
+use super::seeds::Seed;
+use super::{Asked, MOST_BRANCHES};
+
+/// How a motion is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Known {
+    /// It lies on a branch.
+    Itself,
+    /// Its mirror image lies on this one.
+    Mirrored(usize),
+}
+
+impl Asked<'_> {
+    /// The branches through these motions, each once.
+    pub(super) fn branches(&self, balance: &Balance, seeds: &[Seed], size: f64) -> Vec<Path> {
+        let mut paths: Vec<Path> = Vec::new();
+        for seed in seeds {
+            if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
+                break;
+            }
+            let guess = balance.coefficients_of(&seed.positions);
+            let Some(found) = balance.solve(&guess, seed.parameter) else {
+                continue;
+            };
+            let walk = self.walk(
+                seeds,
+                paths.iter().map(largest).fold(size.max(extent(&found)), f64::max),
+            );
+            if self.was_known(balance, &mut paths, &found, seed.parameter) {
+                continue;
+            }
+            if let Some(path) = walk.through(balance, &found, seed.parameter) {
+                self.keep(balance, path, &mut paths);
+            }
+        }
+        paths
+    }
+
+    /// Whether a motion is known; where it is a mirror image, its branch is marked.
+    fn was_known(&self, balance: &Balance, paths: &mut [Path], coefficients: &DVector<f64>, parameter: f64) -> bool {
+        let known = self.known(balance, paths, coefficients, parameter);
+        if let Some(Known::Mirrored(index)) = known {
+            paths[index].mirrored = true;
+        }
+        known.is_some()
+    }
+
+    /// Keeps a branch that is none of those that are known, nor the mirror image of one.
+    fn keep(&self, balance: &Balance, mut path: Path, paths: &mut Vec<Path>) {
+        if path.nodes.len() < 2 {
+            return;
+        }
+        self.cut_at_crossing(balance, &mut path);
+        let [first, middle, last] = [0, path.nodes.len() / 2, path.nodes.len() - 1].map(|index| &path.nodes[index]);
+        let ends = match path.ends[0] {
+            BranchEnd::Closed => vec![middle],
+            _ if path.ends[1] == BranchEnd::Crossing => vec![first],
+            _ => vec![first, last],
+        };
+        let known = |node: &Node| self.known(balance, paths, &node.coefficients, node.parameter);
+        match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
+            Some(Known::Itself) => {}
+            Some(Known::Mirrored(index)) => paths[index].mirrored = true,
+            None => paths.push(path),
+        }
+    }
+
+    /// A branch that is born where another one is crossed comes back from there as its own image: that half is left out.
+    fn cut_at_crossing(&self, balance: &Balance, path: &mut Path) {
+        let turns = |pair: &[Node]| pair[0].orientation != pair[1].orientation;
+        let Some(index) = path.nodes.windows(2).position(turns) else {
+            return;
+        };
+        let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
+        let half = Path {
+            nodes: before.to_vec(),
+            ends: path.ends,
+            mirrored: false,
+        };
+        let image = |node: &Node| self.known(balance, std::slice::from_ref(&half), &node.coefficients, node.parameter);
+        // The middle of that half, which is surely no longer than the first.
+        if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
+            path.mirrored = matches!(known, Known::Mirrored(_));
+            // The first point beyond stays, so that the crossing lies between two points.
+            path.nodes.truncate(index + 2);
+            path.ends[1] = BranchEnd::Crossing;
+        }
+    }
+
+    /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the drive later, or a mirror image.
+    fn known(&self, balance: &Balance, paths: &[Path], coefficients: &DVector<f64>, parameter: f64) -> Option<Known> {
+        /// The part of a motion by which a guess between two points may be off.
+        const NEAR: f64 = 0.2;
+        const SAME: f64 = 1e-5;
+        let size = extent(coefficients).max(1e-3 * coefficients.norm());
+        let period = std::f64::consts::TAU / self.question.periods as f64;
+        let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
+        let shifted: Vec<DVector<f64>> = shifts.clone().map(|shift| later(coefficients, shift)).collect();
+        let mirrored: Vec<DVector<f64>> = shifts.map(|shift| -later(coefficients, shift + 0.5 * period)).collect();
+        // Places between which the force does not change, such as those a turn of a pendulum apart, are one.
+        let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
+            let near = |shifted: &DVector<f64>| {
+                let mut apart = motion - shifted;
+                let mean = apart[0];
+                apart[0] = 0.0;
+                let allowed = within * size.max(extent(motion));
+                apart.norm() <= allowed && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
+            };
+            of.iter().any(near)
+        };
+        let between = |pair: &[Node], of: &[DVector<f64>]| {
+            let [one, other] = pair else { return false };
+            let way = other.parameter - one.parameter;
+            let part = if way == 0.0 {
+                0.0
+            } else {
+                (parameter - one.parameter) / way
+            };
+            if !(-1e-9..=1.0 + 1e-9).contains(&part) {
+                return false;
+            }
+            let guess = &one.coefficients + (&other.coefficients - &one.coefficients) * part;
+            let solved = || balance.solve(&guess, parameter);
+            is_one(&guess, of, NEAR, true) && solved().is_some_and(|found| is_one(&found, of, SAME, false))
+        };
+        let on = |of: &[DVector<f64>]| {
+            let holds = |path: &Path| path.nodes.windows(2).any(|pair| between(pair, of));
+            paths.iter().position(holds)
+        };
+        match on(&shifted) {
+            Some(_) => Some(Known::Itself),
+            None => on(&mirrored).map(Known::Mirrored),
+        }
+    }
+
+    /// Whether the force is the same this far away.
+    fn repeats_after(&self, distance: f64, parameter: f64) -> bool {
+        (0..8).all(|index| {
+            let (x, v) = (0.37 * f64::from(index) - 1.1, 0.9 - 0.23 * f64::from(index));
+            let force = |x: f64| self.driven.force(&[x, v, f64::from(index), parameter]);
+            (force(x + distance) - force(x)).abs() <= 1e-4 * (force(x).abs() + force(x + 1.0).abs())
+        })
+    }
+
+    /// Follows the branch that crosses another one here.
+    pub(super) fn follow_crossing(&self, balance: &Balance, walk: &Walk, at: &Node, paths: &mut Vec<Path>) {
+        for node in walk.crossing(balance, at) {
+            if self.was_known(balance, paths, &node.coefficients, node.parameter) {
+                continue;
+            }
+            if let Some(path) = walk.along(balance, &node.coefficients, node.parameter, &node.tangent) {
+                self.keep(balance, path, paths);
+            }
+        }
+    }
+}
+
+/// The size of the largest motion of a branch.
+pub(super) fn largest(path: &Path) -> f64 {
+    path.nodes
+        .iter()
+        .map(|node| extent(&node.coefficients))
+        .fold(0.0, f64::max)
+}
+
+/// The motion begun later by a phase.
+fn later(coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
+    let mut turned = coefficients.clone();
+    for harmonic in 1..=(coefficients.len() - 1) / 2 {
+        let (sine, cosine) = (phase * harmonic as f64).sin_cos();
+        let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
+        turned[2 * harmonic - 1] = a * cosine + b * sine;
+        turned[2 * harmonic] = b * cosine - a * sine;
+    }
+    turned
+}

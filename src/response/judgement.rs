@@ -1,0 +1,141 @@
+//! Points of a branch beside the true motion that shooting finds, and simulations let go beside the stable ones.
+
+use super::balance::Balance;
+use super::continuation::{Node, extent};
+use super::stability::{
+    Floquet, Settled, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
+};
+use super::{Asked, Branch, MOST_EVALUATIONS, Point, Simulated};
+
+/// The multipliers at a point of a branch, and the true motion beside it.
+pub(super) type Judged = (Option<Floquet>, Option<TrueMotion>);
+
+impl Asked<'_> {
+    /// The multipliers at a point of a branch, and the true motion beside it.
+    pub(super) fn judged(&self, balance: &Balance, node: &Node) -> Judged {
+        /// Parts of its size by which the true motion may differ: beyond it is another one.
+        const OTHER: f64 = 0.3;
+        let start = balance.start(&node.coefficients, node.parameter);
+        let size = extent(&node.coefficients);
+        let truth = periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
+            let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
+            (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size.max(1e-12)
+        });
+        let floquet = truth.map(|truth| truth.floquet);
+        let along = || {
+            multipliers_along(&self.driven, node.parameter, |phase| {
+                balance.at(&node.coefficients, node.parameter, phase)
+            })
+        };
+        (floquet.or_else(along), truth)
+    }
+
+    pub(super) fn point(&self, balance: &Balance, node: &Node, (floquet, truth): Judged, size: f64) -> Point {
+        let u = &node.coefficients;
+        let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
+        /// Of the largest motion: less is rounding.
+        const NOTHING: f64 = 1e-12;
+        let (amplitude, peak) = (u[1].hypot(u[2]), half_of_peak_to_peak(&positions));
+        let (amplitude, phase) = match amplitude > NOTHING * size {
+            // Half a turn is pi, whatever rounding has left of the sine.
+            true if u[2].abs() <= NOTHING * amplitude => {
+                (amplitude, if u[1] < 0.0 { std::f64::consts::PI } else { 0.0 })
+            }
+            true => (amplitude, u[2].atan2(u[1])),
+            false => (0.0, 0.0),
+        };
+        let error = truth.map(|truth| {
+            let [cosine, sine] = truth.first_harmonic;
+            relative_error([amplitude, peak], [cosine.hypot(sine), truth.peak], size)
+        });
+        // On the circle itself only rounding tells.
+        let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
+        Point {
+            parameter: node.parameter,
+            harmonics: (0..=balance.harmonics)
+                .map(|harmonic| match harmonic {
+                    0 => [u[0], 0.0],
+                    _ => [u[2 * harmonic - 1], u[2 * harmonic]],
+                })
+                .collect(),
+            amplitude,
+            phase,
+            peak,
+            start: truth.map_or_else(|| balance.start(u, node.parameter), |truth| truth.start),
+            stable: floquet.map(|floquet| floquet.largest() < allowed),
+            multipliers: floquet.map(|floquet| floquet.multipliers()),
+            error,
+        }
+    }
+
+    /// Simulations beside some stable points, disturbed a little and followed until they have settled.
+    pub(super) fn simulated(&self, branches: &[Branch]) -> Vec<Simulated> {
+        /// Points of a stable part of a branch, and of all of them.
+        const EACH: usize = 6;
+        const MOST: usize = 30;
+        /// Of the size of the motion: the second where the first leads to another motion.
+        const DISTURBANCES: [f64; 2] = [1e-2, 1e-5];
+        const OTHER: f64 = 0.05;
+        const PERIODS: f64 = 1500.0;
+        const CLOSELY: f64 = 1e-8;
+        if self.driven.undamped {
+            return vec![];
+        }
+        let size = branches
+            .iter()
+            .flat_map(|branch| &branch.points)
+            .map(|point| point.peak)
+            .fold(0.0, f64::max);
+        let mut found = Vec::new();
+        let mut budget = MOST_EVALUATIONS;
+        for branch in branches {
+            for part in branch.points.chunk_by(|one, other| one.stable == other.stable) {
+                if part.first().is_none_or(|point| point.stable != Some(true)) {
+                    continue;
+                }
+                let steps = EACH.min(part.len());
+                for index in 0..steps {
+                    let point = &part[(2 * index + 1) * part.len() / (2 * steps)];
+                    let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
+                    let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
+                    let stopped = self.question.interrupt.is_requested();
+                    if !(needed > 0.0 && needed < PERIODS) || found.len() >= MOST || stopped {
+                        continue;
+                    }
+                    let most = needed.ceil() as usize + 8;
+                    let mut run = |disturbance: f64| {
+                        let start = [point.start[0] + disturbance * point.peak, point.start[1]];
+                        let settled = settle(&self.driven, start, point.parameter, (most, CLOSELY), &mut budget)?;
+                        Some(simulated(point, &settled, size))
+                    };
+                    // Where the first leads to another motion the second, much smaller, decides.
+                    let first = run(DISTURBANCES[0]);
+                    let near = match first {
+                        Some(first) if first.error <= OTHER => Some(first),
+                        _ => run(DISTURBANCES[1]).or(first),
+                    };
+                    found.extend(near);
+                }
+            }
+        }
+        found
+    }
+}
+
+fn simulated(point: &Point, settled: &Settled, size: f64) -> Simulated {
+    let [cosine, sine] = first_harmonic(&settled.positions);
+    let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&settled.positions));
+    Simulated {
+        parameter: point.parameter,
+        amplitude,
+        peak,
+        error: relative_error([point.amplitude, point.peak], [amplitude, peak], size),
+    }
+}
+
+/// The larger error of amplitude and peak, over the true peak; of motions that are little beside the largest, over a thousandth of it.
+fn relative_error([amplitude, peak]: [f64; 2], [true_amplitude, true_peak]: [f64; 2], size: f64) -> f64 {
+    let apart = (amplitude - true_amplitude).abs().max((peak - true_peak).abs());
+    let over = true_peak.max(1e-3 * size);
+    if over > 0.0 { apart / over } else { 0.0 }
+}

@@ -1,0 +1,129 @@
+//! Motions to begin with: where simulations settle.
+
+use nalgebra::DVector;
+
+use super::backbone::places_of_rest;
+use super::balance::Balance;
+use super::continuation::{Path, extent};
+use super::stability::{half_of_peak_to_peak, settle};
+use super::{Asked, Elsewhere, MOST_EVALUATIONS, ResponseError};
+
+/// A motion to begin with.
+#[derive(Clone, Debug)]
+pub(super) struct Seed {
+    pub(super) parameter: f64,
+    pub(super) positions: Vec<f64>,
+}
+
+impl Asked<'_> {
+    /// Motions to begin with: where simulations settle, from rest and from a ring of starts as large as the motions of the first
+    /// branches; and what did not repeat itself.
+    pub(super) fn seeds(&self, harmonics: usize) -> Result<(Vec<Seed>, Vec<Elsewhere>), ResponseError> {
+        /// Values of the parameter at which simulations begin.
+        const VALUES: u32 = 5;
+        const RINGS: [f64; 2] = [0.5, 1.3];
+        const SAMPLES: usize = 256;
+        let [low, high] = self.question.range;
+        let balance = Balance::new(&self.driven, harmonics);
+        let values: Vec<f64> = (0..VALUES)
+            .map(|index| low + (high - low) * f64::from(index) / f64::from(VALUES - 1))
+            .collect();
+        let mut seeds = Vec::new();
+        let mut elsewhere = Vec::new();
+        let mut budget = MOST_EVALUATIONS;
+        let mut size = 0.0_f64;
+        for parameter in &values {
+            let mut places = places_of_rest(&self.driven, *parameter, size.max(1.0));
+            // Between two wells there is a motion as well, though it does not last.
+            if !places.contains(&0.0) {
+                places.push(0.0);
+            }
+            for place in places {
+                // Beside the motion that a balance finds from rest, if it does.
+                let mut still = DVector::zeros(balance.size());
+                still[0] = place;
+                if let Some(found) = balance.solve(&still, *parameter) {
+                    size = size.max(extent(&found));
+                    let positions = (0..SAMPLES).map(|sample| {
+                        let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
+                        balance.at(&found, *parameter, phase)[0]
+                    });
+                    seeds.push(Seed {
+                        parameter: *parameter,
+                        positions: positions.collect(),
+                    });
+                }
+                elsewhere.extend(self.settled([place, 0.0], *parameter, &mut seeds, &mut budget));
+            }
+        }
+        size = size.max(size_of(&seeds));
+        // The ring is as wide as the branches that are known by now.
+        let first: Vec<Path> = self.branches(&balance, &seeds, size);
+        let widest = first
+            .iter()
+            .flat_map(|path| &path.nodes)
+            .map(|node| extent(&node.coefficients));
+        size = widest.fold(size, f64::max);
+        if !self.driven.undamped {
+            for parameter in &values {
+                let omega = self.driven.frequency_at(*parameter);
+                for (radius, turn) in RINGS
+                    .iter()
+                    .flat_map(|radius| (0..4_u32).map(move |turn| (radius, turn)))
+                {
+                    if self.question.interrupt.is_requested() {
+                        return Ok((seeds, elsewhere));
+                    }
+                    let (sine, cosine) = (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
+                    let start = [radius * size * cosine, -radius * size * omega * sine];
+                    elsewhere.extend(self.settled(start, *parameter, &mut seeds, &mut budget));
+                }
+            }
+        }
+        elsewhere.sort_by(|one: &Elsewhere, other| {
+            let parameters = one.parameter.total_cmp(&other.parameter);
+            parameters.then(one.periods.cmp(&other.periods))
+        });
+        elsewhere.dedup();
+        if seeds.is_empty() {
+            return Err(match self.question.interrupt.is_requested() {
+                true => ResponseError::Interrupted,
+                false => ResponseError::NoMotion {
+                    parameter: self.question.parameter,
+                    at: low,
+                    undamped: self.driven.undamped,
+                },
+            });
+        }
+        Ok((seeds, elsewhere))
+    }
+
+    /// Adds where a simulation settles, or says that it does not repeat itself.
+    fn settled(&self, start: [f64; 2], parameter: f64, seeds: &mut Vec<Seed>, budget: &mut usize) -> Option<Elsewhere> {
+        const PERIODS: usize = 250;
+        const CLOSELY: f64 = 1e-4;
+        if self.driven.undamped {
+            return None;
+        }
+        let settled = settle(&self.driven, start, parameter, (PERIODS, CLOSELY), budget)?;
+        if settled.returns_after != Some(1) {
+            return Some(Elsewhere {
+                parameter,
+                periods: settled.returns_after,
+            });
+        }
+        seeds.push(Seed {
+            parameter,
+            positions: settled.positions,
+        });
+        None
+    }
+}
+
+/// The size of the largest of the motions to begin with.
+pub(super) fn size_of(seeds: &[Seed]) -> f64 {
+    seeds
+        .iter()
+        .map(|seed| half_of_peak_to_peak(&seed.positions))
+        .fold(0.0, f64::max)
+}

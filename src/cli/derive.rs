@@ -209,7 +209,7 @@ fn solve_at(
 }
 
 /// A refusal, with the term that it names shown in the equation.
-fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
+pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     let place = refusal.term().and_then(|term| oscillator.typed.place(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::advised(&format!("{refusal}{shown}"), refusal.help())

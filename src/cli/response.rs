@@ -5,10 +5,10 @@ use lindstedt::export::{self, json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::problem::{Order, Reader};
 use lindstedt::response::{MOST_HARMONICS, Question, Response, ResponseError, respond};
-use lindstedt::solution::Method;
-use lindstedt::{Interrupt, Oscillator, Symbol, report};
+use lindstedt::solution::{Method, Solution};
+use lindstedt::{Interrupt, Options, Oscillator, Symbol, report, solve};
 
-use super::derive::{exact_values, formula};
+use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, STOP, files, json_text, tolerance, whole};
 
@@ -19,10 +19,10 @@ pub struct Arguments {
     /// The parameter that varies, and from where to where: Omega=0.5:1.5
     #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
     vary: Option<String>,
-    /// How the branches are found: harmonic-balance
+    /// harmonic-balance; or multiple-scales, its steady motions beside the branches of harmonic balance, which judge them
     #[arg(long)]
     method: Option<String>,
-    /// The highest harmonic kept; without it as many as bring the error below a tenth of the tolerance, 64 at most
+    /// The highest harmonic kept; without it as many as bring the error below a tenth of the tolerance, 64 at most; of multiple-scales its order
     #[arg(long, value_name = "H", value_parser = super::count, allow_hyphen_values = true)]
     order: Option<u32>,
     /// Periods of the drive in a period of the motion: 2 for motions after a period doubling, 3 for a third of the frequency
@@ -39,20 +39,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Response)?;
     let oscillator = Oscillator::parse(formula.equation).map_err(|error| Failure::advised(&error, error.help()))?;
-    if let Some(name) = arguments.method.as_deref().or(formula.method) {
-        let known = Method::HarmonicBalance.name();
-        if name != known {
-            return Err(Failure::Usage(format!(
-                "--method {name}: steady states are found by {known}"
-            )));
-        }
-    }
-    let harmonics = match (arguments.order, formula.order) {
+    let method = method(arguments.method.as_deref().or(formula.method))?;
+    let order = match (arguments.order, formula.order) {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
         (None, None) => None,
         (None, Some(Order::Degrees(_))) => {
             return Err(Failure::Refused(format!(
-                "the order of a response is a number of harmonics, 1 to {MOST_HARMONICS}"
+                "the order of a response is a number of harmonics, 1 to {MOST_HARMONICS}, or that of the slow equations"
             )));
         }
     };
@@ -68,12 +61,22 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         values: exact_values(&arguments.at, &problem)?.unwrap_or_default(),
         parameter,
         range,
-        harmonics: harmonics.map(|count| count as usize),
+        // Slow equations are held against as many harmonics as it takes.
+        harmonics: order
+            .filter(|_| method == Method::HarmonicBalance)
+            .map(|count| count as usize),
         periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
         tolerance: tolerance(&arguments.common),
         interrupt: Interrupt::by(&STOP),
     };
-    let response = respond(&question).map_err(refused)?;
+    let slow = match method {
+        Method::HarmonicBalance => None,
+        method => Some(slow_equations(&question, method, order)?),
+    };
+    let mut response = respond(&question).map_err(refused)?;
+    if let Some(solution) = slow {
+        response = response.beside(solution);
+    }
     let document = || report::response(&response);
     let text = match arguments.common.format {
         Format::Text => text::document(&document(), files::width(arguments.common.output.as_deref())),
@@ -90,9 +93,44 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         result: whole(text),
         picture,
         note: None,
-        verdict: Some(response.verdict),
+        verdict: Some(response.slow.as_ref().map_or(response.verdict, |slow| slow.verdict)),
         partial: !response.complete,
     })
+}
+
+/// How the steady states are to be found.
+fn method(name: Option<&str>) -> Result<Method, Failure> {
+    let (balance, scales) = (Method::HarmonicBalance, Method::MultipleScales);
+    let Some(name) = name else { return Ok(balance) };
+    match Method::from_name(name) {
+        Some(method) if [balance, scales].contains(&method) => Ok(method),
+        Some(Method::Averaging) => Err(Failure::Usage(format!(
+            "--method {name}: it is for free motions; to first order {} gives the same for driven ones",
+            scales.name()
+        ))),
+        _ => Err(Failure::Usage(format!(
+            "--method {name}: steady states are found by {} or {}",
+            balance.name(),
+            scales.name()
+        ))),
+    }
+}
+
+/// The slow equations of the primary resonance.
+fn slow_equations(question: &Question, method: Method, order: Option<u32>) -> Result<Solution, Failure> {
+    if question.periods != 1 {
+        return Err(Failure::Usage(format!(
+            "--method {} is held against motions of the period of the drive: leave out --periods",
+            method.name()
+        )));
+    }
+    let options = Options {
+        method: Some(method),
+        order,
+        resonance: Some((1, 1)),
+        ..Options::default()
+    };
+    solve(&question.oscillator, &options).map_err(|refusal| refused_term(&question.oscillator, &refusal))
 }
 
 /// A name and a range: `Omega=0.5:1.5`.

@@ -64,6 +64,8 @@ impl CurveStyle {
     pub const POINTS: Self = Self("#56b4e9", POINTS, 2.2);
     /// Points that stand out.
     pub const MARKED_POINTS: Self = Self("#d55e00", POINTS, 4.5);
+    /// A closed form point by point.
+    pub const SLOW: Self = Self("#d55e00", POINTS, 1.2);
     /// Points of which many make a pattern.
     pub const DOTS: Self = Self("#0072b2", POINTS, 1.1);
     /// Others that do.

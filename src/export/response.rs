@@ -21,7 +21,7 @@ use crate::response::{Point, bifurcation::BifurcationKind};
 /// ```
 pub fn csv(response: &Response) -> String {
     let mut text = format!(
-        "# kind: branch, simulated, backbone or the kind of a bifurcation; amplitude: of the first harmonic; peak: half of peak to peak\n\
+        "# kind: branch, slow (by slow equations), simulated, backbone or the kind of a bifurcation; amplitude: of the first harmonic; peak: half of peak to peak\n\
          kind,branch,{},amplitude,phase,peak,stable,multiplier,error\n",
         response.question.parameter
     );
@@ -55,6 +55,16 @@ pub fn csv(response: &Response) -> String {
             found.parameter,
             found.amplitude,
             found.peak
+        );
+    }
+    for state in response.slow.iter().flat_map(|slow| &slow.states) {
+        let _ = writeln!(
+            text,
+            "slow,,{},{},{},,{},,",
+            state.parameter,
+            state.amplitude,
+            state.phase,
+            u8::from(state.stable)
         );
     }
     for simulated in &response.simulated {
@@ -172,6 +182,14 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
         lines("free, without damping", backbones, CurveStyle::BACKBONE).collect();
     drawn.extend(lines("unstable", unstable, CurveStyle::UNSTABLE));
     drawn.extend(lines("stable", stable, CurveStyle::DIFFERENCE));
+    let slow = response.slow.as_ref();
+    let title = slow.map(|slow| slow.solution.title()).unwrap_or_default();
+    let states = slow.into_iter().flat_map(|slow| &slow.states);
+    drawn.push((
+        &title,
+        states.map(|state| (state.parameter, state.amplitude)).collect(),
+        CurveStyle::SLOW,
+    ));
     drawn.push(("simulated", simulated, CurveStyle::SIMULATED));
     drawn.extend(
         marks

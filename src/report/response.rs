@@ -8,6 +8,7 @@ use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
+use crate::response::slow::SlowResponse;
 use crate::response::{Branch, Point, Response};
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -37,6 +38,7 @@ pub fn response(response: &Response) -> Document<'static> {
     sections.extend(changes(response));
     sections.extend(backbone(response));
     sections.push(judgement(response));
+    sections.extend(response.slow.as_ref().map(|slow| by_slow_equations(response, slow)));
     Document { sections }
 }
 
@@ -258,6 +260,73 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
         });
     }
     Some(blocks)
+}
+
+/// The slow equations, their steady motions, and how far these are from the branches.
+fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'static>> {
+    let name = response.question.parameter.name();
+    let solution = &slow.solution;
+    let mut blocks = vec![Block::Heading(format!("by slow equations: {}", solution.title()))];
+    let line = |left: Expr, right: Expr| Block::Line(Cow::Owned(Line::equation(left, right)));
+    if let Some(modulation) = &solution.modulation {
+        let rate = |name: Symbol| Expr::from(name.derivative());
+        blocks.push(line(rate(modulation.amplitude), modulation.amplitude_rate.clone()));
+        blocks.push(line(rate(modulation.phase), modulation.phase_rate.clone()));
+    }
+    let definitions = solution.definitions.iter();
+    blocks.extend(definitions.map(|definition| line(Expr::from(definition.symbol), definition.meaning.clone())));
+    if let Some(relation) = solution
+        .response
+        .as_ref()
+        .and_then(|response| response.relation.as_ref())
+    {
+        blocks.push(line(Expr::zero(), Expr::from(relation)));
+    }
+    let count = slow.states.len();
+    let steps = ROWS.min(count).max(2) - 1;
+    let row = |step: usize| {
+        let state = slow.states.get(step * (count.max(1) - 1) / steps)?;
+        let stable = if state.stable { "yes" } else { "no" };
+        let numbers = [state.parameter, state.amplitude, state.phase].map(decimal);
+        Some(numbers.into_iter().chain([stable.to_owned()]).collect())
+    };
+    blocks.push(Block::Table {
+        head: heads(&[name, "amplitude", "phase", "stable"]),
+        rows: (0..=steps).filter_map(row).collect(),
+    });
+    let mut facts = vec![(
+        "largest error",
+        match (slow.error, slow.worst) {
+            (Some(error), Some(worst)) => format!(
+                "{} of the amplitude, at {name} = {}, of {} stable points of the branches",
+                significant(error, 2),
+                significant(worst, 4),
+                slow.points
+            ),
+            _ => {
+                "unknown: no stable motion of the branches and of the slow equations stand beside each other".to_owned()
+            }
+        },
+    )];
+    if slow.missing > 0 {
+        facts.push((
+            "missing",
+            format!(
+                "{} stable points at which the slow equations have no stable motion",
+                slow.missing
+            ),
+        ));
+    }
+    facts.push((
+        "verdict",
+        format!(
+            "{} (error <= {}, nothing missing)",
+            slow.verdict.name(),
+            significant(response.question.tolerance, 3)
+        ),
+    ));
+    blocks.push(Block::Facts(facts));
+    blocks
 }
 
 fn judgement(response: &Response) -> Vec<Block<'static>> {

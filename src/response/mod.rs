@@ -15,6 +15,7 @@
 //! - [`stability`]: the true motion by shooting, its multipliers; simulations that settle.
 //! - [`bifurcation`]: where a branch changes.
 //! - [`backbone`]: the free motion without damping.
+//! - [`slow`]: the same motions by slow equations of amplitude and phase.
 //!
 //! Branches start where a simulation settles, from rest and from a ring of starts at several values of the parameter, and where others
 //! cross: that finds closed and disconnected ones wherever a simulation finds its way to them.
@@ -27,6 +28,7 @@ pub mod continuation;
 pub mod driven;
 mod judgement;
 mod seeds;
+pub mod slow;
 pub mod stability;
 
 use std::collections::BTreeMap;
@@ -50,6 +52,7 @@ use continuation::{BranchEnd, Node, Walk};
 use driven::Driven;
 use judgement::Judged;
 use seeds::{Seed, size_of};
+use slow::SlowResponse;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -271,6 +274,8 @@ pub struct Response {
     pub unjudged: usize,
     /// Whether the error is within the tolerance, on the whole of what was found.
     pub verdict: Verdict,
+    /// The steady motions by slow equations, where they were asked for.
+    pub slow: Option<SlowResponse>,
     /// Whether it was followed to its end.
     pub complete: bool,
 }
@@ -539,6 +544,7 @@ impl<'a> Asked<'a> {
             verdict: Verdict::of(error.is_some_and(|error| error <= question.tolerance) && 20 * unjudged <= all),
             error,
             unjudged,
+            slow: None,
             complete,
         })
     }

@@ -7,6 +7,7 @@ use super::Kind;
 use super::number::{Constant, Map};
 use crate::report::motion_frequency;
 use crate::response::bifurcation::BifurcationKind;
+use crate::response::slow::SlowResponse;
 use crate::response::{self, Response};
 use crate::verify::Verdict;
 
@@ -44,8 +45,8 @@ pub struct ResponseDocument {
     /// The free motion without damping, a list of points for each stable place of rest; empty where the frequency of the drive does not
     /// vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
-    /// Always null: a balance has no slow equations of amplitude and phase.
-    pub modulation: (),
+    /// The steady motions by slow equations of amplitude and phase, where a method with such equations was asked for; else null.
+    pub modulation: Option<SlowDocument>,
     /// Simulations that were let go beside stable points and have settled.
     pub simulated: Vec<SimulatedPoint>,
     /// Simulations that have settled on something that is not among the branches.
@@ -76,6 +77,77 @@ pub struct ResponsePoint {
     pub start: [f64; 2],
     /// The error of amplitude or peak, the larger, over the true peak; null where no true motion was found near.
     pub error: Option<f64>,
+}
+
+/// Steady motions by slow equations.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "SlowResponse")]
+pub struct SlowDocument {
+    /// The method: `multiple-scales`.
+    pub method: String,
+    /// Its order.
+    pub order: u32,
+    /// The rate of the amplitude, a formula.
+    pub amplitude_rate: String,
+    /// The rate of the phase, a formula.
+    pub phase_rate: String,
+    /// What stands for what in them.
+    pub definitions: Map<String>,
+    /// The steady motions, by the parameter.
+    pub states: Vec<SlowPoint>,
+    /// The largest error of the amplitude at the stable points of the branches, over the amplitude; null where there is none.
+    pub largest_error: Option<f64>,
+    /// Stable points of the branches at which the slow equations have no stable motion.
+    pub missing: usize,
+    /// Whether the error is within the tolerance and nothing is missing.
+    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
+    pub verdict: String,
+}
+
+/// A steady motion by slow equations.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SlowPoint {
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The amplitude of the first harmonic.
+    pub amplitude: f64,
+    /// Its phase, in radians.
+    pub phase: f64,
+    /// Whether small disturbances die out, by the slow equations.
+    pub stable: bool,
+}
+
+fn slow(slow: &SlowResponse) -> SlowDocument {
+    let solution = &slow.solution;
+    let rates = solution
+        .modulation
+        .as_ref()
+        .map(|modulation| [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string));
+    let [amplitude_rate, phase_rate] = rates.unwrap_or_default();
+    let definitions = solution.definitions.iter();
+    SlowDocument {
+        method: solution.method.name().to_owned(),
+        order: solution.order,
+        amplitude_rate,
+        phase_rate,
+        definitions: definitions
+            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
+            .collect(),
+        states: slow
+            .states
+            .iter()
+            .map(|state| SlowPoint {
+                parameter: state.parameter,
+                amplitude: state.amplitude,
+                phase: state.phase,
+                stable: state.stable,
+            })
+            .collect(),
+        largest_error: slow.error,
+        missing: slow.missing,
+        verdict: slow.verdict.name().to_owned(),
+    }
 }
 
 /// A place where a branch changes.
@@ -219,7 +291,7 @@ pub fn response(response: &Response) -> ResponseDocument {
                     .collect()
             })
             .collect(),
-        modulation: (),
+        modulation: response.slow.as_ref().map(slow),
         simulated: response
             .simulated
             .iter()

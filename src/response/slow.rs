@@ -1,0 +1,115 @@
+//! Steady motions by the slow equations of a method, beside the branches that were found and judged.
+//!
+//! In: a [`Response`] and a [`Solution`] with slow equations of the primary resonance, such as that of multiple scales. Out: its steady
+//! motions over the range, and how far they are from the stable points of the branches, each of which has its true motion beside it.
+
+use super::{Question, Response};
+use crate::solution::Solution;
+use crate::symbol::Symbol;
+use crate::verify::Verdict;
+
+/// Values of the parameter at which the slow equations are solved.
+const VALUES: u32 = 240;
+
+/// Steady motions by slow equations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlowResponse {
+    /// The slow equations, and who derived them.
+    pub solution: Box<Solution>,
+    /// The steady motions, by the parameter, the largest first.
+    pub states: Vec<SlowState>,
+    /// The largest error of the amplitude at the stable points of the branches, over the amplitude there.
+    pub error: Option<f64>,
+    /// Where that is.
+    pub worst: Option<f64>,
+    /// Stable points of the branches at which the slow equations have no stable motion.
+    pub missing: usize,
+    /// How many stable points there are.
+    pub points: usize,
+    /// Whether the error is within the tolerance and nothing is missing.
+    pub verdict: Verdict,
+}
+
+/// A steady motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowState {
+    /// The parameter that varies.
+    pub parameter: f64,
+    /// The amplitude.
+    pub amplitude: f64,
+    /// The phase: amplitude*cos(theta - phase).
+    pub phase: f64,
+    /// Whether small disturbances die out, by the slow equations.
+    pub stable: bool,
+}
+
+/// The steady motions by these slow equations at one value of the parameter.
+fn states_at(question: &Question, solution: &Solution, parameter: f64) -> Vec<SlowState> {
+    let numbers = question.values.numbers();
+    let value_of = |name: Symbol| match name == question.parameter {
+        true => Some(parameter),
+        false => numbers.get(&name).copied(),
+    };
+    let states = solution.steady_states(&value_of).into_iter();
+    states
+        .map(|state| SlowState {
+            parameter,
+            amplitude: state.amplitude,
+            phase: state.phase,
+            stable: state.is_stable(),
+        })
+        .collect()
+}
+
+impl Response {
+    /// The same with the steady motions of these slow equations beside it.
+    ///
+    /// ```
+    /// use lindstedt::response::{Question, respond};
+    /// use lindstedt::{Method, Options, solve};
+    ///
+    /// let question = Question::new("x'' + x'/25 + x + x^3/20 = cos(Omega*t)/20", "Omega", [0.8, 1.2], "")?;
+    /// let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
+    /// let solution = solve(&question.oscillator, &options)?;
+    /// let response = respond(&question)?.beside(solution);
+    /// let slow = response.slow.ok_or("slow equations")?;
+    /// assert!(slow.error.is_some_and(|error| error < 0.3) && slow.points > 20);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn beside(mut self, solution: Solution) -> Self {
+        let question = &self.question;
+        let [low, high] = question.range;
+        let value = |index: u32| low + (high - low) * f64::from(index) / f64::from(VALUES);
+        let states = (0..=VALUES).flat_map(|index| states_at(question, &solution, value(index)));
+        let states: Vec<SlowState> = states.collect();
+        let (mut error, mut worst, mut missing, mut count) = (None::<f64>, None, 0, 0);
+        let points = self.branches.iter().flat_map(|branch| &branch.points);
+        for point in points.filter(|point| point.stable == Some(true)) {
+            count += 1;
+            let stable = states_at(question, &solution, point.parameter).into_iter();
+            let apart = stable
+                .filter(|state| state.stable)
+                .map(|state| (state.amplitude - point.amplitude).abs())
+                .min_by(f64::total_cmp);
+            let Some(apart) = apart else {
+                missing += 1;
+                continue;
+            };
+            let relative = apart / point.amplitude.max(f64::MIN_POSITIVE);
+            if error.is_none_or(|error| relative > error) {
+                (error, worst) = (Some(relative), Some(point.parameter));
+            }
+        }
+        self.slow = Some(SlowResponse {
+            solution: Box::new(solution),
+            states,
+            verdict: Verdict::of(missing == 0 && error.is_some_and(|error| error <= question.tolerance)),
+            error,
+            worst,
+            missing,
+            points: count,
+        });
+        self
+    }
+}

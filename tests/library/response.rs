@@ -513,3 +513,34 @@ fn the_page_says_how_many_harmonics_are_enough() {
     }
     assert_eq!(rows, 5);
 }
+
+/// The steady motions of multiple scales beside the branches: their error falls with everything small, by the order that is kept.
+#[test]
+fn slow_equations_come_nearer_with_their_order() {
+    let error = |order: u32, d: u32| {
+        let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
+        let values = format!("zeta = 1/{d}, eps = 1/{d}, F = 1/{d}");
+        let width = 3.0 / f64::from(d);
+        let question = Question::new(equation, "Omega", [1.0 - width, 1.0 + width], &values).expect("a question");
+        let options = lindstedt::Options {
+            method: Some(lindstedt::Method::MultipleScales),
+            order: Some(order),
+            resonance: Some((1, 1)),
+            ..lindstedt::Options::default()
+        };
+        let solution = lindstedt::solve(&question.oscillator, &options).expect("slow equations");
+        let slow = respond(&question)
+            .expect("a response")
+            .beside(solution)
+            .slow
+            .expect("states");
+        assert_eq!(slow.missing, 0);
+        assert!(slow.points > 20 && slow.states.len() > 240);
+        slow.error.expect("an error")
+    };
+    for (order, least) in [(1, 0.7), (2, 1.6)] {
+        let (large, small) = (error(order, 20), error(order, 40));
+        let slope = (large / small).log2();
+        assert!(slope > least, "order {order}: {large} and {small}, slope {slope}");
+    }
+}

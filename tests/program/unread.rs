@@ -886,6 +886,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ),
         ("response", driven[1..4].to_vec(), vec!["--at", "F=2"]),
         ("response", driven[1..].to_vec(), vec!["--method", "pade"]),
+        ("response", driven[1..].to_vec(), vec!["--method", "multiple-scales"]),
         ("response", driven[1..].to_vec(), vec!["--order", "2"]),
         ("response", driven[1..].to_vec(), vec!["--periods", "2"]),
         ("response", driven[1..].to_vec(), vec!["--format", "csv"]),

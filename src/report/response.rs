@@ -312,7 +312,7 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
         facts.push((
             "missing",
             format!(
-                "{} stable points at which the slow equations have no stable motion",
+                "{} stable points near which the slow equations have no stable motion",
                 slow.missing
             ),
         ));
@@ -320,7 +320,7 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
     facts.push((
         "verdict",
         format!(
-            "{} (error <= {}, nothing missing)",
+            "{} (error <= {}, one point in twenty missing at most)",
             slow.verdict.name(),
             significant(response.question.tolerance, 3)
         ),

@@ -97,9 +97,9 @@ pub struct SlowDocument {
     pub states: Vec<SlowPoint>,
     /// The largest error of the amplitude at the stable points of the branches, over the amplitude; null where there is none.
     pub largest_error: Option<f64>,
-    /// Stable points of the branches at which the slow equations have no stable motion.
+    /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
-    /// Whether the error is within the tolerance and nothing is missing.
+    /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
     pub verdict: String,
 }

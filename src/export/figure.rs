@@ -65,7 +65,7 @@ impl CurveStyle {
     /// Points that stand out.
     pub const MARKED_POINTS: Self = Self("#d55e00", POINTS, 4.5);
     /// A closed form point by point.
-    pub const SLOW: Self = Self("#d55e00", POINTS, 1.2);
+    pub const SLOW: Self = Self("#000000", POINTS, 1.0);
     /// Points of which many make a pattern.
     pub const DOTS: Self = Self("#0072b2", POINTS, 1.1);
     /// Others that do.

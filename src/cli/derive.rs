@@ -22,7 +22,7 @@ pub struct Arguments {
     pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
     /// parameter-expansion, harmonic-balance, energy-balance, max-min, amplitude-frequency, hamiltonian,
-    /// variational-iteration, frequency-formula, pade, multiple-scales or exact
+    /// variational-iteration, frequency-formula, averaging, pade, multiple-scales or exact
     #[arg(long)]
     method: Option<String>,
     /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade

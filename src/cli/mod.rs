@@ -93,7 +93,7 @@ struct Common {
     /// Write the result to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw to this SVG file (- for standard output): the motion against Runge-Kutta; of compare, omega against the amplitude
+    /// Draw the answer beside the truth to this SVG file (- for standard output)
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
@@ -411,7 +411,7 @@ fn fail(code: u8, message: &str) -> ExitCode {
 /// Refuses `--format csv` where there is no trajectory.
 fn no_table<T>() -> Result<T, Failure> {
     Err(Failure::Usage(
-        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `response`, `friction`, `materials` or `optimize`"
+        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `response`, `stability`, `friction`, `materials` or `optimize`"
             .to_owned(),
     ))
 }

@@ -155,6 +155,9 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::NotPeriodic(_) => {
             Some("time may stand inside sin, cos and tan alone, as cos(Omega*t + phi)".to_owned())
         }
+        ResponseError::Jump(_) => Some(
+            "put (2/pi)*atan(100*x') in place of sgn(x'), or look at the motion itself: `lindstedt simulate` with --every".to_owned(),
+        ),
         ResponseError::TwoFrequencies(_) => {
             Some("choose frequencies in the ratio of whole numbers, such as Omega and 2*Omega".to_owned())
         }

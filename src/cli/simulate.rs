@@ -165,7 +165,11 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
 
 /// An equation or a mechanism of one's own.
 fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
-    let foreign = [("--chain", arguments.chain), ("--jobs", arguments.jobs.is_some())];
+    let foreign = [
+        ("--chain", arguments.chain),
+        ("--jobs", arguments.jobs.is_some()),
+        ("--baseline", arguments.baseline),
+    ];
     if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
         return Err(Failure::Usage(format!(
             "{option} belongs to the pendulum and its barrier: an equation or a mechanism of one's own is followed by integration, on all \

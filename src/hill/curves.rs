@@ -103,12 +103,17 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
         }
         return Ok(pair);
     }
+    // What opens the tongue enters Q squared: with the power 2 n.
+    let beyond = order.max(2 * tongue as u32);
+    let further = effective_matrix(hill, tongue, beyond);
+    let [[cosine, upper_right], [lower_left, sine]] = &further;
+    let power = Powers { hill, order: beyond };
     let middle = cosine.sum_with(sine).scaled(&ratio(1, 2));
     let difference = cosine.less(sine).scaled(&ratio(1, 2));
     let least = [&difference, upper_right, lower_left]
         .into_iter()
         .filter_map(|entry| power.least_degree(entry));
-    let known = i64::from(order) + least.min().unwrap_or(0);
+    let known = i64::from(beyond) + least.min().unwrap_or(0);
     let root = difference
         .product(&difference)
         .sum_with(&upper_right.product(lower_left));
@@ -121,6 +126,8 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
         }
         Unknown::Frequency(name) => power.frequency_squared(&middle, &root, tongue, name),
     };
+    let middle = power.cut(&middle, order.into());
+    let shown = i64::from(order.max(beyond - 1)) + 1;
     let pair = |upper: bool| {
         let name = format!("{}{tongue}", if upper { "upper" } else { "lower" });
         match power.square_root(&root) {
@@ -143,7 +150,7 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
                 name,
                 tongue,
                 middle: middle.clone(),
-                under_root: Some(root.clone()),
+                under_root: Some(power.cut(&root, shown)),
                 upper,
                 motion: WavesOfMotion::Both,
             },

@@ -181,7 +181,7 @@ pub enum HillError {
     #[error("`{0}` is neither a letter of the mean stiffness alone nor the frequency")]
     NotAnUnknown(String),
     /// A mean stiffness that is zero where the frequency is asked for.
-    #[error("the mean stiffness is `{0}`, and the frequency is to be found beside a single term of it")]
+    #[error("the mean stiffness is `{0}`, and the frequency can be found beside a single positive term alone")]
     Stiffness(String),
     /// A coefficient that is a number.
     #[error("the coefficient of `{0}` is a number, and the expansion is in a small letter")]
@@ -214,9 +214,13 @@ impl HillError {
     /// What to try instead.
     pub fn help(&self) -> Option<String> {
         let words = match self {
-            Self::NotLinear(_) => "leave it out: near rest it is smaller than the others",
+            Self::NotLinear(_) => {
+                "put its linear part in its place, such as x for sin(x); leave it out where it has none"
+            }
             Self::Drive(_) => "leave it out",
-            Self::NotPeriodic(_) => "write the coefficient as in `(delta + eps*cos(2*t))*x`",
+            Self::NotPeriodic(_) => {
+                "write the coefficient as in `(delta + eps*cos(2*t))*x`, phases written out: cos(2*t + b) = cos(b)*cos(2*t) - sin(b)*sin(2*t)"
+            }
             Self::Constant => "for a constant stiffness: `lindstedt derive`",
             Self::NoUnknown => {
                 "write the equation with a letter, as in `x'' + (delta + eps*cos(2*t))*x` or with cos(Omega*t)"
@@ -349,6 +353,7 @@ impl Hill {
         if periodic::is_constant(&damping) && periodic::is_constant(&stiffness) {
             return Err(HillError::Constant);
         }
+        let (frequency, [damping, stiffness]) = periodic::in_lowest_terms(frequency, [damping, stiffness]);
         let mean = stiffness.constant_term();
         let unknown = unknown(&mean, [&damping, &stiffness], &frequency, options.solve_for.as_deref())?;
         let small = small(oscillator, [&damping, &stiffness], &frequency, options)?;
@@ -366,7 +371,10 @@ impl Hill {
                 _ => {}
             }
         }
-        if matches!(unknown, Unknown::Frequency(_)) && constant.single_term().is_none() {
+        let positive = constant
+            .single_term()
+            .is_some_and(|(_, number)| *number > Rational::zero());
+        if matches!(unknown, Unknown::Frequency(_)) && !positive {
             return Err(HillError::Stiffness(constant.to_string()));
         }
         let kept = Polynomial::term(Monomial::power_of(unknown.symbol(), 1), factor.clone());

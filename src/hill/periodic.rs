@@ -148,6 +148,36 @@ fn series_of(
     (series.highest_harmonic() <= 2 * MOST_HARMONICS).then_some(series)
 }
 
+/// The same with the period as short as it is: of `cos(t)^2` it is pi.
+pub(super) fn in_lowest_terms(
+    frequency: Frequency,
+    series: [FourierSeries<Polynomials>; 2],
+) -> (Frequency, [FourierSeries<Polynomials>; 2]) {
+    let harmonics = series
+        .iter()
+        .flat_map(FourierSeries::harmonics)
+        .map(|(harmonic, ..)| harmonic);
+    let common = harmonics.fold(0_usize, |common, harmonic| common.gcd(&harmonic)) / 2;
+    if common < 2 {
+        return (frequency, series);
+    }
+    let shortened = series.map(|series| {
+        let part = |of: &dyn Fn(usize) -> Polynomial| {
+            (0..=series.highest_harmonic() / common)
+                .map(|k| of(k * common))
+                .collect()
+        };
+        let cosines: Vec<Polynomial> = part(&|k| series.cosine(k).constant_term());
+        let sines: Vec<Polynomial> = part(&|k| series.sine(k).constant_term());
+        FourierSeries::from_parts(POLYNOMIALS, cosines, sines)
+    });
+    let frequency = Frequency {
+        number: frequency.number * fraction(common, 1),
+        unit: frequency.unit,
+    };
+    (frequency, shortened)
+}
+
 /// A fraction of two whole numbers.
 pub(super) fn fraction(numerator: usize, denominator: i64) -> Rational {
     Rational::from_integer(Integer::from(numerator)) * ratio(1, denominator)

@@ -139,6 +139,12 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         verification.steady_states.len(),
         verification.frequency.map_or_else(String::new, decimal)
     )));
+    if count == 0 {
+        blocks.push(Block::Note(format!(
+            "verdict {verdict}: no steady motion is stable, so that there is none to be seen"
+        )));
+        return blocks;
+    }
     blocks.push(Block::Note(format!(
         "verdict {verdict}: of the largest stable one |error of {}| <= {within} %, and the true one is stable too",
         solution.amplitude.symbol()

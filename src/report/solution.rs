@@ -132,7 +132,7 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
         Block::Remark(format!("until t = {ends}, where {what}"))
     });
     let heading = match slow.release.as_ref().is_some_and(Release::is_at_start) {
-        true => format!("Released at rest from {start}"),
+        true => format!("Released at rest from {start} > 0"),
         false => format!("From {}(0) = {start}", slow.amplitude),
     };
     let amplitude = Block::Equality {

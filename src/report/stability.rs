@@ -106,21 +106,10 @@ fn validity<'a>(curves: &TransitionCurves) -> Vec<Block<'a>> {
         let same = pair[0].tongue == pair[1].tongue && pair[0].middle == pair[1].middle;
         if same && pair[0].under_root.is_none() {
             blocks.push(Block::Note(format!(
-                "{} and {} part beyond this order",
+                "{} and {} agree to this order",
                 pair[0].name, pair[1].name
             )));
         }
-    }
-    // What opens a tongue enters the root squared.
-    let closed = |curve: &&TransitionCurve| {
-        let opens = 2 * curve.tongue;
-        curve.under_root.is_some() && !curve.upper && opens > curves.order as usize + 1
-    };
-    for curve in curves.curves.iter().filter(closed) {
-        blocks.push(Block::Note(format!(
-            "the tongue {} may open beyond this order, if at all",
-            curve.tongue
-        )));
     }
     if curves.curves.iter().any(|curve| curve.under_root.is_some()) {
         blocks.push(Block::Note(

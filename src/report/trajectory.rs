@@ -156,11 +156,15 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
         .flat_map(|name| [format!("least {name}"), format!("greatest {name}")]);
     // The names of a table live as long as the program.
     head.extend(extremes.map(|name| heading(Symbol::new(&name).name())));
-    head.push(heading("section"));
+    let on_section = course.section.is_some();
+    if on_section {
+        head.push(heading("section"));
+    }
     let rows = sweep.motions.iter().map(|motion| {
         let numbers = motion.values.iter().chain(motion.extremes.iter().flatten());
         let numbers = numbers.map(|value| decimal(*value));
-        numbers.chain([motion.crossings.len().to_string()]).collect()
+        let counted = on_section.then(|| motion.crossings.len().to_string());
+        numbers.chain(counted).collect()
     });
     let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
     if course.after > 0.0 {

@@ -49,12 +49,50 @@ const CORNERS: [Function; 5] = [
     Function::Minimum,
 ];
 
+/// A term that jumps where the velocity, or something with it, changes its sign, such as dry friction: the variation of a motion jumps
+/// there as well.
+fn jump_of_velocity(oscillator: &Oscillator) -> Result<Option<Expr>, ResponseError> {
+    let velocity = oscillator.velocity();
+    let jumps = |part: &Expr| match part.node() {
+        Node::Function(Function::Sign | Function::Step, arguments) => {
+            arguments.iter().any(|argument| argument.contains(velocity))
+        }
+        _ => false,
+    };
+    let on_side = |term: &Expr, side: i64| -> Result<Expr, ResponseError> {
+        let toward = |argument: &Expr| argument.substitute(velocity, &Expr::from(side));
+        let chosen = term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
+            (Node::Function(function @ (Function::Sign | Function::Step), _), [argument])
+                if argument.as_symbol() == Some(velocity) =>
+            {
+                Expr::function(*function, vec![toward(argument)?])
+            }
+            _ => part.with_children(parts),
+        })?;
+        Ok(chosen.substitute(velocity, &Expr::zero())?)
+    };
+    for term in oscillator.force.expand()?.terms() {
+        if !term.unique_nodes().any(jumps) {
+            continue;
+        }
+        // What is multiplied by a power of the velocity has no jump where the velocity is zero.
+        let difference = &on_side(term, 1)? - &on_side(term, -1)?;
+        if !difference.is_zero() || on_side(term, 1)?.unique_nodes().any(jumps) {
+            return Ok(Some(term.clone()));
+        }
+    }
+    Ok(None)
+}
+
 impl Driven {
     /// Of an oscillator without other parameters than the one that varies.
     ///
     /// # Errors
     /// No drive, or one that is not periodic; several frequencies that are no multiples of one; a derivative that cannot be written.
     pub fn new(oscillator: &Oscillator, parameter: Symbol, periods: usize) -> Result<Self, ResponseError> {
+        if let Some(term) = jump_of_velocity(oscillator)? {
+            return Err(ResponseError::Jump(term.to_string()));
+        }
         let frequency = drive_frequency(oscillator)?;
         Self::of_frequency(oscillator, frequency, parameter, periods)
     }

@@ -33,10 +33,10 @@ impl Asked<'_> {
     pub(super) fn point(&self, balance: &Balance, node: &Node, (floquet, truth): Judged, size: f64) -> Point {
         let u = &node.coefficients;
         let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
-        /// Of the largest motion: less is rounding.
+        /// Of the motion: less is rounding.
         const NOTHING: f64 = 1e-12;
         let (amplitude, peak) = (u[1].hypot(u[2]), half_of_peak_to_peak(&positions));
-        let (amplitude, phase) = match amplitude > NOTHING * size {
+        let (amplitude, phase) = match amplitude > NOTHING * peak {
             // Half a turn is pi, whatever rounding has left of the sine.
             true if u[2].abs() <= NOTHING * amplitude => {
                 (amplitude, if u[1] < 0.0 { std::f64::consts::PI } else { 0.0 })

@@ -85,6 +85,11 @@ pub enum ResponseError {
     /// Time enters in a way that does not repeat.
     #[error("the term `{0}` is not periodic in time")]
     NotPeriodic(String),
+    /// A force that jumps with the velocity.
+    #[error(
+        "the term `{0}` jumps with the velocity, and the multipliers of motions across such a jump are not computed"
+    )]
+    Jump(String),
     /// Two frequencies without a common period for every value of the parameter.
     #[error("the frequencies `{}` and `{}` are no whole multiples of one frequency", .0[0], .0[1])]
     TwoFrequencies([String; 2]),

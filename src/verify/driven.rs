@@ -120,7 +120,7 @@ pub(super) fn judge(
         .map(|state| question.truth.beside(&question.motion, state))
         .collect();
     let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
-    let passed = judged.is_some_and(|judged| {
+    let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
         let agrees = judged.true_stable == Some(judged.state.is_stable());
         agrees
             && judged

@@ -161,8 +161,20 @@ impl FreeMotion {
             .chain(self.turns.iter().copied())
             .map(|(t, x)| (t, x.abs()))
             .collect();
-        let pair = points.windows(2).find(|pair| pair[1].1 <= size && pair[0].1 > size)?;
-        let [(t0, x0), (t1, x1)] = [pair[0], pair[1]];
-        Some(t0 + (t1 - t0) * (x0 / size).ln() / (x0 / x1).ln())
+        let index = points
+            .windows(2)
+            .position(|pair| pair[1].1 <= size && pair[0].1 > size)?;
+        let [(t0, x0), (t1, x1)] = [points[index], points[index + 1]];
+        // Dry friction takes the same difference every half swing, viscous damping the same ratio: whichever the turning point before
+        // says.
+        let by_difference = index.checked_sub(1).is_some_and(|before| {
+            let earlier = points[before].1;
+            (earlier - x0 - (x0 - x1)).abs() < (x0 * x0 / earlier - x1).abs()
+        });
+        let part = match by_difference {
+            true => (x0 - size) / (x0 - x1),
+            false => (x0 / size).ln() / (x0 / x1).ln(),
+        };
+        Some(t0 + (t1 - t0) * part)
     }
 }

@@ -476,3 +476,21 @@ fn the_table_of_the_documentation_is_what_comes_out() {
         assert_eq!(slow.phase_rate.to_string(), *phase_rate, "{equation}");
     }
 }
+
+/// Dry friction takes the same from every half swing, so that the true time to a tenth is that of a straight line.
+#[test]
+fn a_tenth_is_left_at_the_time_of_a_straight_line() {
+    let oscillator = Oscillator::parse("x'' + alpha*sgn(x') + x = 0").expect("an oscillator");
+    let solution = solve(&oscillator, &Options::default()).expect("an answer");
+    let judged = judge(
+        &oscillator,
+        &solution,
+        &"alpha = 1/25, A = 1".parse().expect("values"),
+        0.01,
+    )
+    .expect("a verdict");
+    let followed = judged.followed.expect("a motion that was followed");
+    let (formula, truth) = (followed.tenth.expect("a time"), followed.true_tenth.expect("a time"));
+    assert!((formula - 0.9 * std::f64::consts::PI / 0.08).abs() < 1e-9, "{formula}");
+    assert!((truth - formula).abs() < 1e-6, "{truth} and {formula}");
+}

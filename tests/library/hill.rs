@@ -274,3 +274,31 @@ fn curves_are_told_apart_on_either_side() {
         }
     }
 }
+
+/// The period is that of what the coefficients add up to, and a damped tongue has what opens it.
+#[test]
+fn tongues_are_counted_by_the_shortest_period_and_open_at_their_order() {
+    let squared = curves("x'' + (delta + eps*cos(t)^2)*x = 0", 4, 2);
+    let plain = curves("x'' + (delta + eps*cos(2*t))*x = 0", 4, 2);
+    assert_eq!(squared.period(), plain.period());
+    for curve in &squared.curves {
+        // delta + eps/2 + (eps/2) cos 2t
+        let [at, half] = [0.2, 0.1].map(|eps| move |_: Symbol| Some(eps));
+        let expected = named(&plain, &curve.name).evaluate(half).expect("a number") - 0.1;
+        let found = curve.middle.evaluate(at).expect("a number");
+        assert!(
+            (found - expected).abs() < 1e-14,
+            "{}: {found} and {expected}",
+            curve.name
+        );
+    }
+    let damped = curves("x'' + 2*zeta*x' + (delta + eps*cos(2*t))*x = 0", 2, 2);
+    let judged = judge(&damped, &values(&[("eps", 0.5), ("zeta", 0.001)]), 1e-3).expect("a judgement");
+    for curve in &judged[1..] {
+        assert!(
+            curve.passes && curve.value.is_some(),
+            "{}: {curve:?}",
+            damped.curves[curve.curve].name
+        );
+    }
+}

@@ -510,3 +510,60 @@ fn a_motion_does_not_depend_on_how_the_small_terms_are_spelt() {
         }
     }
 }
+
+/// Both leave homogeneous solutions out, so that the slow equations of a damped motion are the same.
+#[test]
+fn multiple_scales_are_averaging_where_both_apply() {
+    for equation in [
+        "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+        "x'' + x + eps*x'^3 = 0",
+        "x'' + x + eps*(x^2 - 1)*x' + eps*x^5 = 0",
+    ] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let by = |method: Method| {
+            let options = Options {
+                method: Some(method),
+                ..options(2)
+            };
+            let solution = solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
+            solution.modulation.expect("slow equations")
+        };
+        let [scales, averaging] = [Method::MultipleScales, Method::Averaging].map(by);
+        for (one, other) in [
+            (&scales.amplitude_rate, &averaging.amplitude_rate),
+            (&scales.phase_rate, &averaging.phase_rate),
+        ] {
+            let difference = (one - other).expand().expect("short");
+            assert!(difference.is_zero(), "{equation}: {one} and {other}");
+        }
+    }
+}
+
+/// A free motion that is damped has its rates in the answer, and its verdict is on the motion as it decays.
+#[test]
+fn a_damped_motion_shows_how_it_decays() {
+    let oscillator = Oscillator::parse("x'' + x + z*x'^3 = 0").expect("an oscillator");
+    let asked = Options {
+        method: Some(Method::MultipleScales),
+        ..options(1)
+    };
+    let solution = solve(&oscillator, &asked).expect("an answer");
+    let slow = solution.slow().expect("slow equations");
+    let expected = parse_expression("-3*z*a^3/8").expect("an expression");
+    assert!(
+        (&slow.amplitude_rate - &expected).expand().expect("short").is_zero(),
+        "{}",
+        slow.amplitude_rate
+    );
+    let judged = judge(
+        &oscillator,
+        &solution,
+        &"z = 1/20, A = 1".parse().expect("values"),
+        0.01,
+    )
+    .expect("a verdict");
+    assert!(
+        judged.relative_error.is_some_and(|error| error.abs() < 1e-3),
+        "{judged:?}"
+    );
+}

@@ -544,3 +544,17 @@ fn slow_equations_come_nearer_with_their_order() {
         assert!(slope > least, "order {order}: {large} and {small}, slope {slope}");
     }
 }
+
+/// The variation of a motion jumps with its velocity at dry friction: that is refused by name, and what has no jump is not.
+#[test]
+fn forces_that_jump_with_the_velocity_are_refused() {
+    let ask = |force: &str| {
+        let equation = format!("x'' + x'/10 + x + {force} = F*cos(Omega*t)");
+        respond(&question(&equation, "Omega", [1.4, 1.5], "F = 1/5"))
+    };
+    for force in ["sgn(x')/20", "H(x')*x", "sgn(x' - 1)/20"] {
+        let error = ask(force).expect_err(force).to_string();
+        assert!(error.contains("jumps with the velocity"), "{force}: {error}");
+    }
+    assert!(ask("x'^2*sgn(x')/20").is_ok());
+}

@@ -44,6 +44,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
+use crate::solution::modulation::Release;
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Response, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
@@ -150,6 +151,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     definitions.extend(scaling.bookkeeping.clone());
     validity.extend(root.clone().map(Note::Positive));
+    // Where the amplitude changes the motion has a start.
+    let changes = limit_cycle.is_none() && !amplitude_rate.is_zero();
     let modulation = Modulation {
         amplitude,
         phase: names.phase,
@@ -157,7 +160,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         phase_rate: Expr::from(&phase_rate),
         small_with: scaling.small_with.clone(),
         resonance: None,
-        release: None,
+        release: changes.then(Release::at_start),
         transient: None,
         steady: limit_cycle.iter().flat_map(|cycle| cycle.cycles.clone()).collect(),
     };

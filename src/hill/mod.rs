@@ -264,7 +264,7 @@ struct Hill {
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
 /// let curves = transition_curves(&mathieu, &Options { order: 2, tongues: 1, ..Options::default() })?;
 /// let formulas: Vec<String> = curves.curves.iter().map(|curve| format!("{}: {}", curve.name, curve.middle)).collect();
-/// assert_eq!(formulas, ["a0: -1/8*eps^2", "a1: 1 - 1/2*eps - 1/32*eps^2", "b1: 1 + 1/2*eps - 1/32*eps^2"]);
+/// assert_eq!(formulas, ["a0: -eps^2/8", "a1: 1 - eps/2 - eps^2/32", "b1: 1 + eps/2 - eps^2/32"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn transition_curves(oscillator: &Oscillator, options: &Options) -> Result<TransitionCurves, HillError> {

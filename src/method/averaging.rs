@@ -26,7 +26,7 @@
 //! let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?;
 //! let options = Options { method: Some(Method::Averaging), order: Some(2), ..Options::default() };
 //! let slow = solve(&oscillator, &options)?.modulation.ok_or("none")?;
-//! assert_eq!(slow.amplitude_rate.to_string(), "a*mu/2 - a^3*mu/8");
+//! assert_eq!(slow.amplitude_rate.to_string(), "mu*a/2 - mu*a^3/8");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

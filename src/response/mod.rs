@@ -355,7 +355,7 @@ impl Question {
         parameter: &str,
         range: [f64; 2],
         values: &str,
-    ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
+    ) -> Result<Self, Box<dyn std::error::Error>> {
         Ok(Self {
             oscillator: Oscillator::parse(equation)?,
             values: values.parse()?,

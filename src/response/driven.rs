@@ -75,9 +75,15 @@ fn jump_of_velocity(oscillator: &Oscillator) -> Result<Option<Expr>, ResponseErr
         if !term.unique_nodes().any(jumps) {
             continue;
         }
+        // Another argument than the velocity itself is zero somewhere else.
+        let elsewhere =
+            |part: &&Expr| jumps(part) && part.children().any(|argument| argument.as_symbol() != Some(velocity));
+        if term.unique_nodes().any(|part| elsewhere(&part)) {
+            return Ok(Some(term.clone()));
+        }
         // What is multiplied by a power of the velocity has no jump where the velocity is zero.
         let difference = &on_side(term, 1)? - &on_side(term, -1)?;
-        if !difference.is_zero() || on_side(term, 1)?.unique_nodes().any(jumps) {
+        if !difference.is_zero() {
             return Ok(Some(term.clone()));
         }
     }

@@ -113,7 +113,7 @@ fn validity<'a>(curves: &TransitionCurves) -> Vec<Block<'a>> {
     }
     if curves.curves.iter().any(|curve| curve.under_root.is_some()) {
         blocks.push(Block::Note(
-            "where what stands under the root is negative, the tongue does not reach so far: rest is stable there"
+            "where what stands under the root is negative, the tongue does not reach so far: with positive damping rest is stable there"
                 .to_owned(),
         ));
     }

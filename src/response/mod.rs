@@ -383,6 +383,9 @@ impl<'a> Asked<'a> {
             oscillator, parameter, ..
         } = question;
         let known = &oscillator.parameters;
+        if !oscillator.force.contains(Symbol::new("t")) {
+            return Err(ResponseError::NoDrive);
+        }
         if !known.contains(parameter) {
             return Err(ResponseError::NoParameter {
                 name: *parameter,

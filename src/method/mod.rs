@@ -465,7 +465,20 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     // A drive has a method of its own.
     let driven = Some(default_method(oscillator)).filter(|method| *method == Method::MultipleScales);
-    let Some(method) = options.method.or(driven) else {
+    let asked = options.method.or(driven);
+    // What damps is not seen at the order 0, and rules a periodic motion out all the same.
+    if options.order == Some(0) && asked.is_none_or(|method| method == Method::LindstedtPoincare) {
+        let first = Options {
+            order: Some(1),
+            ..options.clone()
+        };
+        if let Err(refusal) = solve_by(Method::LindstedtPoincare, oscillator, &first)
+            && is_of_damping(&refusal, oscillator)
+        {
+            return Err(refusal);
+        }
+    }
+    let Some(method) = asked else {
         let periodic = solve_by(Method::LindstedtPoincare, oscillator, options);
         return match &periodic {
             Err(refusal) if is_of_damping(refusal, oscillator) && options.cycle.is_none() => {

@@ -494,3 +494,25 @@ fn a_tenth_is_left_at_the_time_of_a_straight_line() {
     assert!((formula - 0.9 * std::f64::consts::PI / 0.08).abs() < 1e-9, "{formula}");
     assert!((truth - formula).abs() < 1e-6, "{truth} and {formula}");
 }
+
+/// The order 0 leaves damping out of sight, not out of the motion.
+#[test]
+fn a_damped_motion_has_no_law_of_order_nought() {
+    for equation in ["x'' + 2*zeta*x' + x = 0", "x'' + alpha*sgn(x') + x = 0"] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        for method in [None, Some(Method::LindstedtPoincare)] {
+            let options = Options {
+                method,
+                order: Some(0),
+                ..Options::default()
+            };
+            assert!(solve(&oscillator, &options).is_err(), "{equation}, {method:?}");
+        }
+    }
+    let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an oscillator");
+    let options = Options {
+        order: Some(0),
+        ..Options::default()
+    };
+    assert!(solve(&duffing, &options).is_ok());
+}

@@ -1,0 +1,337 @@
+//! The options of the command line.
+
+use super::{path, run};
+
+/// The long options that the help of a command lists.
+fn options_of(command: &str) -> Vec<String> {
+    let help = run(&[command, "--help"]).1;
+    let lines = help.lines().map(str::trim);
+    let names = lines.filter_map(|line| {
+        let at = line.strip_prefix("-h, ").unwrap_or(line).strip_prefix("--")?;
+        at.split([' ', '=']).next().map(str::to_owned)
+    });
+    names.filter(|name| name != "help").collect()
+}
+
+/// A file of claims.
+const AUDIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/frequencies.toml");
+
+#[test]
+fn every_option_changes_the_answer_or_is_refused_by_name() {
+    let cubic = "x'' + x + eps*x^3 + eps*x^5 = 0";
+    let well = "x'' - x + x^3 = 0";
+    let cycles = "x'' + x - eps*(1 - x^2 + x^4/20)*x' = 0";
+    let file = path("output").with_extension("svg");
+    let file = file.to_str().expect("a path in text");
+    let simulated = ["simulate"];
+    let swept = [
+        "simulate",
+        "--format",
+        "csv",
+        "--sweep",
+        "zeta=0.1:0.2:2",
+        "--sweep",
+        "alpha=0.1:0.2:2",
+    ];
+    let own = ["simulate", "x'' + k*x = 0", "--from", "x=1", "--at", "k=1"];
+    let hill = [
+        "stability",
+        "x'' + (delta + eps*cos(Omega*t))*x = 0",
+        "--at",
+        "eps=1",
+        "--at",
+        "Omega=2",
+    ];
+    let driven = [
+        "response",
+        "x'' + x'/5 + x + x^3 - F*cos(Omega*t) = 0",
+        "--vary",
+        "Omega=0.5:1.5",
+        "--at",
+        "F=0.2",
+    ];
+    let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
+    // Command, what stands beside the option, the option.
+    let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
+        ("derive", vec![cubic], vec!["--method", "energy-balance"]),
+        ("derive", vec![cubic], vec!["--order", "1"]),
+        ("derive", vec![cubic], vec!["--amplitude", "first-harmonic"]),
+        ("derive", vec![cubic], vec!["--small", "A"]),
+        (
+            "derive",
+            vec![cubic, "--method", "energy-balance"],
+            vec!["--small", "nu"],
+        ),
+        ("derive", vec![well], vec!["--about", "x=1"]),
+        ("derive", vec![cubic], vec!["--taylor", "5"]),
+        ("derive", vec![cubic, "--method", "max-min"], vec!["--taylor", "5"]),
+        (
+            "derive",
+            vec!["pendulum", "--method", "parameter-expansion"],
+            vec!["--taylor", "5"],
+        ),
+        ("derive", vec![cubic], vec!["--hbar", "-1/2"]),
+        ("derive", vec!["forced-duffing"], vec!["--resonance", "1:3"]),
+        ("derive", vec![cubic], vec!["--resonance", "1:3"]),
+        (
+            "derive",
+            vec![cubic, "--method", "multiple-scales"],
+            vec!["--resonance", "1:3"],
+        ),
+        ("derive", vec![cycles], vec!["--cycle", "2"]),
+        ("derive", vec!["pendulum"], vec!["--cycle", "1"]),
+        (
+            "derive",
+            vec!["pendulum", "--method", "energy-balance"],
+            vec!["--cycle", "1"],
+        ),
+        ("derive", vec!["pendulum", "--method", "exact"], vec!["--order", "3"]),
+        ("derive", vec!["pendulum"], vec!["--at", "A=1"]),
+        ("derive", vec!["pendulum"], vec!["--steps"]),
+        ("derive", vec!["pendulum"], vec!["--format", "csv"]),
+        ("derive", vec!["pendulum"], vec!["--format", "json"]),
+        ("derive", vec!["pendulum"], vec!["--output", file]),
+        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
+        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
+        ("derive", vec!["pendulum"], vec!["--timeout", "1e-9"]),
+        ("derive", vec!["pendulum"], vec!["--quiet"]),
+        ("compare", vec![cubic, "--at", "eps=1"], vec!["--at", "A=1"]),
+        (
+            "compare",
+            vec![cubic, "--at", "eps=1", "--at", "A=1", "--format", "json"],
+            vec!["--small", "A"],
+        ),
+        (
+            "compare",
+            vec![cubic, "--at", "eps=1", "--at", "A=1"],
+            vec!["--small", "nu"],
+        ),
+        ("compare", vec![well, "--at", "A=1/10"], vec!["--about", "x=1"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "csv"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "latex"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--output", file]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--timeout", "1e-9"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--quiet"]),
+        ("impact", vec![], vec!["--at", "A=1"]),
+        ("impact", vec![], vec!["--method", "pade"]),
+        ("impact", vec![], vec!["--order", "6"]),
+        ("impact", vec![], vec!["--amplitude", "first-harmonic"]),
+        ("impact", vec![], vec!["--force", "gamma*d^2"]),
+        ("impact", vec![], vec!["--contact", "power-law"]),
+        ("impact", vec![], vec!["--contact", "all"]),
+        ("impact", vec!["--compare"], vec!["--contact", "equal-energy"]),
+        ("impact", vec!["--compare"], vec!["--contact", "all"]),
+        ("impact", vec![], vec!["--left"]),
+        ("impact", vec![], vec!["--compare"]),
+        ("impact", vec![], vec!["--format", "csv"]),
+        ("impact", vec![], vec!["--format", "latex"]),
+        ("impact", vec![], vec!["--output", file]),
+        ("impact", vec![], vec!["--plot", "-"]),
+        ("impact", vec![], vec!["--tolerance", "1e-9"]),
+        ("impact", vec![], vec!["--timeout", "1e-9"]),
+        ("impact", vec![], vec!["--quiet"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--sample", "1"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--chain"]),
+        ("simulate", swept[1..].to_vec(), vec!["--chain"]),
+        ("simulate", swept[1..].to_vec(), vec!["--baseline"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--baseline"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--jobs", "1"]),
+        ("simulate", swept[1..].to_vec(), vec!["--sample", "1"]),
+        ("simulate", swept[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--format", "latex"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--format", "csv"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--output", file]),
+        ("simulate", simulated[1..].to_vec(), vec!["--plot", "-"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--tolerance", "1e-15"]),
+        ("simulate", long[1..].to_vec(), vec!["--timeout", "1e-9"]),
+        (
+            "simulate",
+            [&long[1..], &["--timeout", "1e-9"]].concat(),
+            vec!["--quiet"],
+        ),
+        ("simulate", own[1..].to_vec(), vec!["--from", "x'=0.5"]),
+        ("simulate", own[1..].to_vec(), vec!["--until", "3"]),
+        ("simulate", own[1..4].to_vec(), vec!["--at", "k=2"]),
+        ("simulate", own[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", own[1..].to_vec(), vec!["--chain"]),
+        ("simulate", own[1..].to_vec(), vec!["--sample", "1"]),
+        ("simulate", own[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
+        ("simulate", own[1..4].to_vec(), vec!["--sweep", "k=1:2:3"]),
+        ("simulate", own[1..].to_vec(), vec!["--sweep", "x'=1:2:3"]),
+        ("simulate", own[1..].to_vec(), vec!["--every", "pi"]),
+        ("simulate", own[1..].to_vec(), vec!["--section", "x'"]),
+        ("simulate", own[1..].to_vec(), vec!["--after", "10"]),
+        (
+            "simulate",
+            [&own[1..], &["--every", "pi"]].concat(),
+            vec!["--after", "10"],
+        ),
+        ("simulate", vec![], vec!["--every", "pi"]),
+        ("simulate", vec![], vec!["--section", "x'"]),
+        ("simulate", vec![], vec!["--after", "1"]),
+        ("simulate", own[1..].to_vec(), vec!["--plot", "-"]),
+        ("simulate", vec![], vec!["--from", "x=1"]),
+        ("simulate", vec![], vec!["--until", "3"]),
+        ("simulate", vec![], vec!["--at", "k=2"]),
+        ("lagrange", vec![], vec!["--at", "m=1"]),
+        ("lagrange", vec![], vec!["--format", "latex"]),
+        ("lagrange", vec![], vec!["--output", file]),
+        ("lagrange", vec![], vec!["--plot", "-"]),
+        ("lagrange", vec![], vec!["--tolerance", "0.1"]),
+        ("lagrange", vec![], vec!["--timeout", "1e-9"]),
+        ("lagrange", vec![], vec!["--quiet"]),
+        ("stability", hill[1..].to_vec(), vec!["--order", "2"]),
+        ("stability", hill[1..].to_vec(), vec!["--tongues", "1"]),
+        ("stability", hill[1..].to_vec(), vec!["--for", "Omega"]),
+        ("stability", hill[1..].to_vec(), vec!["--small", "delta"]),
+        ("stability", hill[1..].to_vec(), vec!["--at", "eps=1/2"]),
+        ("stability", hill[1..].to_vec(), vec!["--format", "csv"]),
+        ("stability", hill[1..].to_vec(), vec!["--format", "latex"]),
+        ("stability", hill[1..].to_vec(), vec!["--output", file]),
+        ("stability", hill[1..].to_vec(), vec!["--plot", "-"]),
+        ("stability", hill[1..].to_vec(), vec!["--tolerance", "1e-9"]),
+        ("stability", hill[1..].to_vec(), vec!["--timeout", "1e-9"]),
+        ("stability", hill[1..].to_vec(), vec!["--quiet"]),
+        ("friction", vec![], vec!["--alpha", "0.1"]),
+        ("friction", vec![], vec!["--amplitude", "1"]),
+        ("friction", vec![], vec!["--speed", "0.01"]),
+        ("friction", vec![], vec!["--format", "latex"]),
+        ("friction", vec![], vec!["--output", file]),
+        ("friction", vec![], vec!["--plot", "-"]),
+        ("friction", vec![], vec!["--tolerance", "0.1"]),
+        ("friction", vec![], vec!["--timeout", "1e-9"]),
+        ("materials", vec![], vec!["--only-own"]),
+        ("materials", vec![], vec!["--chain"]),
+        ("materials", vec![], vec!["--format", "latex"]),
+        ("materials", vec![], vec!["--output", file]),
+        ("materials", vec![], vec!["--plot", "-"]),
+        ("materials", vec![], vec!["--tolerance", "0.1"]),
+        ("materials", vec![], vec!["--timeout", "1e-9"]),
+        ("materials", vec![], vec!["--quiet"]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--seed", "2"]),
+        ("optimize", vec!["--budget", "300"], vec!["--runs", "2"]),
+        // The result is the same for any number of threads.
+        ("optimize", vec!["--budget", "300"], vec!["--jobs", "0"]),
+        ("optimize", vec!["--runs", "1"], vec!["--budget", "300"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--record", "-"],
+        ),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--resume", "-"],
+        ),
+        ("optimize", vec!["--budget", "0.000001s"], vec!["--quiet"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--format", "latex"],
+        ),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--output", file],
+        ),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--plot", "-"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--tolerance", "0.1"],
+        ),
+        (
+            "optimize",
+            vec!["--runs", "2", "--budget", "600"],
+            vec!["--timeout", "1e-9"],
+        ),
+        (
+            "response",
+            vec![driven[1], "--at", "F=0.2"],
+            vec!["--vary", "Omega=0.5:1.5"],
+        ),
+        ("response", driven[1..4].to_vec(), vec!["--at", "F=2"]),
+        ("response", driven[1..].to_vec(), vec!["--method", "pade"]),
+        ("response", driven[1..].to_vec(), vec!["--method", "multiple-scales"]),
+        ("response", driven[1..].to_vec(), vec!["--order", "2"]),
+        ("response", driven[1..].to_vec(), vec!["--periods", "2"]),
+        ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
+        ("response", driven[1..].to_vec(), vec!["--format", "latex"]),
+        ("response", driven[1..].to_vec(), vec!["--output", file]),
+        ("response", driven[1..].to_vec(), vec!["--plot", "-"]),
+        (
+            "response",
+            [&driven[1..], &["--order", "3"]].concat(),
+            vec!["--tolerance", "1e-7"],
+        ),
+        ("response", driven[1..].to_vec(), vec!["--timeout", "1e-9"]),
+        ("response", driven[1..].to_vec(), vec!["--quiet"]),
+        ("audit", vec![AUDIT], vec!["--strict"]),
+        ("audit", vec![AUDIT], vec!["--format", "latex"]),
+        ("audit", vec![AUDIT], vec!["--format", "csv"]),
+        ("audit", vec![AUDIT], vec!["--output", file]),
+        ("audit", vec![AUDIT], vec!["--plot", "-"]),
+        ("audit", vec![AUDIT], vec!["--tolerance", "0.1"]),
+        ("audit", vec![AUDIT], vec!["--timeout", "1e-9"]),
+        ("paper", vec![], vec!["--strict"]),
+        ("paper", vec![], vec!["--format", "latex"]),
+        ("paper", vec![], vec!["--output", file]),
+        ("paper", vec![], vec!["--plot", "-"]),
+        ("paper", vec![], vec!["--tolerance", "0.1"]),
+        ("paper", vec![], vec!["--timeout", "1e-9"]),
+        ("catalog", vec![], vec!["--format", "csv"]),
+        ("catalog", vec![], vec!["--format", "json"]),
+        ("catalog", vec![], vec!["--output", file]),
+        ("catalog", vec![], vec!["--plot", "-"]),
+        ("catalog", vec![], vec!["--tolerance", "0.1"]),
+        ("catalog", vec![], vec!["--timeout", "1e-9"]),
+        ("catalog", vec![], vec!["--quiet"]),
+        ("schema", vec!["impact"], vec!["--output", file]),
+        ("schema", vec!["impact"], vec!["--quiet"]),
+    ];
+    for command in [
+        "derive",
+        "compare",
+        "impact",
+        "simulate",
+        "response",
+        "lagrange",
+        "friction",
+        "materials",
+        "optimize",
+        "audit",
+        "paper",
+        "catalog",
+        "schema",
+    ] {
+        for name in options_of(command) {
+            let option = format!("--{name}");
+            assert!(
+                table
+                    .iter()
+                    .any(|(known, _, words)| *known == command && words[0] == option),
+                "{command} {option} is not tried"
+            );
+        }
+    }
+    for (command, beside, option) in table {
+        let base = run(&[&[command], beside.as_slice()].concat());
+        let answer = run(&[&[command], beside.as_slice(), option.as_slice()].concat());
+        let word = option[0].trim_start_matches('-');
+        let named = !matches!(answer.0, Some(1 | 2))
+            || answer.2.contains(word)
+            || answer.2.contains(option[option.len() - 1])
+            || word == "timeout" && answer.2.contains("stopped after")
+            || word == "plot" && answer.2.contains("picture");
+        assert!(named, "{command} {beside:?} {option:?}: {answer:?}");
+        assert!(
+            answer != base,
+            "{command} {beside:?}: {option:?} changes nothing: {answer:?}"
+        );
+    }
+    let _ = std::fs::remove_file(file);
+}

@@ -61,11 +61,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         other => other?,
     };
     let force = &perturbation.force;
-    let mut taken = oscillator.names();
-    let (linear_frequency, root) = force.linear_frequency(&taken);
-    let constants = constants_beside(force, &linear_frequency);
-    let mut definitions: Vec<Definition> = root.clone().into_iter().chain(constants).collect();
-    taken.extend(definitions.iter().map(|definition| definition.symbol));
+    let LinearPart {
+        frequency: linear_frequency,
+        root,
+        mut definitions,
+        taken,
+    } = LinearPart::of(force, oscillator);
 
     let units = Units::new(force, linear_frequency.clone());
     let excited = self_excitation(&perturbation, &units, &parts, options.cycle, &taken)?;
@@ -131,9 +132,37 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     })
 }
 
+/// The linear part of a force, and the names that it brings with it.
+pub(super) struct LinearPart {
+    /// `omega0`, or what it is a name of.
+    pub(super) frequency: Polynomial,
+    /// What `omega0` stands for, where it is no polynomial.
+    pub(super) root: Option<Definition>,
+    /// That, and the constants of the other terms.
+    pub(super) definitions: Vec<Definition>,
+    /// The names of the equation and of the definitions.
+    pub(super) taken: Vec<Symbol>,
+}
+
+impl LinearPart {
+    pub(super) fn of(force: &PerturbedForce, oscillator: &Oscillator) -> Self {
+        let mut taken = oscillator.names();
+        let (frequency, root) = force.linear_frequency(&taken);
+        let constants = constants_beside(force, &frequency);
+        let definitions: Vec<Definition> = root.clone().into_iter().chain(constants).collect();
+        taken.extend(definitions.iter().map(|definition| definition.symbol));
+        Self {
+            frequency,
+            root,
+            definitions,
+            taken,
+        }
+    }
+}
+
 /// The definitions of the force that a formula about it needs: constants of the linear force alone are written out in that of
 /// the linear frequency.
-pub(super) fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
+fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
     let coefficients = force.terms.iter().map(|term| &term.coefficient);
     let used: BTreeSet<Symbol> = coefficients
         .chain([linear_frequency])

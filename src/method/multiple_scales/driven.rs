@@ -26,7 +26,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, Function, Node};
-use crate::method::lindstedt_poincare::{constants_beside, with_square};
+use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::{Options, Refusal, Unsuited};
 use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
@@ -240,11 +240,12 @@ impl<'a> Question<'a> {
         frequency: &'a Expr,
         resonance: (u32, u32),
     ) -> Result<Self, Refusal> {
-        let mut taken = oscillator.names();
-        let (linear_frequency, root) = scaling.force.linear_frequency(&taken);
-        let constants = constants_beside(&scaling.force, &linear_frequency);
-        let definitions: Vec<Definition> = root.clone().into_iter().chain(constants).collect();
-        taken.extend(definitions.iter().map(|definition| definition.symbol));
+        let LinearPart {
+            frequency: linear_frequency,
+            root,
+            definitions,
+            taken,
+        } = LinearPart::of(&scaling.force, oscillator);
         Ok(Self {
             oscillator,
             scaling,

@@ -35,7 +35,7 @@ use num_traits::{One, Zero};
 use self::scaling::{Scaling, scaling};
 use self::slow_times::{Amplitude, Complex, DrivenTerm, Expansion, Scaled, Wave};
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, chosen};
-use super::lindstedt_poincare::{constants_beside, with_square};
+use super::lindstedt_poincare::{LinearPart, with_square};
 use super::{Options, Refusal, Unsuited};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
@@ -45,7 +45,7 @@ use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
-use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Response, Solution};
+use crate::solution::{AmplitudeConvention, Law, LimitCycle, Method, Modulation, Note, Response, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// The highest order in a parameter.
@@ -73,11 +73,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let highest = [HIGHEST_IN_PARAMETER, HIGHEST_IN_AMPLITUDE];
     let scaling = scaling(oscillator, &parts, options, [2, 4], highest)?;
     let force = &scaling.force;
-    let mut taken = oscillator.names();
-    let (linear_frequency, root) = force.linear_frequency(&taken);
-    let constants = constants_beside(force, &linear_frequency);
-    let mut definitions: Vec<Definition> = root.clone().into_iter().chain(constants).collect();
-    taken.extend(definitions.iter().map(|definition| definition.symbol));
+    let LinearPart {
+        frequency: linear_frequency,
+        root,
+        mut definitions,
+        taken,
+    } = LinearPart::of(force, oscillator);
 
     let units = Units::new(force, linear_frequency.clone());
     let cycles = cycles(&scaling, &units, options, &taken)?;

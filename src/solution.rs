@@ -259,10 +259,11 @@ impl Solution {
         Ok(values)
     }
 
-    /// The slow equations, where the amplitude changes or a force drives the motion; of a periodic motion none.
+    /// The slow equations, where the motion is one whose amplitude changes; of a periodic motion none.
     pub fn slow(&self) -> Option<&Modulation> {
         let slow = self.modulation.as_ref();
-        slow.filter(|modulation| !modulation.is_conservative() && modulation.release.is_some())
+        let free = slow.filter(|modulation| !modulation.is_conservative() && modulation.release.is_some());
+        free.filter(|_| self.limit_cycle.is_none())
     }
 
     /// The law that only numbers solve, in one line.
@@ -335,6 +336,8 @@ impl Solution {
             .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
         if let Some(slow) = &mut self.modulation {
             slow.round(&round);
+            let motion = slow.motion.take();
+            slow.motion = motion.map(|motion| motion.map(POLYNOMIALS, |coefficient, _| rounded(coefficient)));
             // Formulas in rounded numbers of many digits say less than the slow equations themselves.
             if let (Some(_), Some(release)) = (slow.transient.take(), &mut slow.release) {
                 for part in [&mut release.amplitude, &mut release.phase] {

@@ -394,12 +394,19 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbo
     if let Some(residual) = verification.residual {
         line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
     }
-    // Of a motion that is not periodic it is not measured.
-    if verification.followed.is_none() {
-        let slope = verification.slope;
-        let slope = slope.map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}"));
-        line("slope of the error", slope);
-    }
+    let slope = |slope: Option<f64>| slope.map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}"));
+    let slope = match &verification.followed {
+        None => slope(verification.slope),
+        Some(followed) => match (verification.slope, followed.amplitude_slope) {
+            (None, None) => "not measured".to_owned(),
+            (deviation, amplitude) => format!(
+                "{} of the deviation, {} of the amplitude, over times of 1/small",
+                slope(deviation),
+                slope(amplitude)
+            ),
+        },
+    };
+    line("slope of the error", slope);
     for (name, value) in &verification.chosen {
         let how = if *name == hbar { " (least squared residual)" } else { "" };
         line(name.name(), format!("{}{how}", significant(*value, 6)));

@@ -33,14 +33,13 @@
 pub(crate) mod action;
 mod projections;
 mod small_terms;
-pub(crate) mod transient;
 
 use num_traits::Zero;
 
 use self::small_terms::SmallTerms;
 use super::limit_cycle::{AmplitudeEquation, Units};
 use super::secular::bounded;
-use super::{Options, Refusal, Unsuited, first_term, not_polynomial};
+use super::{Options, Refusal, Unsuited, first_term, not_polynomial, transient};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
@@ -199,19 +198,10 @@ impl Averaged {
         let transient = match amplitude_rate.is_zero() {
             true => None,
             false => {
-                // A start that is no more than A itself needs no name.
-                let mut named = |wanted: &str, meaning: &mut Expr| {
-                    if meaning.is_zero() || meaning.as_symbol().is_some() {
-                        return meaning.clone();
-                    }
-                    let symbol = fresh(wanted, &taken);
-                    let meaning = std::mem::replace(meaning, Expr::from(symbol));
-                    definitions.push(Definition { symbol, meaning });
-                    Expr::from(symbol)
-                };
-                let start = named("a0", &mut release.amplitude);
-                let phase = named("psi0", &mut release.phase);
-                transient::closed(a, &amplitude_rate, &phase_rate, [&start, &phase])
+                let (named, transient) =
+                    transient::from_release(a, [&amplitude_rate, &phase_rate], &mut release, &taken);
+                definitions.extend(named);
+                transient
             }
         };
         Ok(Solution {
@@ -237,6 +227,7 @@ impl Averaged {
                 release: Some(release),
                 transient,
                 steady: self.steady,
+                motion: None,
             }),
             response: None,
             numerical: false,

@@ -35,6 +35,7 @@ pub(crate) mod parameter_expansion;
 mod quotation;
 pub mod secular;
 pub mod table;
+pub(crate) mod transient;
 pub(crate) mod variational_iteration;
 
 pub use harmonic_balance::MOST_HARMONICS;
@@ -635,6 +636,10 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     if !solution.displacement.is_zero() {
         let position = FourierSeries::constant(POLYNOMIALS, position);
         solution.displacement = solution.displacement.sum(&position);
+        let motion = solution.modulation.as_mut().and_then(|slow| slow.motion.as_mut());
+        if let Some(motion) = motion {
+            *motion = motion.sum(&position);
+        }
     }
     solution.equation = oscillator.equation();
     if centred.numerical {

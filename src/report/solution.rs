@@ -50,6 +50,9 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
     sections.push(std::iter::once(Block::Motion(solution)).chain(definitions).collect());
     if let Some(slow) = solution.slow() {
         sections.extend(slow_motion(slow));
+    } else if solution.limit_cycle.is_some() {
+        let slow = solution.modulation.as_ref().filter(|slow| slow.release.is_some());
+        sections.extend(slow.into_iter().flat_map(|slow| approach(solution, slow)));
     }
     let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
     let heading = Block::Heading("Validity".to_owned());
@@ -116,9 +119,20 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
         };
         sections.push(slow.steady.iter().map(line).collect());
     }
-    let Some(transient) = &slow.transient else {
-        return sections;
-    };
+    sections.extend(from_start(slow));
+    sections
+}
+
+/// Towards a limit cycle or away from it: the slow equations, and the motion from its start in closed form.
+fn approach<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Vec<Block<'a>>> {
+    let mut blocks = vec![Block::Heading("Off the cycle".to_owned())];
+    blocks.extend(slow_equations(solution, slow));
+    std::iter::once(blocks).chain(from_start(slow)).collect()
+}
+
+/// The motion from its start in closed form, where there is one.
+fn from_start(slow: &Modulation) -> Option<Vec<Block<'_>>> {
+    let transient = slow.transient.as_ref()?;
     let start = transient.start;
     let phase = transient.phase.as_ref().map(|phase| Block::Equality {
         left: Expr::from(slow.phase),
@@ -143,8 +157,7 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
         .into_iter()
         .chain(phase)
         .chain(ends);
-    sections.push(blocks.collect());
-    sections
+    Some(blocks.collect())
 }
 
 /// The verdict, with what of it is worth saying.

@@ -13,8 +13,9 @@
 //! The displacement of the solution is the series in `theta`, its coefficients in `a`.
 
 use super::{AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, LimitCycle, Solution};
-use crate::exact::{POLYNOMIALS, Polynomial, Rational};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
+use crate::series::FourierSeries;
 use crate::symbol::{Symbol, fresh};
 
 /// The equations of amplitude and phase, and what is known of their solutions.
@@ -38,6 +39,8 @@ pub struct Modulation {
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first, each with its stability, where they can be written down.
     pub steady: Vec<LeadingCycle>,
+    /// Where the displacement of the solution is that on a limit cycle: the motion in the amplitude.
+    pub motion: Option<FourierSeries<Polynomials>>,
 }
 
 /// A driving frequency near a rational multiple of the linear frequency, `n Omega = m omega0 + sigma`.
@@ -108,6 +111,21 @@ impl Modulation {
 }
 
 impl Solution {
+    /// The motion from a start, where this is that on the limit cycle on which it may end; `None` for any other.
+    pub fn off_cycle(&self) -> Option<Self> {
+        self.limit_cycle.as_ref()?;
+        let modulation = self.modulation.as_ref()?;
+        modulation.release.as_ref()?;
+        let frequency = modulation.phase_rate.to_polynomial(&mut |_| None).ok()??;
+        let displacement = modulation.motion.clone()?;
+        Some(Self {
+            law: Law::Frequency(frequency),
+            displacement,
+            limit_cycle: None,
+            ..self.clone()
+        })
+    }
+
     /// The periodic motion at an amplitude that stays: the smallest that attracts for small positive parameters, else the smallest;
     /// `None` where none is known.
     pub fn on_cycle(&self) -> Option<Self> {

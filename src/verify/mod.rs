@@ -24,6 +24,7 @@ mod driven;
 mod free_motion;
 mod orbit;
 mod reach;
+mod slow_motion;
 mod transient;
 pub(crate) mod validity;
 pub(crate) mod well;
@@ -102,7 +103,8 @@ pub struct Verification {
     pub max_deviation: Option<f64>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
-    /// Measured exponent of the frequency error; `None` where rounding hides it.
+    /// Measured exponent of the frequency error; of a motion followed from its start that of `max_deviation`, over times that grow as
+    /// what is small becomes less. `None` where rounding hides it.
     pub slope: Option<f64>,
     /// Where the formula holds, in words and numbers; what lies outside is marked.
     pub ranges: Vec<validity::Range>,
@@ -255,6 +257,9 @@ pub fn judge(
     if let Some(response) = &solution.response {
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
+    if let Some(moving) = off_cycle(solution, at) {
+        return judge(oscillator, &moving, at, tolerance);
+    }
     let settled = on_cycle(solution, at);
     if let (Some(slow), None) = (solution.slow(), &settled) {
         let numbers = checked_numbers(solution, at)?;
@@ -318,6 +323,12 @@ fn periodic(solution: &Solution) -> Result<(), VerificationError> {
         true => Err(VerificationError::NotPeriodic),
         false => Ok(()),
     }
+}
+
+/// The motion from the start that is given, where the solution is that on a limit cycle.
+fn off_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
+    at.get(AmplitudeConvention::Initial.symbol())?;
+    solution.off_cycle()
 }
 
 /// Slow equations where their motion has settled, unless a start is given.
@@ -400,6 +411,9 @@ pub fn motions(
 ) -> Result<Option<Motions>, VerificationError> {
     if let Some(response) = &solution.response {
         return driven::motions(oscillator, solution, response, at);
+    }
+    if let Some(moving) = off_cycle(solution, at) {
+        return motions(oscillator, &moving, at);
     }
     let symbol = amplitude_symbol(solution);
     let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
@@ -625,6 +639,12 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         .filter_map(error)
         .take_while(|error| *error >= floor)
         .collect();
+    slopes_of(&errors)
+}
+
+/// The exponent of errors of which each belongs to half of what the one before does: the slopes between them, which approach their
+/// limit linearly, carried on to zero.
+fn slopes_of(errors: &[f64]) -> Option<f64> {
     let slopes: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
     match *slopes.as_slice() {
         [.., before, last] if (last - before).abs() < 0.5 => Some(2.0 * last - before),

@@ -7,23 +7,31 @@
 //! frequency      = the same of the formula, with as many of its own
 //! amplitude_error = max |x_formula - x_true|/|A|  at the true turning points, x_formula that of the same half swing at its turn
 //! max_deviation  = max |x_formula(t) - x_true(t)|/|A|
+//! residual       = rms of x'' + f(x, x') along the formula / rms of f
+//! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, over times that grow as 1/delta
 //! ```
+//!
+//! Slow equations of order n are off by `delta^(n+1)`, over times of `1/delta` by `delta^n`: that is the slope to expect. It may be
+//! more where a coefficient of the error vanishes.
+//!
+//! Reference: J. A. Sanders, F. Verhulst, J. Murdock, *Averaging Methods in Nonlinear Dynamical Systems*, 2nd ed., Springer 2007,
+//! theorems 2.8.1 and 2.9.2.
 
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::free_motion::{FreeMotion, Start};
+use super::slow_motion::{LOOKS, SlowMotion};
 use super::validity::Range;
-use super::{Motions, Sample, Verdict, Verification, VerificationError};
+use super::{Motions, Sample, Verdict, Verification, VerificationError, slopes_of};
 use crate::decimal::decimal;
+use crate::exact::Rational;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::averaging::action::falls_to;
 use crate::method::numbers::{NoNumbers, symbol_values};
-use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Options as Integration, Point, integrate_first_order};
+use crate::method::{Options, solve};
 use crate::oscillator::Oscillator;
-use crate::solution::modulation::Release;
 use crate::solution::{AmplitudeConvention, Modulation, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -40,6 +48,9 @@ pub struct Followed {
     pub crossings: usize,
     /// The largest error of the turning points, over the amplitude at the start.
     pub amplitude_error: Option<f64>,
+    /// The measured exponent of that error, over times that grow as what is small becomes less; `None` where rounding hides it, or
+    /// nothing can be made smaller.
+    pub amplitude_slope: Option<f64>,
     /// When the amplitude is a tenth of that of the start: by the formula.
     pub tenth: Option<f64>,
     /// By the action, which viscous damping drains at one rate whatever the force; `None` for any other damping.
@@ -47,13 +58,6 @@ pub struct Followed {
     /// The same in truth, between turning points on the logarithm.
     pub true_tenth: Option<f64>,
 }
-
-/// Periods after which a motion is left.
-const MOST_PERIODS: f64 = 50.0;
-/// Periods that are always followed.
-const LEAST_PERIODS: f64 = 3.0;
-/// How often in a period a motion is looked at.
-const LOOKS: f64 = 32.0;
 
 /// Judges slow equations from a start.
 ///
@@ -87,11 +91,9 @@ pub(super) fn judge(
     let true_frequency = mean(reference).ok_or(VerificationError::NoSwing)?;
     let frequency = mean(&crossings[..count]);
     let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
-    let turns = truth.turns.iter().filter(|(t, _)| t <= until);
-    let apart = turns.map(|&(t, x)| (slow.turned(t, x) - x).abs() / start.abs());
-    let amplitude_error = largest(apart);
-    let times = (0..=samples(*until, slow.period)).map(|k| until * k as f64 / samples(*until, slow.period) as f64);
-    let deviation = largest(times.map(|t| (slow.at(t).0 - truth.at(t).0).abs() / start.abs()));
+    let errors = judged.errors(*until);
+    let amplitude_error = errors.amplitude;
+    let slopes = slopes(oscillator, solution, numbers, &judged);
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let outside = amplitude_error.is_none_or(|error| error > tolerance);
     let ranges = amplitude_error.map(|error| Range {
@@ -110,9 +112,9 @@ pub(super) fn judge(
         relative_error,
         judged_on: "omega",
         error_of_omega: None,
-        max_deviation: deviation,
-        residual: None,
-        slope: None,
+        max_deviation: errors.deviation,
+        residual: judged.residual(oscillator, numbers),
+        slope: slopes.deviation,
         ranges: ranges.filter(|range| range.outside).into_iter().collect(),
         chosen: vec![],
         values: symbols.values,
@@ -124,6 +126,7 @@ pub(super) fn judge(
             reason,
             crossings: count,
             amplitude_error,
+            amplitude_slope: slopes.amplitude,
             tenth: slow.falls_to(start.abs() / 10.0, truth.end()),
             tenth_by_action: falls_to(oscillator, &solution.equilibrium, numbers, [*start, start / 10.0]),
             true_tenth: truth.falls_to(start.abs() / 10.0),
@@ -188,6 +191,14 @@ struct Judged {
     start: f64,
 }
 
+/// How far a formula is off, over the amplitude at the start.
+struct Errors {
+    /// At the turning points.
+    amplitude: Option<f64>,
+    /// At any time.
+    deviation: Option<f64>,
+}
+
 impl Judged {
     fn of(
         oscillator: &Oscillator,
@@ -195,20 +206,32 @@ impl Judged {
         modulation: &Modulation,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
+        let slow = SlowMotion::new(solution, modulation, numbers)?;
+        let (until, reason) = slow.duration();
+        // The true amplitude may come down to a tenth a little later.
+        let longer = until + f64::max(slow.period, 0.1 * until);
+        Self::followed(oscillator, numbers, slow, (until, reason), longer)
+    }
+
+    /// Both from the start, the true motion as long as asked.
+    fn followed(
+        oscillator: &Oscillator,
+        numbers: &BTreeMap<Symbol, f64>,
+        slow: SlowMotion,
+        (until, reason): (f64, &'static str),
+        duration: f64,
+    ) -> Result<Self, VerificationError> {
         let start = numbers
             .get(&AmplitudeConvention::Initial.symbol())
             .copied()
             .unwrap_or(1.0);
-        let slow = SlowMotion::new(solution, modulation, numbers)?;
-        let (until, reason) = slow.duration();
         let truth = FreeMotion::of(
             oscillator,
             numbers,
             &Start {
                 equilibrium: slow.equilibrium,
                 distance: start,
-                // The true amplitude may come down to a tenth a little later.
-                duration: until + f64::max(slow.period, 0.1 * until),
+                duration,
                 step: slow.period / LOOKS,
             },
         )?;
@@ -220,257 +243,137 @@ impl Judged {
             start,
         })
     }
-}
 
-/// The slow equations with numbers, solved from the start.
-struct SlowMotion {
-    /// Amplitude and phase at a time.
-    slow: Slow,
-    /// The motion about the equilibrium in amplitude and phase, and its slopes by both.
-    place: CompiledFunction,
-    slopes: [CompiledFunction; 2],
-    rates: [CompiledFunction; 2],
-    equilibrium: f64,
-    /// The amplitude at the start.
-    start: f64,
-    /// What the phase begins with beside its own start: pi for a negative one, whose size the formula takes.
-    turn: f64,
-    /// 2 pi over the rate of the phase there.
-    period: f64,
-    /// The amplitudes that stay.
-    steady: Vec<f64>,
-    /// When the amplitude is zero, by its closed form.
-    ends: f64,
-}
-
-/// Amplitude and phase at a time.
-type SlowPath = Box<dyn Fn(f64) -> Option<[f64; 2]>>;
-
-/// How amplitude and phase are known.
-enum Slow {
-    /// In closed form, in the time.
-    Closed([CompiledFunction; 2]),
-    /// Point by point, at equal steps, with as many rates.
-    Followed(SlowPath),
-}
-
-impl SlowMotion {
-    fn new(
-        solution: &Solution,
-        modulation: &Modulation,
-        numbers: &BTreeMap<Symbol, f64>,
-    ) -> Result<Self, VerificationError> {
-        let value_of = |name: Symbol| numbers.get(&name).copied();
-        let defined = solution
-            .defined_values(&value_of)
-            .map_err(|name| VerificationError::Missing(vec![name]))?;
-        let mut known = numbers.clone();
-        known.extend(defined);
-        // Slow equations are written for positive amplitudes; those of a polynomial force hold for any.
-        let released = AmplitudeConvention::Initial.symbol();
-        let negative = known.get(&released).is_some_and(|value| *value < 0.0);
-        let simple = modulation.release.as_ref().is_none_or(Release::is_at_start);
-        let turned = negative && simple;
-        if turned && let Some(value) = known.get_mut(&released) {
-            *value = -*value;
+    /// The errors up to a time.
+    fn errors(&self, until: f64) -> Errors {
+        let (slow, truth, start) = (&self.slow, &self.truth, self.start.abs());
+        let turns = truth.turns.iter().filter(|(t, _)| *t <= until);
+        let apart = turns.map(|&(t, x)| (slow.turned(t, x) - x).abs() / start);
+        let count = samples(until, slow.period);
+        let times = (0..=count).map(|k| until * k as f64 / count as f64);
+        Errors {
+            amplitude: largest(apart),
+            deviation: largest(times.map(|t| (slow.at(t).0 - truth.at(t).0).abs() / start)),
         }
-        let exact = known
+    }
+
+    /// What the formula leaves of the equation, over the force.
+    fn residual(&self, oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+        let known = numbers.iter();
+        let known = known.filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
+        let force = oscillator.force.substitute_all(&known.collect()).ok()?;
+        let force = CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
+        let count = samples(self.until, self.slow.period);
+        let (mut defects, mut forces) = (0.0, 0.0);
+        for k in 0..count {
+            let t = self.until * k as f64 / count as f64;
+            let (y, v) = self.slow.at(t);
+            let force = force.call(&[self.slow.equilibrium + y, v]);
+            let defect = self.slow.acceleration(t)? + force;
+            defects += defect * defect;
+            forces += force * force;
+        }
+        Some((defects / forces).sqrt()).filter(|value: &f64| value.is_finite())
+    }
+}
+
+/// The exponents of both errors, as far as they can be measured.
+struct Slopes {
+    amplitude: Option<f64>,
+    deviation: Option<f64>,
+}
+
+/// What is small is halved again and again, and the motion followed twice as long each time.
+fn slopes(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>, judged: &Judged) -> Slopes {
+    const HALVINGS: i32 = 4;
+    /// How long the first motion is followed: the last one is as long as all before.
+    const PERIODS: f64 = 8.0;
+    /// The truth is good to 1e-11, and a hundred times that is measured to a per cent.
+    const FLOOR: f64 = 1e-9;
+    let first = judged.until.min(PERIODS * judged.slow.period);
+    let error = |halving: i32| {
+        if halving == 0 {
+            return Some(judged.errors(first));
+        }
+        let (oscillator, solution, numbers) = smaller(oscillator, solution, numbers, halving)?;
+        let slow = SlowMotion::new(&solution, solution.slow()?, &numbers).ok()?;
+        let until = first * 2.0_f64.powi(halving);
+        let judged = Judged::followed(&oscillator, &numbers, slow, (until, ""), until).ok()?;
+        (judged.until >= until).then(|| judged.errors(until))
+    };
+    let mut errors = vec![];
+    // Where the first cannot be had no other is asked for.
+    for halving in 0..HALVINGS {
+        match error(halving) {
+            Some(found) => errors.push(found),
+            None => break,
+        }
+    }
+    // What is halved is the square of a small amplitude.
+    let power = if is_small_in_amplitude(solution) { 2.0 } else { 1.0 };
+    let measured = |of: fn(&Errors) -> Option<f64>| {
+        let errors: Vec<f64> = errors
             .iter()
-            .filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
-        let exact: BTreeMap<Symbol, Expr> = exact.collect();
-        let with_numbers = |expression: &Expr| expression.substitute_all(&exact);
-        let (a, theta, t) = (modulation.amplitude, Symbol::new("theta"), Symbol::new("t"));
-        let equilibrium = solution.equilibrium.evaluate(numbers)?;
-        let mut waves = vec![-&solution.equilibrium];
-        for (k, cosine, sine) in solution.displacement.harmonics() {
-            let angle = &Expr::from(k as i64) * &Expr::from(theta);
-            waves.push(&Expr::from(&cosine) * &angle.cos()?);
-            waves.push(&Expr::from(&sine) * &angle.sin()?);
+            .map_while(of)
+            .take_while(|error| *error >= FLOOR)
+            .collect();
+        slopes_of(&errors).map(|slope| power * slope)
+    };
+    Slopes {
+        amplitude: measured(|errors| errors.amplitude),
+        deviation: measured(|errors| errors.deviation),
+    }
+}
+
+/// Whether the amplitude is what is small.
+fn is_small_in_amplitude(solution: &Solution) -> bool {
+    solution.small_parameter == solution.amplitude.symbol()
+}
+
+/// The question with all that is small halved so many times: letters in their values, numbers in the equation, for which the answer
+/// is derived again. Where the amplitude is small its square is halved, and a linear damping beside it.
+fn smaller(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    halvings: i32,
+) -> Option<(Oscillator, Solution, BTreeMap<Symbol, f64>)> {
+    if solution.small_parameters().all(|small| numbers.contains_key(&small)) {
+        let mut numbers = numbers.clone();
+        for small in solution.small_parameters() {
+            *numbers.get_mut(&small)? *= 0.5_f64.powi(halvings);
         }
-        let place = with_numbers(&Expr::sum(waves))?;
-        let slope = |by: Symbol| -> Result<_, VerificationError> {
-            Ok(CompiledFunction::new(&place.differentiate(by)?, &[a, theta])?)
-        };
-        let slopes = [slope(a)?, slope(theta)?];
-        let rate = |expression: &Expr| -> Result<_, VerificationError> {
-            Ok(CompiledFunction::new(&with_numbers(expression)?, &[a])?)
-        };
-        let rates = [rate(&modulation.amplitude_rate)?, rate(&modulation.phase_rate)?];
-        let begins = modulation.release.as_ref();
-        let begin = |expression: Option<&Expr>, other: f64| match expression {
-            Some(expression) => expression.evaluate(&known),
-            None => Ok(other),
-        };
-        let released = known.get(&released).copied().unwrap_or(1.0);
-        let start = [
-            begin(begins.map(|release| &release.amplitude), released)?,
-            begin(begins.map(|release| &release.phase), 0.0)?,
-        ];
-        let frequency = rates[1].call(&[start[0]]);
-        if !(frequency > 0.0 && frequency.is_finite()) {
-            return Err(VerificationError::NoSlowFrequency);
-        }
-        let period = TAU / frequency;
-        let closed = modulation
-            .transient
-            .as_ref()
-            .filter(|_| !negative || simple)
-            .and_then(|transient| {
-                let phase = transient.phase.as_ref()?;
-                let compiled = |expression: &Expr| CompiledFunction::new(&with_numbers(expression).ok()?, &[t]).ok();
-                Some([compiled(&transient.amplitude)?, compiled(phase)?])
-            });
-        let slow = match closed {
-            Some(closed) => Slow::Closed(closed),
-            None => Slow::Followed(followed(modulation, &with_numbers, start, 2.0 * MOST_PERIODS * period)?),
-        };
-        let ends = modulation
-            .transient
-            .as_ref()
-            .and_then(|transient| transient.ends.as_ref());
-        let ends = ends.and_then(|ends| ends.evaluate(&known).ok());
-        let steady = modulation
-            .steady
-            .iter()
-            .filter_map(|cycle| cycle.amplitude.evaluate(&known).ok());
-        Ok(Self {
-            slow,
-            place: CompiledFunction::new(&place, &[a, theta])?,
-            slopes,
-            rates,
-            equilibrium,
-            start: start[0],
-            turn: if turned { PI } else { 0.0 },
-            period,
-            steady: steady.collect(),
-            ends: ends.filter(|ends| *ends > 0.0).unwrap_or(f64::INFINITY),
-        })
+        return Some((oscillator.clone(), solution.clone(), numbers));
     }
-
-    /// Amplitude and phase; the amplitude zero once it has come down to that.
-    fn slow_at(&self, t: f64) -> [f64; 2] {
-        let [amplitude, phase] = match &self.slow {
-            Slow::Closed([amplitude, phase]) => [amplitude.call(&[t]), phase.call(&[t])],
-            Slow::Followed(of) => of(t).unwrap_or([f64::NAN; 2]),
-        };
-        let over = t >= self.ends || amplitude * self.start <= 0.0;
-        [if over { 0.0 } else { amplitude }, phase + self.turn]
-    }
-
-    /// Distance from the equilibrium and velocity.
-    fn at(&self, t: f64) -> (f64, f64) {
-        let [a, phase] = self.slow_at(t);
-        if a == 0.0 {
-            return (0.0, 0.0);
-        }
-        let [by_amplitude, by_phase] = &self.slopes;
-        let at = [a, phase];
-        let velocity =
-            by_amplitude.call(&at) * self.rates[0].call(&[a]) + by_phase.call(&at) * self.rates[1].call(&[a]);
-        (self.place.call(&at), velocity)
-    }
-
-    /// Distance from the equilibrium at the amplitude of a time and any phase.
-    fn at_phase(&self, t: f64, phase: f64) -> f64 {
-        let [a, _] = self.slow_at(t);
-        if a == 0.0 { 0.0 } else { self.place.call(&[a, phase]) }
-    }
-
-    /// Where the formula turns on the side of a true turning point.
-    fn turned(&self, t: f64, x: f64) -> f64 {
-        let sides = [0.0, PI].map(|phase| self.at_phase(t, phase));
-        let same = sides.into_iter().find(|side| side * x >= 0.0);
-        same.unwrap_or(f64::NAN)
-    }
-
-    /// The times at which the formula goes through the equilibrium.
-    fn crossings(&self, until: f64) -> Vec<f64> {
-        let count = (LOOKS * until / self.period).ceil().max(1.0) as usize;
-        let time = |k: usize| until * k as f64 / count as f64;
-        let mut before = (0.0, self.at(0.0).0);
-        let mut found = vec![];
-        for k in 1..=count {
-            let now = (time(k), self.at(time(k)).0);
-            if before.1 * now.1 < 0.0
-                && let Ok(t) = find_root(|t| self.at(t).0, before.0, now.0)
-            {
-                found.push(t);
-            }
-            before = now;
-        }
-        found
-    }
-
-    /// When the amplitude comes down to a size.
-    fn falls_to(&self, size: f64, longest: f64) -> Option<f64> {
-        let excess = |t: f64| self.slow_at(t)[0].abs() - size;
-        let count = (8.0 * longest / self.period).ceil().max(1.0) as usize;
-        let time = |k: usize| longest * k as f64 / count as f64;
-        let place = (1..=count).find(|&k| excess(time(k)) <= 0.0)?;
-        if excess(time(place - 1)) <= 0.0 {
+    let (x, v) = (oscillator.coordinate, oscillator.velocity());
+    let parts = oscillator.parts().ok()?;
+    let (mut smaller, mut numbers) = (oscillator.clone(), numbers.clone());
+    let factor = Expr::number(Rational::new(1.into(), 2.into()).pow(halvings));
+    let mut options = Options {
+        method: Some(solution.method),
+        order: Some(solution.order),
+        ..Options::default()
+    };
+    if is_small_in_amplitude(solution) {
+        if !solution.equilibrium.is_zero() {
             return None;
         }
-        find_root(excess, time(place - 1), time(place)).ok()
+        let damping = parts.damping.differentiate(v).ok()?.substitute(v, &Expr::zero()).ok()?;
+        let damping = damping.substitute(x, &Expr::zero()).ok()?;
+        let less = &(&factor - &Expr::one()) * &(&damping * &Expr::from(v));
+        smaller.force = (&oscillator.force + &less).expand().ok()?;
+        let start = AmplitudeConvention::Initial.symbol();
+        options.small = Some(start.to_string());
+        *numbers.get_mut(&start)? *= 0.5_f64.powf(f64::from(halvings) / 2.0);
+    } else {
+        let stiffness = parts.restoring.differentiate(x).ok()?;
+        let stiffness = stiffness.substitute(x, &solution.equilibrium).ok()?;
+        let linear = &stiffness * &(&Expr::from(x) - &solution.equilibrium);
+        let linear = linear.expand().ok()?;
+        let rest = (&oscillator.force - &linear).expand().ok()?;
+        smaller.force = &linear + &(&factor * &rest);
+        smaller.about = Some(solution.equilibrium.clone());
     }
-
-    /// How long it is worth following, and why no longer.
-    fn duration(&self) -> (f64, &'static str) {
-        let longest = MOST_PERIODS * self.period;
-        let start = self.start.abs();
-        let settles = |a: f64| {
-            let near = |steady: &f64| (a.abs() / steady - 1.0).abs() < 0.01;
-            self.steady.iter().any(near) && !self.steady.iter().any(|steady| (start / steady - 1.0).abs() < 0.01)
-        };
-        let steps = 8 * MOST_PERIODS as usize;
-        for k in 1..=steps {
-            let t = longest * k as f64 / steps as f64;
-            let a = self.slow_at(t)[0].abs();
-            let reason = match a {
-                _ if !a.is_finite() => "the formula ends",
-                _ if a <= start / 10.0 => "the amplitude is a tenth",
-                _ if a >= 10.0 * start => "the amplitude is ten times that of the start",
-                _ if settles(a) => "the amplitude is within 1 % of one that stays",
-                _ => continue,
-            };
-            let exact = match a <= start / 10.0 {
-                true => self.falls_to(start / 10.0, t).unwrap_or(t),
-                false => t,
-            };
-            let least = LEAST_PERIODS * self.period;
-            return match exact < least && a.is_finite() {
-                true => (least, "three periods"),
-                false => (exact, reason),
-            };
-        }
-        (longest, "50 periods")
-    }
-}
-
-/// Amplitude and phase by integration of the slow equations.
-fn followed(
-    modulation: &Modulation,
-    with_numbers: &dyn Fn(&Expr) -> Result<Expr, crate::expr::ExprError>,
-    start: [f64; 2],
-    duration: f64,
-) -> Result<SlowPath, VerificationError> {
-    let compiled = |expression: &Expr| -> Result<_, VerificationError> {
-        Ok(CompiledFunction::new(
-            &with_numbers(expression)?,
-            &[modulation.amplitude],
-        )?)
-    };
-    let (amplitude, phase) = (compiled(&modulation.amplitude_rate)?, compiled(&modulation.phase_rate)?);
-    let rates = move |_: f64, values: &[f64; 2], rates: &mut [f64; 2]| {
-        // Below zero nothing is left of the motion.
-        let over = values[0] * start[0] <= 0.0;
-        *rates = match over {
-            true => [0.0, 0.0],
-            false => [amplitude.call(&values[..1]), phase.call(&values[..1])],
-        };
-    };
-    let options = Integration::with_tolerance(1e-11 * f64::min(1.0, start[0].abs()));
-    let begin = Point { t: 0.0, y: start };
-    let path =
-        integrate_first_order(rates, begin, duration, &[], &options).map_err(|_| VerificationError::NoSlowFrequency)?;
-    Ok(Box::new(move |t| path.state_at(t).map(|point| point.y)))
+    let answer = solve(&smaller, &options).ok()?;
+    Some((smaller, answer.off_cycle().unwrap_or(answer), numbers))
 }

@@ -258,6 +258,33 @@ fn errors_vanish_as_the_order_says() {
     }
 }
 
+/// The largest deviation over times of 1/small vanishes with the power of the order (Sanders, Verhulst and Murdock, theorems 2.8.1
+/// and 2.9.2), small letters and small numbers alike; what the formula leaves of the equation is of the next order at order one.
+#[test]
+fn slopes_of_motions_from_a_start() {
+    for (equation, order, at) in [
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' + x'/10 + x + x^3/10 = 0", 2, "A = 1"),
+        ("x'' + alpha*sgn(x') + x = 0", 1, "alpha = 1/50, A = 1"),
+        ("x'' + c*abs(x')*x' + x = 0", 1, "c = 1/10, A = 1"),
+        ("x'' + sgn(x')/50 + x + x*abs(x)/10 = 0", 1, "A = 1"),
+    ] {
+        let verdict = judged(equation, order, at);
+        let slope = verdict.slope.expect(equation);
+        assert!(
+            (slope - f64::from(order)).abs() < 0.15,
+            "{equation} to order {order}: {slope}"
+        );
+    }
+    // x = A exp(-zeta t) cos(t) leaves zeta^2 x of x'' + 2 zeta x' + x.
+    let residual = judged("x'' + 2*zeta*x' + x = 0", 1, "zeta = 1/100, A = 1").residual;
+    assert!(
+        residual.is_some_and(|residual| (residual / 1e-4 - 1.0).abs() < 1e-2),
+        "{residual:?}"
+    );
+}
+
 #[test]
 fn coulomb_friction_is_exact_at_every_turn() {
     let verdict = judged("x'' + x + alpha*sgn(x') = 0", 1, "alpha = 1/100, A = 1");

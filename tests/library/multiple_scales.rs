@@ -567,3 +567,106 @@ fn a_damped_motion_shows_how_it_decays() {
         "{judged:?}"
     );
 }
+
+/// From a start amplitude and phase are known in closed form: differentiated they are the slow equations, and at the start the motion
+/// is at A, at rest, up to the order to which the slow equations tell it.
+#[test]
+fn closed_forms_from_a_start() {
+    let t = Symbol::new("t");
+    for (equation, order) in [
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2),
+        ("x'' + 2*zeta*x' + x = 0", 3),
+        ("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = 0", 2),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", 1),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", 2),
+        ("x'' - mu*(1 - x'^2/3)*x' + x + eps*x^3 = 0", 1),
+        ("x'' + x + eps*x'^3 = 0", 2),
+    ] {
+        let solution = derive(equation, order);
+        let solution = solution.off_cycle().unwrap_or(solution);
+        let slow = solution.modulation.as_ref().expect(equation);
+        let transient = slow.transient.as_ref().expect(equation);
+        let phase = transient.phase.as_ref().expect(equation);
+        let slopes = [&transient.amplitude, phase].map(|of| of.differentiate(t).expect(equation));
+        let at_size = |size: f64| {
+            let values = [
+                ("A", 0.7),
+                ("zeta", 0.3 * size),
+                ("eps", 0.8 * size),
+                ("mu", 0.6 * size),
+            ];
+            let mut values: std::collections::BTreeMap<_, _> = values
+                .into_iter()
+                .map(|(name, value)| (Symbol::new(name), value))
+                .collect();
+            let defined = solution.defined_values(&|name| values.get(&name).copied());
+            values.extend(defined.expect(equation));
+            for time in [0.0, 0.5, 3.0, 11.0] {
+                values.insert(t, time);
+                let amplitude = transient.amplitude.evaluate(&values).expect(equation);
+                values.insert("a".into(), amplitude);
+                for (slope, rate) in slopes.iter().zip([&slow.amplitude_rate, &slow.phase_rate]) {
+                    let [slope, rate] = [slope, rate].map(|value| value.evaluate(&values).expect(equation));
+                    assert!((slope - rate).abs() < 1e-11, "{equation} at {time}: {slope}, {rate}");
+                }
+            }
+            values.insert(t, 0.0);
+            let start = transient.amplitude.evaluate(&values).expect(equation);
+            values.insert("a".into(), start);
+            let theta = phase.evaluate(&values).expect(equation);
+            let [rate, turning] =
+                [&slow.amplitude_rate, &slow.phase_rate].map(|rate| rate.evaluate(&values).expect(equation));
+            let position = |a: f64, theta: f64| {
+                let value_of = |name: Symbol| {
+                    if name.name() == "a" {
+                        Some(a)
+                    } else {
+                        values.get(&name).copied()
+                    }
+                };
+                solution.motion(&value_of).expect("numbers").evaluate(theta)
+            };
+            let step = 1e-5;
+            let by_amplitude = (position(start + step, theta) - position(start - step, theta)) / (2.0 * step);
+            let by_phase = (position(start, theta + step) - position(start, theta - step)) / (2.0 * step);
+            (position(start, theta) - 0.7).abs() + (by_amplitude * rate + by_phase * turning).abs()
+        };
+        let slope = (at_size(0.02) / at_size(0.01)).log2();
+        assert!(slope > f64::from(order) - 0.1, "{equation} to order {order}: {slope}");
+    }
+}
+
+/// Followed over times of 1/small, the error of order n vanishes with the power n: in a parameter, and in the amplitude.
+#[test]
+fn slopes_of_motions_from_a_start() {
+    for (equation, order, at) in [
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 3, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", 3, "mu = 1/10, A = 1/2"),
+        ("x'' + x'/50 + sin(x) = 0", 4, "A = 1/2"),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let at: Values = at.parse().expect("values");
+        let judged = judge(&oscillator, &derive(equation, order), &at, 0.01).expect("a verdict");
+        let slope = judged.slope.expect("a slope");
+        let amplitude = judged
+            .followed
+            .and_then(|followed| followed.amplitude_slope)
+            .expect("a slope");
+        assert!(
+            (slope - f64::from(order)).abs() < 0.1,
+            "{equation} to order {order}: {slope}"
+        );
+        assert!(
+            amplitude > f64::from(order) - 0.1,
+            "{equation} to order {order}: {amplitude}"
+        );
+        assert!(
+            judged.residual.is_some_and(|residual| residual < 0.02),
+            "{equation}: {:?}",
+            judged.residual
+        );
+    }
+}

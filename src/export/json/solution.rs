@@ -163,6 +163,9 @@ pub struct Modulation {
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first.
     pub steady: Vec<Cycle>,
+    /// Where `displacement` of the solution is the motion on a limit cycle: the motion from a start, with theta = phase; else null.
+    #[serde(default)]
+    pub motion: Option<Displacement>,
 }
 
 /// A driving frequency near a multiple of the linear one: times_driving * driving_frequency = times_linear * omega0 + detuning.
@@ -285,7 +288,8 @@ pub struct Verification {
     pub max_deviation: Option<f64>,
     /// The root mean square of what the formula leaves of the equation, over that of the force; null where it is not known.
     pub residual: Option<f64>,
-    /// The exponent with which the error of the frequency vanishes as the small parameter does; null where rounding hides it.
+    /// The exponent with which the error of the frequency vanishes as the small parameter does; of a motion followed from its start
+    /// that of `max_deviation`, over times that grow as the small parameter becomes less. Null where rounding hides it.
     pub slope: Option<f64>,
     /// Where the formula holds at these values, in words and numbers.
     pub ranges: Vec<Range>,
@@ -328,6 +332,10 @@ pub struct Followed {
     pub crossings: usize,
     /// The largest error of the turning points, as a fraction of the amplitude at the start; null where it is not known.
     pub amplitude_error: Option<f64>,
+    /// The exponent with which that error vanishes as the small parameter does, over times that grow as it becomes less; null where
+    /// rounding hides it.
+    #[serde(default)]
+    pub amplitude_slope: Option<f64>,
     /// When the amplitude is a tenth of that at the start, by the formula; null where it was not seen.
     pub tenth: Option<f64>,
     /// The same by the action, which viscous damping drains at one rate whatever the force; null for any other damping.
@@ -371,11 +379,6 @@ pub struct Range {
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&verify::Verification>) -> SolutionDocument {
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
-    let harmonic = |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
-        harmonic,
-        cos: Polynomial::of(&cosine, solution),
-        sin: Polynomial::of(&sine, solution),
-    };
     let definitions = solution.definitions.iter();
     SolutionDocument {
         schema: Kind::Solution.schema().to_owned(),
@@ -399,12 +402,9 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
             unknowns: names(&system.unknowns),
             equations: system.equations.iter().map(ToString::to_string).collect(),
         }),
-        displacement: Displacement {
-            variable: "theta".to_owned(),
-            harmonics: solution.displacement.harmonics().into_iter().map(harmonic).collect(),
-        },
+        displacement: displacement(&solution.displacement, solution),
         limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
-        modulation: solution.modulation.as_ref().map(modulation),
+        modulation: solution.modulation.as_ref().map(|slow| modulation(slow, solution)),
         response: solution
             .response
             .as_ref()
@@ -412,6 +412,19 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         numerical: solution.numerical,
         validity: solution.validity.iter().map(ToString::to_string).collect(),
         verification: verification.map(self::verification),
+    }
+}
+
+/// A motion, harmonic by harmonic.
+fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Displacement {
+    let harmonic = |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
+        harmonic,
+        cos: Polynomial::of(&cosine, solution),
+        sin: Polynomial::of(&sine, solution),
+    };
+    Displacement {
+        variable: "theta".to_owned(),
+        harmonics: motion.harmonics().into_iter().map(harmonic).collect(),
     }
 }
 
@@ -435,7 +448,7 @@ fn cycle(leading: &LeadingCycle) -> Cycle {
 }
 
 /// The slow equations, with their solutions as far as they are known.
-fn modulation(modulation: &solution::Modulation) -> Modulation {
+fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulation {
     Modulation {
         amplitude: modulation.amplitude.to_string(),
         phase: modulation.phase.to_string(),
@@ -460,6 +473,7 @@ fn modulation(modulation: &solution::Modulation) -> Modulation {
             ends: transient.ends.as_ref().map(ToString::to_string),
         }),
         steady: modulation.steady.iter().map(cycle).collect(),
+        motion: modulation.motion.as_ref().map(|motion| displacement(motion, solution)),
     }
 }
 
@@ -536,6 +550,7 @@ pub fn verification(verification: &verify::Verification) -> Verification {
             reason: followed.reason.to_owned(),
             crossings: followed.crossings,
             amplitude_error: finite(followed.amplitude_error),
+            amplitude_slope: finite(followed.amplitude_slope),
             tenth: finite(followed.tenth),
             tenth_by_action: finite(followed.tenth_by_action),
             true_tenth: finite(followed.true_tenth),
@@ -766,6 +781,7 @@ impl Modulation {
             release: self.release.as_ref().map(release).transpose()?,
             transient: self.transient.as_ref().map(transient).transpose()?,
             steady: self.steady.iter().map(Cycle::read).collect::<Result<_, JsonError>>()?,
+            motion: self.motion.as_ref().map(Displacement::read).transpose()?,
         })
     }
 }

@@ -19,9 +19,12 @@ use std::collections::BTreeMap;
 
 use num_traits::{Signed, Zero};
 
+use super::answer::{Found, solution};
+use super::derivation::derivation;
+use super::names::Names;
 use super::scaling::{Scaling, bounded, scaling};
 use super::slow_times::{Complex, DrivenTerm, Expansion, Quadrature, Scaled};
-use super::{Names, undriven};
+use super::undriven;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
@@ -32,7 +35,7 @@ use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Resonance;
 use crate::solution::response::{Branches, Plane, Response};
-use crate::solution::{AmplitudeConvention, Definition, Law, Method, Modulation, Note, Solution};
+use crate::solution::{Definition, Law, Method, Modulation, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
 
@@ -517,7 +520,7 @@ fn answer(
         power: question.small_order(),
     });
     validity.extend(question.root.clone().map(Note::Positive));
-    let derivation = super::derivation(
+    let derivation = derivation(
         expansion,
         scaling,
         names,
@@ -526,20 +529,12 @@ fn answer(
         Some(&response),
     )?;
     let wave = FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, Polynomial::symbol(a)));
-    Ok(Solution {
-        equation: oscillator.equation(),
-        method: Method::MultipleScales,
-        order: scaling.order,
-        degrees: None,
-        small_parameter: scaling.small,
-        amplitude: AmplitudeConvention::FirstHarmonic,
-        parameters: oscillator.parameters.clone(),
+    let found = Found {
         definitions,
-        equilibrium: Expr::zero(),
         law: Law::Frequency(backbone),
         displacement: wave,
         limit_cycle: None,
-        modulation: Some(Modulation {
+        modulation: Modulation {
             amplitude: a,
             phase: names.phase,
             amplitude_rate,
@@ -554,13 +549,13 @@ fn answer(
             release: None,
             transient: None,
             steady: vec![],
-        }),
+            motion: None,
+        },
         response: Some(response),
-        numerical: false,
         validity,
-        steps: vec![],
         derivation,
-    })
+    };
+    Ok(solution(oscillator, scaling, found))
 }
 
 impl Question<'_> {

@@ -17,13 +17,37 @@ use num_traits::{One as _, Signed as _};
 
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node};
-use crate::solution::LeadingCycle;
-use crate::solution::modulation::Transient;
-use crate::symbol::Symbol;
+use crate::solution::modulation::{Release, Transient};
+use crate::solution::{Definition, LeadingCycle};
+use crate::symbol::{Symbol, fresh};
+
+/// The motion of slow equations from where it is released, with names for what is more than a symbol there: `a0` and `psi0`, beside
+/// those that are taken.
+pub(crate) fn from_release(
+    a: Symbol,
+    [rate, phase_rate]: [&Expr; 2],
+    release: &mut Release,
+    taken: &[Symbol],
+) -> (Vec<Definition>, Option<Transient>) {
+    let mut definitions = vec![];
+    let mut named = |wanted: &str, meaning: &mut Expr| {
+        if meaning.is_zero() || meaning.as_symbol().is_some() {
+            return meaning.clone();
+        }
+        let symbol = fresh(wanted, taken);
+        let meaning = std::mem::replace(meaning, Expr::from(symbol));
+        definitions.push(Definition { symbol, meaning });
+        Expr::from(symbol)
+    };
+    let start = named("a0", &mut release.amplitude);
+    let phase = named("psi0", &mut release.phase);
+    let found = closed(a, rate, phase_rate, [&start, &phase]);
+    (definitions, found)
+}
 
 /// The amplitude and the phase from their values at the start, the first of which is a symbol; `None` where the amplitude has no
 /// closed form here.
-pub(crate) fn closed(a: Symbol, rate: &Expr, phase_rate: &Expr, [start, begins]: [&Expr; 2]) -> Option<Transient> {
+fn closed(a: Symbol, rate: &Expr, phase_rate: &Expr, [start, begins]: [&Expr; 2]) -> Option<Transient> {
     let law = PowerLaw::of(rate, a)?;
     let (amplitude, ends) = law.solved(start)?;
     let phase = law.phase(phase_rate, a, &amplitude, start);

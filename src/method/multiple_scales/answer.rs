@@ -1,0 +1,45 @@
+//! What a derivation by multiple scales found, as an answer.
+
+use super::scaling::Scaling;
+use crate::derivation::Line;
+use crate::exact::Polynomials;
+use crate::expr::Expr;
+use crate::oscillator::Oscillator;
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Response, Solution};
+
+/// What differs between a free motion, one on a limit cycle and a driven one.
+pub(super) struct Found {
+    pub(super) definitions: Vec<Definition>,
+    pub(super) law: Law,
+    pub(super) displacement: FourierSeries<Polynomials>,
+    pub(super) limit_cycle: Option<LimitCycle>,
+    pub(super) modulation: Modulation,
+    pub(super) response: Option<Response>,
+    pub(super) validity: Vec<Note>,
+    pub(super) derivation: Vec<Line>,
+}
+
+/// The answer, about zero.
+pub(super) fn solution(oscillator: &Oscillator, scaling: &Scaling, found: Found) -> Solution {
+    Solution {
+        equation: oscillator.equation(),
+        method: Method::MultipleScales,
+        order: scaling.order,
+        degrees: None,
+        small_parameter: scaling.small,
+        amplitude: AmplitudeConvention::FirstHarmonic,
+        parameters: oscillator.parameters.clone(),
+        definitions: found.definitions,
+        equilibrium: Expr::zero(),
+        law: found.law,
+        displacement: found.displacement,
+        limit_cycle: found.limit_cycle,
+        modulation: Some(found.modulation),
+        response: found.response,
+        numerical: false,
+        validity: found.validity,
+        steps: vec![],
+        derivation: found.derivation,
+    }
+}

@@ -1,0 +1,103 @@
+//! How an answer by multiple scales came about, order by order.
+
+use num_traits::Zero as _;
+
+use super::names::Names;
+use super::scaling::Scaling;
+use super::slow_times::{Complex, Expansion, Wave};
+use crate::derivation::{Formula, Line};
+use crate::exact::rational::ratio;
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
+use crate::expr::{Expr, ExprError};
+use crate::series::FourierSeries;
+use crate::solution::Response;
+use crate::symbol::Symbol;
+
+/// What an order adds to the motion, in `theta`, with `B = a/2`.
+pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeries<Polynomials> {
+    let length = wave.keys().copied().max().map_or(0, |m| m.max(0) as usize + 1);
+    let (mut cosine, mut sine) = (vec![Polynomial::zero(); length], vec![Polynomial::zero(); length]);
+    for (m, value) in wave.iter().filter(|entry| *entry.0 >= 0) {
+        let m = *m as usize;
+        let part = |part: &Polynomial, factor: i64| {
+            let factor = if m == 0 { factor / 2 } else { factor };
+            let scaled = names.polar(part).product(&Polynomial::constant(ratio(factor, 1)));
+            scaled.times_monomial(&names.mark(order))
+        };
+        cosine[m] = part(&value.real, 2);
+        sine[m] = part(&value.imaginary, -2);
+    }
+    FourierSeries::from_parts(POLYNOMIALS, cosine, sine)
+}
+
+/// How the answer came about; `response` is what follows for a driven motion.
+pub(super) fn derivation(
+    expansion: &Expansion,
+    scaling: &Scaling,
+    names: &Names,
+    linear_frequency: &Polynomial,
+    rates: &[Expr; 2],
+    response: Option<&Response>,
+) -> Result<Vec<Line>, ExprError> {
+    let (own, conjugate, a) = (names.complex.own, names.complex.conjugate, names.amplitude);
+    let i = Expr::from(names.unit);
+    let [orders, times] = &names.orders;
+    let complex = |value: &Complex| &Expr::from(&value.real) + &(&i * &Expr::from(&value.imaginary));
+    let small = match scaling.marker {
+        Some(marker) => marker.to_string(),
+        None => a.to_string(),
+    };
+    let wave = format!("exp({i}*theta)");
+    let turns = match response {
+        None => format!("theta turns at the rate {}", Expr::from(linear_frequency)),
+        Some(_) => "theta turns in step with the drive; what that forces far from resonance is added".to_owned(),
+    };
+    let mut lines = vec![
+        Line::words(format!(
+            "the motion is {orders}0 + {orders}1 + {orders}2 + ..., each order with its power of {small} and a slow time of its own"
+        )),
+        Line::words(format!(
+            "{orders}0 = {own}*{wave} + {conjugate}*exp(-{i}*theta), {conjugate} the conjugate of {own}; {turns}"
+        )),
+        Line::words(format!(
+            "{times}1, {times}2, ... are the rates of {own} on the slow times"
+        )),
+    ];
+    for k in 1..=scaling.order as usize {
+        let (rate, resonant) = (&expansion.rates[k], &expansion.resonant[k]);
+        if resonant.is_zero() && expansion.displacement[k].is_empty() {
+            continue;
+        }
+        let left = Expr::symbol(&format!("{times}{k}"));
+        let rest = Expr::from(&linear_frequency.product(&Polynomial::constant(ratio(2, 1))));
+        let secular = &complex(resonant) - &(&(&i * &rest) * &left);
+        lines.push(
+            Line::equal([secular.expand()?.into(), Expr::zero().into()])
+                .because(format!("order {k}, no {wave} on the right")),
+        );
+        lines.push(Line::equation(left, complex(rate).expand()?).because("fixes"));
+        if response.is_none() {
+            let unmarked = |polynomial: &Polynomial| scaling.unmarked(polynomial, names.marker);
+            let motion = motion_of(&expansion.displacement[k], k, names);
+            let motion = motion.map(POLYNOMIALS, |coefficient, _| unmarked(coefficient));
+            lines.push(
+                Line::equation(Symbol::new(&format!("{orders}{k}")), motion)
+                    .because(format!("the motion, with {own} = {a}/2 in theta")),
+            );
+        }
+    }
+    let [amplitude_rate, phase_rate] = rates;
+    let phase = names.phase;
+    let polar = match response {
+        None => format!("{own} is {a}/2 turned by the phase {phase} without theta"),
+        Some(_) => format!("{own} is {a}/2 turned back by the phase {phase}"),
+    };
+    lines.push(Line::equation(a.derivative(), amplitude_rate).because(polar));
+    lines.push(Line::equation(phase.derivative(), phase_rate));
+    if let Some(relation) = response.and_then(|response| response.relation.as_ref()) {
+        let zero = Formula::from(Expr::zero());
+        let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
+        lines.push(Line::equal([zero, Formula::from(Expr::from(relation))]).because(steady));
+    }
+    Ok(lines)
+}

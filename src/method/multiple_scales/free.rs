@@ -1,0 +1,185 @@
+//! Free motions: slow equations in the amplitude alone, solved from a start where they can be; of a self-excited one the limit
+//! cycle on which it ends as well.
+
+use num_traits::Zero as _;
+
+use super::answer::{Found, solution};
+use super::derivation::{derivation, motion_of};
+use super::names::Names;
+use super::release::release;
+use super::scaling::{Scaling, scaling};
+use super::slow_equations::{Cycles, SlowEquations, cycles};
+use super::slow_times::Scaled;
+use super::undriven;
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
+use crate::expr::Expr;
+use crate::method::limit_cycle::Units;
+use crate::method::lindstedt_poincare::{LinearPart, with_square};
+use crate::method::{Options, Refusal, transient};
+use crate::oscillator::{Oscillator, Parts};
+use crate::series::FourierSeries;
+use crate::solution::modulation::Release;
+use crate::solution::{Definition, Law, LimitCycle, Modulation, Note, Solution};
+use crate::symbol::{Symbol, fresh};
+
+/// Default and highest orders in a parameter and in the amplitude, of which an odd force has every other one.
+const DEFAULT: [u32; 2] = [2, 4];
+const HIGHEST: [u32; 2] = [3, 6];
+
+/// The slow equations of a free motion and what follows from them.
+///
+/// # Errors
+/// What stops an expansion, an order above those that there are, a limit cycle without a closed form.
+pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+    let scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
+    let linear = LinearPart::of(&scaling.force, oscillator);
+    let units = Units::new(&scaling.force, linear.frequency.clone());
+    let cycles = cycles(&scaling, &units, options, &linear.taken)?;
+    let names = Names::new(&linear.taken, oscillator.coordinate, scaling.marker);
+    let order = scaling.order as usize;
+    let scaled = Scaled {
+        terms: scaling.force.terms.iter().map(undriven).collect(),
+        linear_frequency: linear.frequency.clone(),
+        own: 1,
+        detuning: None,
+        forced: None,
+        // The last correction of the amplitude of a limit cycle follows from one order more.
+        order: order + usize::from(cycles.is_some()),
+    };
+    let expansion = scaled.expand(names.complex);
+    let free = Free {
+        slow: SlowEquations::new(&expansion, &linear.frequency, &names),
+        motion: (0..=order)
+            .map(|k| motion_of(&expansion.displacement[k], k, &names))
+            .fold(FourierSeries::zero(POLYNOMIALS), |sum, term| sum.sum(&term)),
+        scaling: &scaling,
+        linear: &linear,
+        names: &names,
+    };
+    let rates = [&free.slow.amplitude, &free.slow.phase].map(|rate| free.written(&free.cut(rate)));
+    let rates = rates.each_ref().map(Expr::from);
+    let derivation = derivation(&expansion, &scaling, &names, &linear.frequency, &rates, None)?;
+    let mut found = Found {
+        definitions: linear.definitions.clone(),
+        law: Law::Frequency(free.written(&free.cut(&free.slow.phase))),
+        displacement: free.written_motion(&free.motion),
+        limit_cycle: None,
+        modulation: free.modulation(rates),
+        response: None,
+        validity: vec![scaling.cut_note()],
+        derivation,
+    };
+    if let Some(cycles) = &cycles {
+        free.settle(cycles, &mut found)?;
+    }
+    found.definitions.extend(scaling.bookkeeping.clone());
+    found.validity.extend(linear.root.clone().map(Note::Positive));
+    // Where the amplitude changes the motion has a start.
+    if !found.modulation.is_conservative() {
+        free.start(&mut found, &oscillator.names());
+    }
+    Ok(solution(oscillator, &scaling, found))
+}
+
+/// A free motion with its slow equations, in powers of the marker.
+struct Free<'a> {
+    slow: SlowEquations,
+    motion: FourierSeries<Polynomials>,
+    scaling: &'a Scaling,
+    linear: &'a LinearPart,
+    names: &'a Names,
+}
+
+impl Free<'_> {
+    /// Up to the order of the answer.
+    fn cut(&self, polynomial: &Polynomial) -> Polynomial {
+        polynomial.truncated(self.names.marker, self.scaling.order as i32)
+    }
+
+    /// As it stands in the answer: without a marker that is one, powers of a root in numbers.
+    fn written(&self, polynomial: &Polynomial) -> Polynomial {
+        let unmarked = self.scaling.unmarked(polynomial, self.names.marker);
+        match (&self.linear.root, self.scaling.force.linear.as_number()) {
+            (Some(root), Some(square)) => with_square(&unmarked, root.symbol, &square),
+            _ => unmarked,
+        }
+    }
+
+    fn written_motion(&self, motion: &FourierSeries<Polynomials>) -> FourierSeries<Polynomials> {
+        motion.map(POLYNOMIALS, |coefficient, _| self.written(coefficient))
+    }
+
+    fn modulation(&self, [amplitude_rate, phase_rate]: [Expr; 2]) -> Modulation {
+        Modulation {
+            amplitude: self.names.amplitude,
+            phase: self.names.phase,
+            amplitude_rate,
+            phase_rate,
+            small_with: self.scaling.small_with.clone(),
+            resonance: None,
+            release: None,
+            transient: None,
+            steady: vec![],
+            motion: None,
+        }
+    }
+
+    /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept beside it.
+    fn settle(&self, cycles: &Cycles, found: &mut Found) -> Result<(), Refusal> {
+        let (scaling, names) = (self.scaling, self.names);
+        let cycle = &cycles.cycles[cycles.number - 1];
+        let order = scaling.order as usize;
+        let at = self
+            .slow
+            .at_cycle(cycle, &self.linear.frequency, order, names)
+            .ok_or_else(|| Refusal::LimitCycle {
+                equation: cycles.equation.in_square(fresh("z", &self.linear.taken)),
+                reason: "which divides by a sum of symbols",
+            })?;
+        let put = |polynomial: &Polynomial| {
+            let value = polynomial.substitute(names.amplitude, &at);
+            let value = cycle.reduced(&self.cut(&value.unwrap_or_else(Polynomial::zero)));
+            self.written(&value)
+        };
+        found.definitions.extend(cycle.definition.clone());
+        let all = cycles.cycles.iter();
+        let leading = cycle.to_leading(names.marker, scaling.small);
+        let limit_cycle = LimitCycle {
+            amplitude: self.written(&cycle.reduced(&self.cut(&at))),
+            number: cycles.number,
+            cycles: all.map(|cycle| cycle.to_leading(names.marker, scaling.small)).collect(),
+            small_with: scaling.small_with.clone(),
+        };
+        found.modulation.steady = limit_cycle.cycles.clone();
+        found.limit_cycle = Some(limit_cycle);
+        found.validity.push(Note::Stability(leading));
+        found.validity.extend(cycle.remark.clone());
+        found.validity.extend(cycle.definition.clone().map(Note::Positive));
+        let settled = self.motion.map(POLYNOMIALS, |coefficient, _| put(coefficient));
+        found.modulation.motion = Some(std::mem::replace(&mut found.displacement, settled));
+        found.law = Law::Frequency(put(&self.slow.phase));
+        Ok(())
+    }
+
+    /// Where a motion released at rest begins, to the order to which the slow equations tell it, and its closed form from there.
+    fn start(&self, found: &mut Found, names: &[Symbol]) {
+        let order = (self.scaling.order as usize).saturating_sub(1);
+        let rates = [&self.slow.amplitude, &self.slow.phase];
+        let begins = release(&self.motion, rates, &self.linear.frequency, self.names, order);
+        let mut begins = match begins {
+            Some(begins) => {
+                let [amplitude, phase] = begins.each_ref().map(|part| Expr::from(&self.written(part)));
+                Release { amplitude, phase }
+            }
+            None => Release::at_start(),
+        };
+        let defined = found.definitions.iter().map(|definition| definition.symbol);
+        let taken: Vec<Symbol> = names.iter().copied().chain(defined).collect();
+        let modulation = &mut found.modulation;
+        let rates = [&modulation.amplitude_rate, &modulation.phase_rate];
+        let (named, transient) = transient::from_release(modulation.amplitude, rates, &mut begins, &taken);
+        found.definitions.extend::<Vec<Definition>>(named);
+        modulation.transient = transient;
+        modulation.release = Some(begins);
+    }
+}

@@ -1,0 +1,116 @@
+//! The slow equations of a free motion, and the amplitude of the limit cycle on which it may end.
+
+use num_traits::Zero as _;
+
+use super::names::Names;
+use super::scaling::Scaling;
+use super::slow_times::Expansion;
+use crate::exact::Polynomial;
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::ratio;
+use crate::method::limit_cycle::{AmplitudeEquation, Cycle, Units, chosen};
+use crate::method::{Options, Refusal};
+use crate::symbol::{Symbol, fresh};
+
+/// `a'` and `theta'` in powers of the marker.
+pub(super) struct SlowEquations {
+    pub(super) amplitude: Polynomial,
+    pub(super) phase: Polynomial,
+}
+
+impl SlowEquations {
+    pub(super) fn new(expansion: &Expansion, linear_frequency: &Polynomial, names: &Names) -> Self {
+        let (mut amplitude, mut phase) = (Polynomial::zero(), linear_frequency.clone());
+        let two = Polynomial::constant(ratio(2, 1));
+        for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
+            let mark = names.mark(k);
+            let polar = |part: &Polynomial| names.polar(part).product(&two).times_monomial(&mark);
+            amplitude.accumulate(&polar(&rate.real));
+            let over = Monomial::power_of(names.amplitude, -1);
+            phase.accumulate(&polar(&rate.imaginary).times_monomial(&over));
+        }
+        Self { amplitude, phase }
+    }
+
+    /// The amplitude at which `a' = 0`, in powers of the marker; `None` where it needs a quotient that is no polynomial.
+    pub(super) fn at_cycle(
+        &self,
+        cycle: &Cycle,
+        linear_frequency: &Polynomial,
+        order: usize,
+        names: &Names,
+    ) -> Option<Polynomial> {
+        let mut amplitude = cycle.unit.clone();
+        let coefficient = |polynomial: &Polynomial, order: usize| {
+            let mut found = Polynomial::zero();
+            for (monomial, number) in polynomial.terms() {
+                if monomial.exponent(names.marker) == order as i32 {
+                    found.add_term(monomial.without(names.marker), number.clone());
+                }
+            }
+            found
+        };
+        let first = coefficient(&self.amplitude, 1).slope(names.amplitude);
+        let first = first.substitute(names.amplitude, &amplitude)?;
+        let inverse = match (cycle.reduced(&first).power(-1), &cycle.inverse_slope) {
+            (Some(inverse), _) => inverse,
+            // f_1' = -omega0 J/2
+            (None, Some(inverse)) => {
+                let frequency = linear_frequency.power(-1)?;
+                inverse.product(&frequency).product(&Polynomial::constant(ratio(-2, 1)))
+            }
+            (None, None) => return None,
+        };
+        for k in 1..=order {
+            let rate = self.amplitude.substitute(names.amplitude, &amplitude)?;
+            let mut missing = cycle.reduced(&coefficient(&rate, k + 1).product(&inverse));
+            missing.negate();
+            amplitude.accumulate(&missing.times_monomial(&names.mark(k)));
+        }
+        Some(amplitude)
+    }
+}
+
+/// The limit cycles of a self-excited equation, and which of them is asked for.
+pub(super) struct Cycles {
+    pub(super) equation: AmplitudeEquation,
+    pub(super) cycles: Vec<Cycle>,
+    pub(super) number: usize,
+}
+
+/// The limit cycles of an equation whose amplitude is not free; `None` where it has none.
+///
+/// # Errors
+/// The amplitudes have no closed form, or one that is not there is asked for.
+pub(super) fn cycles(
+    scaling: &Scaling,
+    units: &Units,
+    options: &Options,
+    taken: &[Symbol],
+) -> Result<Option<Cycles>, Refusal> {
+    let without = match options.cycle {
+        Some(asked) => Err(Refusal::NoSuchCycle { asked, count: 0 }),
+        None => Ok(None),
+    };
+    let (Some(equation), Some(marker)) = (AmplitudeEquation::new(&scaling.force, units), scaling.marker) else {
+        return without;
+    };
+    let refused = |reason| Refusal::LimitCycle {
+        equation: equation.in_square(fresh("z", taken)),
+        reason,
+    };
+    let cycles = equation.cycles(marker, &units.frequency, taken).map_err(refused)?;
+    if cycles.is_empty() {
+        return without;
+    }
+    let none = || Refusal::NoSuchCycle { asked: 0, count: 0 };
+    let number = chosen(&cycles, options.cycle, none)?;
+    if cycles[number - 1].attracts_where.is_none() {
+        return Err(refused("a multiple root: no expansion in powers begins there"));
+    }
+    Ok(Some(Cycles {
+        equation,
+        cycles,
+        number,
+    }))
+}

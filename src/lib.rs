@@ -36,7 +36,7 @@
 //! | [`hill`] | linear equations with periodic coefficients: exact transition curves, Floquet's multipliers |
 //! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
 //! | [`verify`] | the true motion and the verdict |
-//! | [`response`] | steady states of a driven oscillator: branches, stability, bifurcations, backbones |
+//! | [`response`] | steady states of an oscillator: branches, stability, bifurcations, backbones |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
 //! | [`optimize`] | the design that rests soonest: genetic algorithm, constraints, fronts, what decides |
 //! | [`problem`] | problem files |

@@ -62,7 +62,7 @@ enum Command {
     Impact(impact::Arguments),
     /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism
     Simulate(simulate::Arguments),
-    /// Steady states of a driven oscillator: every branch with its stability, folds, period doublings, backbone
+    /// Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone
     Response(response::Arguments),
     /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
     Friction(friction::Arguments),

@@ -118,6 +118,12 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
 
 /// The slow equations of the primary resonance.
 fn slow_equations(question: &Question, method: Method, order: Option<u32>) -> Result<Solution, Failure> {
+    if !question.oscillator.force.contains(Symbol::new("t")) {
+        return Err(Failure::Usage(format!(
+            "--method {0}: there is no drive; `lindstedt derive --method {0}` has the limit cycle, and harmonic balance its branches",
+            method.name()
+        )));
+    }
     if question.periods != 1 {
         return Err(Failure::Usage(format!(
             "--method {} is held against motions of the period of the drive: leave out --periods",
@@ -151,7 +157,13 @@ fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
 
 fn refused(error: ResponseError) -> Failure {
     let help = match &error {
-        ResponseError::NoDrive => Some("add a force that depends on time, such as - F*cos(Omega*t)".to_owned()),
+        ResponseError::NoDrive => Some(
+            "add a force that depends on time, such as - F*cos(Omega*t), or what excites the motion, such as - mu*(1 - x^2)*x'".to_owned(),
+        ),
+        ResponseError::NoCycle { parameter, .. } => Some(format!(
+            "it dies out, escapes, or its cycles lie elsewhere: try another range of {parameter}, or follow it: `lindstedt simulate`"
+        )),
+        ResponseError::NoPeriods(_) => Some("leave out --periods: the period of a self-excited motion is found".to_owned()),
         ResponseError::NotPeriodic(_) => {
             Some("time may stand inside sin, cos and tan alone, as cos(Omega*t + phi)".to_owned())
         }

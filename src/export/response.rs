@@ -20,9 +20,18 @@ use crate::response::{Point, bifurcation::BifurcationKind};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn csv(response: &Response) -> String {
+    // Nothing gives a self-excited motion a phase, and nothing but itself its frequency.
+    let (own, meaning) = match response.self_excited {
+        true => ("frequency", "; frequency: theta/t"),
+        false => ("phase", ""),
+    };
+    let of_own = |frequency: f64, otherwise: String| match response.self_excited {
+        true => frequency.to_string(),
+        false => otherwise,
+    };
     let mut text = format!(
-        "# kind: branch, slow (by slow equations), simulated, backbone or the kind of a bifurcation; amplitude: of the first harmonic; peak: half of peak to peak\n\
-         kind,branch,{},amplitude,phase,peak,stable,multiplier,error\n",
+        "# kind: branch, slow (by slow equations), simulated, backbone or the kind of a bifurcation; amplitude: of the first harmonic; peak: half of peak to peak{meaning}\n\
+         kind,branch,{},amplitude,{own},peak,stable,multiplier,error\n",
         response.question.parameter
     );
     let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
@@ -39,7 +48,7 @@ pub fn csv(response: &Response) -> String {
                 index + 1,
                 point.parameter,
                 point.amplitude,
-                point.phase,
+                of_own(point.frequency, point.phase.to_string()),
                 point.peak,
                 optional(point.multipliers.map(|multipliers| multipliers[0].norm())),
                 optional(point.error)
@@ -49,11 +58,12 @@ pub fn csv(response: &Response) -> String {
     for found in &response.bifurcations {
         let _ = writeln!(
             text,
-            "{},{},{},{},,{},,,",
+            "{},{},{},{},{},{},,,",
             found.kind.name(),
             found.branch + 1,
             found.parameter,
             found.amplitude,
+            of_own(found.frequency, String::new()),
             found.peak
         );
     }
@@ -70,8 +80,12 @@ pub fn csv(response: &Response) -> String {
     for simulated in &response.simulated {
         let _ = writeln!(
             text,
-            "simulated,,{},{},,{},,,{}",
-            simulated.parameter, simulated.amplitude, simulated.peak, simulated.error
+            "simulated,,{},{},{},{},,,{}",
+            simulated.parameter,
+            simulated.amplitude,
+            of_own(simulated.frequency, String::new()),
+            simulated.peak,
+            simulated.error
         );
     }
     for point in response.backbone.iter().flatten() {
@@ -84,21 +98,40 @@ pub fn csv(response: &Response) -> String {
 #[cfg(feature = "plot")]
 type Line = Vec<(f64, f64)>;
 
-/// The height of a point: the amplitude of the first harmonic; of motions of several periods of the drive, the peak.
+/// The ordinates of the panels: of motions of several periods of the drive the peak, of self-excited ones the frequency as well.
 #[cfg(feature = "plot")]
-fn height(response: &Response, amplitude: f64, peak: f64) -> f64 {
-    match response.question.periods {
-        1 => amplitude,
-        _ => peak,
+#[derive(Clone, Copy)]
+enum Height {
+    Amplitude,
+    Peak,
+    Frequency,
+}
+
+#[cfg(feature = "plot")]
+impl Height {
+    fn label(self) -> &'static str {
+        match self {
+            Self::Amplitude => "amplitude of the first harmonic",
+            Self::Peak => "half of peak to peak",
+            Self::Frequency => "frequency",
+        }
+    }
+
+    fn of(self, amplitude: f64, peak: f64, frequency: f64) -> f64 {
+        match self {
+            Self::Amplitude => amplitude,
+            Self::Peak => peak,
+            Self::Frequency => frequency,
+        }
     }
 }
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not; neighbouring pieces share a point.
 #[cfg(feature = "plot")]
-fn pieces(response: &Response, points: &[Point], stable: bool) -> Vec<Vec<(f64, f64)>> {
-    let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
+fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
+    let mut pieces: Vec<Line> = Vec::new();
     let mut open = false;
-    let place = |point: &Point| (point.parameter, height(response, point.amplitude, point.peak));
+    let place = |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
         if (to.stable == Some(true)) != stable {
@@ -112,6 +145,66 @@ fn pieces(response: &Response, points: &[Point], stable: bool) -> Vec<Vec<(f64, 
         open = true;
     }
     pieces
+}
+
+/// What stands where branches change.
+#[cfg(feature = "plot")]
+const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
+    (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
+    (
+        BifurcationKind::BranchPoint,
+        "branch point",
+        CurveStyle::SECOND_MARKED_POINTS,
+    ),
+    (
+        BifurcationKind::PeriodDoubling,
+        "period doubling",
+        CurveStyle::THIRD_MARKED_POINTS,
+    ),
+    (
+        BifurcationKind::NeimarkSacker,
+        "Neimark-Sacker",
+        CurveStyle::FOURTH_MARKED_POINTS,
+    ),
+    (BifurcationKind::Hopf, "Hopf", CurveStyle::SECOND_MARKED_POINTS),
+    (BifurcationKind::Centre, "centre", CurveStyle::THIRD_MARKED_POINTS),
+];
+
+/// The curves of a panel, with what they are called.
+#[cfg(feature = "plot")]
+fn curves<'a>(response: &Response, height: Height, slow_title: &'a str) -> Vec<(&'a str, Line, CurveStyle)> {
+    let mut drawn: Vec<(&str, Line, CurveStyle)> = Vec::new();
+    let mut draw = |label: &'a str, lines: Vec<Line>, style: CurveStyle| {
+        drawn.extend(lines.into_iter().map(|points| (label, points, style)));
+    };
+    let of_stability = |stable: bool| {
+        let branches = response.branches.iter();
+        branches
+            .flat_map(|branch| pieces(height, &branch.points, stable))
+            .collect::<Vec<_>>()
+    };
+    if response.question.periods == 1 {
+        let curves = response.backbone.iter();
+        let lines = curves.map(|curve| curve.iter().map(|point| (point.parameter, point.amplitude)).collect());
+        draw("free, without damping", lines.collect(), CurveStyle::BACKBONE);
+    }
+    draw("unstable", of_stability(false), CurveStyle::UNSTABLE);
+    draw("stable", of_stability(true), CurveStyle::DIFFERENCE);
+    let states = response.slow.iter().flat_map(|slow| &slow.states);
+    let states = states.map(|state| (state.parameter, state.amplitude)).collect();
+    draw(slow_title, vec![states], CurveStyle::SLOW);
+    let simulated = response.simulated.iter().map(|found| {
+        let height = height.of(found.amplitude, found.peak, found.frequency);
+        (found.parameter, height)
+    });
+    draw("simulated", vec![simulated.collect()], CurveStyle::SIMULATED);
+    for (kind, label, style) in MARKS {
+        let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
+        let places = of_kind.map(|found| (found.parameter, height.of(found.amplitude, found.peak, found.frequency)));
+        draw(label, vec![places.collect()], style);
+    }
+    drawn.retain(|(_, points, _)| !points.is_empty());
+    drawn
 }
 
 /// The branches, stable ones solid and unstable ones dashed, the backbone, simulations as dots, bifurcations marked.
@@ -128,83 +221,34 @@ fn pieces(response: &Response, points: &[Point], stable: bool) -> Vec<Vec<(f64, 
 /// ```
 #[cfg(feature = "plot")]
 pub fn picture(response: &Response) -> Result<String, FigureError> {
-    let [stable, unstable] = [true, false].map(|stable| {
-        let branches = response.branches.iter();
-        branches
-            .flat_map(|branch| pieces(response, &branch.points, stable))
-            .collect::<Vec<_>>()
-    });
-    let backbones: Vec<Vec<(f64, f64)>> = match response.question.periods {
-        1 => response
-            .backbone
-            .iter()
-            .map(|curve| curve.iter().map(|point| (point.parameter, point.amplitude)).collect())
-            .collect(),
-        _ => vec![],
+    let asked = &response.question;
+    let heights: &[Height] = match (response.self_excited, asked.periods) {
+        (true, _) => &[Height::Amplitude, Height::Frequency],
+        (false, 1) => &[Height::Amplitude],
+        _ => &[Height::Peak],
     };
-    let simulated: Vec<(f64, f64)> = response
-        .simulated
+    let title = response.slow.as_ref().map(|slow| slow.solution.title());
+    let title = title.unwrap_or_default();
+    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> =
+        heights.iter().map(|height| curves(response, *height, &title)).collect();
+    let panels: Vec<Panel> = heights
         .iter()
-        .map(|found| (found.parameter, height(response, found.amplitude, found.peak)))
-        .collect();
-    let marks = [
-        (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
-        (
-            BifurcationKind::BranchPoint,
-            "branch point",
-            CurveStyle::SECOND_MARKED_POINTS,
-        ),
-        (
-            BifurcationKind::PeriodDoubling,
-            "period doubling",
-            CurveStyle::THIRD_MARKED_POINTS,
-        ),
-        (
-            BifurcationKind::NeimarkSacker,
-            "Neimark-Sacker",
-            CurveStyle::FOURTH_MARKED_POINTS,
-        ),
-    ];
-    let marked: Vec<Vec<(f64, f64)>> = marks
-        .iter()
-        .map(|(kind, ..)| {
-            let of_kind = response.bifurcations.iter().filter(|found| found.kind == *kind);
-            of_kind
-                .map(|found| (found.parameter, height(response, found.amplitude, found.peak)))
-                .collect()
+        .zip(&drawn)
+        .map(|(height, drawn)| Panel {
+            title: "Steady states",
+            x_label: asked.parameter.name(),
+            y_label: height.label(),
+            curves: drawn
+                .iter()
+                .map(|(label, points, style)| Curve {
+                    label,
+                    points,
+                    style: *style,
+                })
+                .collect(),
+            ..Panel::default()
         })
         .collect();
-    let mut curves = Vec::new();
-    let lines = |label: &'static str, pieces: Vec<Vec<(f64, f64)>>, style| {
-        pieces.into_iter().map(move |points| (label, points, style))
-    };
-    let mut drawn: Vec<(&str, Line, CurveStyle)> =
-        lines("free, without damping", backbones, CurveStyle::BACKBONE).collect();
-    drawn.extend(lines("unstable", unstable, CurveStyle::UNSTABLE));
-    drawn.extend(lines("stable", stable, CurveStyle::DIFFERENCE));
-    let slow = response.slow.as_ref();
-    let title = slow.map(|slow| slow.solution.title()).unwrap_or_default();
-    let states = slow.into_iter().flat_map(|slow| &slow.states);
-    drawn.push((
-        &title,
-        states.map(|state| (state.parameter, state.amplitude)).collect(),
-        CurveStyle::SLOW,
-    ));
-    drawn.push(("simulated", simulated, CurveStyle::SIMULATED));
-    drawn.extend(
-        marks
-            .iter()
-            .zip(marked)
-            .map(|((_, label, style), points)| (*label, points, *style)),
-    );
-    for (label, points, style) in drawn.iter().filter(|(_, points, _)| !points.is_empty()) {
-        curves.push(Curve {
-            label,
-            points,
-            style: *style,
-        });
-    }
-    let asked = &response.question;
     let values = asked.values.numbers().into_iter();
     let values: Vec<String> = values
         .map(|(name, value)| format!("{name} = {}", super::decimal(value)))
@@ -212,15 +256,5 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
     let equation = asked.oscillator.equation();
     let values = values.iter().map(|value| format!("; {value}")).collect::<String>();
     let caption = format!("{} = 0{values}; harmonics 0 to {}.", equation.left, response.harmonics);
-    let panel = Panel {
-        title: "Steady states",
-        x_label: asked.parameter.name(),
-        y_label: match asked.periods {
-            1 => "amplitude of the first harmonic",
-            _ => "half of peak to peak",
-        },
-        curves,
-        ..Panel::default()
-    };
-    figure(&[panel], &caption)
+    figure(&panels, &caption)
 }

@@ -1,4 +1,4 @@
-//! Steady states of a driven oscillator: branches with their stability, where they change, how far all is from the true motion.
+//! Steady states of an oscillator: branches with their stability, where they change, how far all is from the true motion.
 
 use std::borrow::Cow;
 
@@ -52,6 +52,10 @@ fn question(response: &Response) -> Vec<Block<'static>> {
         source: None,
     }));
     let (name, [low, high]) = (asked.parameter, asked.range);
+    if response.self_excited {
+        blocks.extend(self_excited(response));
+        return blocks;
+    }
     blocks.push(Block::Sentence(format!(
         "{name} from {} to {}; harmonic balance, harmonics 0 to {}; theta = {}, and a motion takes {} of the drive.",
         decimal(low),
@@ -71,6 +75,26 @@ fn question(response: &Response) -> Vec<Block<'static>> {
         }
     )));
     blocks
+}
+
+/// What is computed and listed of motions without drive.
+fn self_excited(response: &Response) -> [Block<'static>; 2] {
+    let (name, [low, high]) = (response.question.parameter, response.question.range);
+    let frequency = &response.frequency;
+    [
+        format!(
+            "{name} from {} to {}; nothing drives the motion: harmonic balance, harmonics 0 to {}; theta = {}, and {frequency} is an \
+             unknown of each motion.",
+            decimal(low),
+            decimal(high),
+            response.harmonics,
+            phase(response)
+        ),
+        "amplitude: of the first harmonic; peak: half of peak to peak; stable: the multiplier of the true motion lies inside the unit \
+         circle; the other one, along the motion, is 1."
+            .to_owned(),
+    ]
+    .map(Block::Sentence)
 }
 
 /// The frequency of the motion, as a factor of time.
@@ -130,40 +154,67 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
     let row = |index: usize| {
         let point = &branch.points[index];
         let largest = point.multipliers.map(|multipliers| multipliers[0].norm());
-        vec![
-            decimal(point.parameter),
-            decimal(point.amplitude),
-            decimal(point.phase),
-            decimal(point.peak),
+        let place = match response.self_excited {
+            true => vec![
+                decimal(point.frequency),
+                decimal(std::f64::consts::TAU / point.frequency),
+                decimal(point.peak),
+            ],
+            false => vec![decimal(point.phase), decimal(point.peak)],
+        };
+        let first = [decimal(point.parameter), decimal(point.amplitude)].into_iter();
+        let last = [
             stable(point.stable).to_owned(),
             largest.map_or("-".to_owned(), |largest| significant(largest, 4)),
             point.error.map_or("-".to_owned(), |error| significant(error, 2)),
-        ]
+        ];
+        first.chain(place).chain(last).collect()
+    };
+    let columns: &[&'static str] = match response.self_excited {
+        true => &[
+            name,
+            "amplitude",
+            "frequency",
+            "period",
+            "peak",
+            "stable",
+            "multiplier",
+            "error",
+        ],
+        false => &[name, "amplitude", "phase", "peak", "stable", "multiplier", "error"],
     };
     let mut blocks = vec![
         Block::Heading(format!("branch {}: {}", index + 1, extent_in_words(response, branch))),
         Block::Table {
-            head: heads(&[name, "amplitude", "phase", "peak", "stable", "multiplier", "error"]),
+            head: heads(columns),
             rows: rows(&branch.points).into_iter().map(row).collect(),
         },
     ];
     if branch.mirrored {
-        blocks.push(Block::Sentence(
-            "Its mirror image, -x half a period of the drive later, is a branch as well, with the same amplitudes."
-                .to_owned(),
-        ));
+        let image = match response.self_excited {
+            true => "-x",
+            false => "-x half a period of the drive later",
+        };
+        blocks.push(Block::Sentence(format!(
+            "Its mirror image, {image}, is a branch as well, with the same amplitudes."
+        )));
     }
     for (end, point) in branch.ends.iter().zip([branch.points.first(), branch.points.last()]) {
         let Some(point) = point else { continue };
         let place = format!("{name} = {}", significant(point.parameter, 4));
         let words = match end {
             BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
+            BranchEnd::Slow => format!(
+                "No true motion was found beyond {place}, where its period is {}: it grows without bound beside a place of rest, or the \
+                 motion has more waves than are kept.",
+                significant(std::f64::consts::TAU / point.frequency, 4)
+            ),
             BranchEnd::Lost => {
                 format!("It could not be followed beyond {place}: the force has a jump or no value there.")
             }
             BranchEnd::Points => format!("It was followed no farther than {place}: it has too many points."),
             BranchEnd::Interrupted => format!("It was followed no farther than {place}: interrupted."),
-            BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing => continue,
+            BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing | BranchEnd::Rest => continue,
         };
         blocks.push(Block::Sentence(words));
     }
@@ -200,6 +251,8 @@ pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
         BifurcationKind::BranchPoint => "branch point",
         BifurcationKind::PeriodDoubling => "period doubling",
         BifurcationKind::NeimarkSacker => "Neimark-Sacker",
+        BifurcationKind::Hopf => "Hopf",
+        BifurcationKind::Centre => "centre",
     }
 }
 
@@ -210,18 +263,26 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
     }
     let name = response.question.parameter.name();
     let row = |bifurcation: &crate::response::Bifurcation| {
-        vec![
+        let mut row = vec![
             bifurcation_in_words(bifurcation.kind).to_owned(),
             decimal(bifurcation.parameter),
             decimal(bifurcation.amplitude),
             decimal(bifurcation.peak),
             (bifurcation.branch + 1).to_string(),
-        ]
+        ];
+        if response.self_excited {
+            row.insert(3, decimal(bifurcation.frequency));
+        }
+        row
     };
+    let mut columns = vec!["", name, "amplitude", "peak", "branch"];
+    if response.self_excited {
+        columns.insert(3, "frequency");
+    }
     let mut blocks = vec![
         Block::Heading("where branches change".to_owned()),
         Block::Table {
-            head: heads(&["", name, "amplitude", "peak", "branch"]),
+            head: heads(&columns),
             rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
         },
     ];
@@ -229,10 +290,13 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
         blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
     }
     let meaning = |kind: BifurcationKind| match kind {
+        BifurcationKind::Fold if response.self_excited => "At a fold two cycles meet and vanish.",
         BifurcationKind::Fold => "At a fold the motion jumps to another branch.",
         BifurcationKind::BranchPoint => "At a branch point another branch crosses.",
         BifurcationKind::PeriodDoubling => "At a period doubling motions of twice the period come off.",
         BifurcationKind::NeimarkSacker => "At a Neimark-Sacker point a second frequency comes in.",
+        BifurcationKind::Hopf => "At a Hopf point the motion is born from rest.",
+        BifurcationKind::Centre => "At a centre motions of every amplitude repeat themselves.",
     };
     let mut kinds: Vec<BifurcationKind> = all.iter().map(|bifurcation| bifurcation.kind).collect();
     kinds.sort();
@@ -336,8 +400,13 @@ fn judgement(response: &Response) -> Vec<Block<'static>> {
         "largest error",
         match response.error {
             Some(error) => format!(
-                "{} of the true peak, of {} points against shooting and {} against simulation",
+                "{} of the true {}, of {} points against shooting and {} against simulation",
                 significant(error, 2),
+                if response.self_excited {
+                    "peak or frequency"
+                } else {
+                    "peak"
+                },
                 points - response.unjudged,
                 response.simulated.len()
             ),

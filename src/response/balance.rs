@@ -1,4 +1,4 @@
-//! Harmonic balance with many harmonics: the equation of a driven motion as equations for its Fourier coefficients.
+//! Harmonic balance with many harmonics: the equation of a periodic motion as equations for its Fourier coefficients.
 //!
 //! ```text
 //! X(theta) = a_0 + sum_(k = 1..H) a_k cos(k theta) + b_k sin(k theta),   u = (a_0, a_1, b_1, ..., a_H, b_H)
@@ -10,6 +10,9 @@
 //! and J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019). The Jacobian comes from the harmonics of the
 //! derivatives of the force at the same samples. In: coefficients and a parameter. Out: residual and derivatives, in the units of the
 //! equation.
+//!
+//! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it begins where the first sine is zero,
+//! and the frequency takes the place of b_1 among the unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -83,6 +86,48 @@ impl<'a> Balance<'a> {
         2 * self.harmonics + 1
     }
 
+    /// The frequency of a motion.
+    pub fn frequency(&self, coefficients: &DVector<f64>, parameter: f64) -> f64 {
+        match self.driven.self_excited {
+            true => coefficients[FREQUENCY],
+            false => self.driven.frequency_at(parameter),
+        }
+    }
+
+    /// The place of the frequency among the unknowns, where it is one of them.
+    pub(super) fn frequency_place(&self) -> Option<usize> {
+        self.driven.self_excited.then_some(FREQUENCY)
+    }
+
+    /// Cosine and sine of a harmonic of a motion; of harmonic 0, the mean and zero.
+    pub fn harmonic(&self, coefficients: &DVector<f64>, harmonic: usize) -> [f64; 2] {
+        match harmonic {
+            0 => [coefficients[0], 0.0],
+            1 if self.driven.self_excited => [coefficients[1], 0.0],
+            _ => [coefficients[2 * harmonic - 1], coefficients[2 * harmonic]],
+        }
+    }
+
+    /// The size of what moves in a motion.
+    pub fn extent(&self, coefficients: &DVector<f64>) -> f64 {
+        let size = coefficients.len();
+        match self.frequency_place() {
+            None => coefficients.rows(1, size - 1).norm(),
+            Some(place) => coefficients[1].hypot(coefficients.rows(place + 1, size - place - 1).norm()),
+        }
+    }
+
+    /// The unknowns of a motion of this frequency that is known at any number of equal steps of a period.
+    pub fn unknowns_of(&self, positions: &[f64], frequency: f64) -> DVector<f64> {
+        let coefficients = self.coefficients_of(positions);
+        if !self.driven.self_excited {
+            return coefficients;
+        }
+        let mut begun = later(&coefficients, coefficients[2].atan2(coefficients[1]));
+        begun[FREQUENCY] = frequency;
+        begun
+    }
+
     /// The number of samples.
     pub fn samples(&self) -> usize {
         self.cosines.len()
@@ -104,7 +149,7 @@ impl<'a> Balance<'a> {
             let mut point = [coefficients[0], 0.0, 0.0];
             for harmonic in 1..=self.harmonics {
                 let (cosine, sine) = self.wave(harmonic, sample);
-                let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
+                let [a, b] = self.harmonic(coefficients, harmonic);
                 let k = harmonic as f64;
                 let value = a * cosine + b * sine;
                 point[0] += value;
@@ -164,12 +209,18 @@ impl<'a> Balance<'a> {
     /// The residual and its derivatives; nothing where the force has no finite value on the motion.
     pub fn linearised(&self, coefficients: &DVector<f64>, parameter: f64) -> Option<Linearised> {
         let driven = self.driven;
-        let (omega, omega_slope) = (driven.frequency_at(parameter), driven.frequency_slope(parameter));
+        let (omega, omega_slope) = (
+            self.frequency(coefficients, parameter),
+            driven.frequency_slope(parameter),
+        );
+        if omega.is_nan() || omega <= 0.0 {
+            return None;
+        }
         let step = std::f64::consts::TAU / self.samples() as f64;
         let motion = self.motion(coefficients);
         let count = motion.len();
         let (mut inertia, mut force) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut slopes: [Vec<f64>; 3] = std::array::from_fn(|_| Vec::with_capacity(count));
+        let mut slopes: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(count));
         for (sample, [position, by_phase, curvature]) in motion.iter().enumerate() {
             let velocity = omega * by_phase;
             let at = [*position, velocity, step * sample as f64, parameter];
@@ -178,14 +229,19 @@ impl<'a> Balance<'a> {
             force.push(driven.force(&at));
             slopes[0].push(by_position);
             slopes[1].push(by_velocity);
-            slopes[2].push(by_parameter + omega_slope * (2.0 * omega * curvature + by_velocity * by_phase));
+            let by_frequency = 2.0 * omega * curvature + by_velocity * by_phase;
+            slopes[2].push(by_parameter + omega_slope * by_frequency);
+            slopes[3].push(by_frequency);
         }
         let sum: Vec<f64> = inertia.iter().zip(&force).map(|(one, other)| one + other).collect();
         if !sum.iter().chain(slopes.iter().flatten()).all(|value| value.is_finite()) {
             return None;
         }
         let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let jacobian = self.jacobian(&slopes, omega);
+        let mut jacobian = self.jacobian([&slopes[0], &slopes[1]], omega);
+        if let Some(place) = self.frequency_place() {
+            jacobian.set_column(place, &self.coefficients(&slopes[3]));
+        }
         Some(Linearised {
             residual: self.coefficients(&sum),
             jacobian,
@@ -195,7 +251,7 @@ impl<'a> Balance<'a> {
     }
 
     /// dR/du from the derivatives of the force at the samples.
-    fn jacobian(&self, [by_position, by_velocity, _]: &[Vec<f64>; 3], omega: f64) -> DMatrix<f64> {
+    fn jacobian(&self, [by_position, by_velocity]: [&[f64]; 2], omega: f64) -> DMatrix<f64> {
         let stiffness = self.harmonics_of(by_position, 2 * self.harmonics);
         let damping = self.harmonics_of(by_velocity, 2 * self.harmonics);
         // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these harmonics.
@@ -232,11 +288,18 @@ impl<'a> Balance<'a> {
             let linear = self.linearised(&coefficients, parameter)?;
             let step = linear.jacobian.lu().solve(&linear.residual)?;
             coefficients -= &step;
-            let size = coefficients.norm();
-            if !size.is_finite() {
+            if !coefficients.norm().is_finite() {
                 return None;
             }
-            if step.norm() <= CONVERGED * size || linear.residual.norm() <= 1e-14 * linear.scale {
+            let settled = match self.frequency_place() {
+                None => step.norm() <= CONVERGED * coefficients.norm(),
+                // A frequency is measured in itself.
+                Some(place) => {
+                    let [size, moved] = [&coefficients, &step].map(|vector| self.extent(vector).hypot(vector[0]));
+                    moved <= CONVERGED * size && step[place].abs() <= CONVERGED * coefficients[place].abs()
+                }
+            };
+            if settled || linear.residual.norm() <= 1e-14 * linear.scale {
                 return Some(coefficients);
             }
         }
@@ -245,18 +308,19 @@ impl<'a> Balance<'a> {
 
     /// Position and velocity at phase zero.
     pub fn start(&self, coefficients: &DVector<f64>, parameter: f64) -> [f64; 2] {
-        let omega = self.driven.frequency_at(parameter);
+        let omega = self.frequency(coefficients, parameter);
         let mut start = [coefficients[0], 0.0];
         for harmonic in 1..=self.harmonics {
-            start[0] += coefficients[2 * harmonic - 1];
-            start[1] += omega * harmonic as f64 * coefficients[2 * harmonic];
+            let [a, b] = self.harmonic(coefficients, harmonic);
+            start[0] += a;
+            start[1] += omega * harmonic as f64 * b;
         }
         start
     }
 
     /// Position and velocity at a phase.
     pub fn at(&self, coefficients: &DVector<f64>, parameter: f64, phase: f64) -> [f64; 2] {
-        let omega = self.driven.frequency_at(parameter);
+        let omega = self.frequency(coefficients, parameter);
         let mut point = [coefficients[0], 0.0];
         let (step_sine, step_cosine) = phase.sin_cos();
         let (mut cosine, mut sine) = (1.0, 0.0);
@@ -265,13 +329,28 @@ impl<'a> Balance<'a> {
                 cosine * step_cosine - sine * step_sine,
                 sine * step_cosine + cosine * step_sine,
             );
-            let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
+            let [a, b] = self.harmonic(coefficients, harmonic);
             point[0] += a * cosine + b * sine;
             point[1] += omega * harmonic as f64 * (b * cosine - a * sine);
         }
         point
     }
 }
+
+/// The motion begun later by a phase.
+pub(super) fn later(coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
+    let mut turned = coefficients.clone();
+    for harmonic in 1..=(coefficients.len() - 1) / 2 {
+        let (sine, cosine) = (phase * harmonic as f64).sin_cos();
+        let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
+        turned[2 * harmonic - 1] = a * cosine + b * sine;
+        turned[2 * harmonic] = b * cosine - a * sine;
+    }
+    turned
+}
+
+/// The place of the frequency among the unknowns, where it is one: that of b_1, which is zero.
+const FREQUENCY: usize = 2;
 
 /// A step of Newton's method that is smaller than this part of the motion is its last.
 pub(super) const CONVERGED: f64 = 1e-10;

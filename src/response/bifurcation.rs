@@ -5,6 +5,8 @@
 //! branch point             the determinant of the bordered equations changes its sign, dp does not
 //! period doubling          det(M + 1) = 1 + tr M + det M changes its sign: a multiplier passes -1
 //! Neimark-Sacker           det M passes 1 while the multipliers are a complex pair: they leave the unit circle together
+//! Hopf                     the end of a branch of self-excited motions, where the amplitude is zero
+//! centre                   a crossing with motions of every amplitude at one value of the parameter
 //! ```
 //!
 //! (A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, chapter 3; Y. A. Kuznetsov, *Elements of Applied Bifurcation
@@ -28,6 +30,10 @@ pub enum BifurcationKind {
     PeriodDoubling,
     /// A second frequency comes in.
     NeimarkSacker,
+    /// A self-excited motion is born from rest.
+    Hopf,
+    /// Motions of every amplitude, though nothing drives them.
+    Centre,
 }
 
 impl BifurcationKind {
@@ -38,6 +44,8 @@ impl BifurcationKind {
             Self::BranchPoint => "branch-point",
             Self::PeriodDoubling => "period-doubling",
             Self::NeimarkSacker => "neimark-sacker",
+            Self::Hopf => "hopf",
+            Self::Centre => "centre",
         }
     }
 }
@@ -53,6 +61,8 @@ fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<
         BifurcationKind::BranchPoint => node.orientation,
         BifurcationKind::PeriodDoubling => 1.0 + trace + determinant,
         BifurcationKind::NeimarkSacker => determinant - 1.0,
+        // One lies at the end of a branch, where continuation finds it; the other is a crossing of branches.
+        BifurcationKind::Hopf | BifurcationKind::Centre => f64::NAN,
     };
     value.is_finite().then_some(value)
 }
@@ -68,7 +78,12 @@ pub fn between(
     /// A determinant that stays this close to 1 is that of a motion without damping.
     const CONSERVED: f64 = 1e-6;
     let mut found = Vec::new();
-    for kind in [BranchPoint, Fold, PeriodDoubling, NeimarkSacker] {
+    // The multipliers of a self-excited motion stay on the positive side.
+    let kinds = match balance.driven.self_excited {
+        true => &[BranchPoint, Fold][..],
+        false => &[BranchPoint, Fold, PeriodDoubling, NeimarkSacker],
+    };
+    for &kind in kinds {
         let (Some(before), Some(after)) = (test(kind, from.0, from.1), test(kind, to.0, to.1)) else {
             continue;
         };

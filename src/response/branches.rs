@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::balance::Balance;
-use super::continuation::{BranchEnd, Node, Path, Walk, extent};
+use super::balance::{Balance, later};
+use super::continuation::{BranchEnd, Node, Path, Walk};
 use super::seeds::Seed;
 use super::{Asked, MOST_BRANCHES};
 
@@ -24,13 +24,16 @@ impl Asked<'_> {
             if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
                 break;
             }
-            let guess = balance.coefficients_of(&seed.positions);
+            let guess = balance.unknowns_of(&seed.positions, seed.frequency);
             let Some(found) = balance.solve(&guess, seed.parameter) else {
                 continue;
             };
             let walk = self.walk(
                 seeds,
-                paths.iter().map(largest).fold(size.max(extent(&found)), f64::max),
+                paths
+                    .iter()
+                    .map(|path| largest(balance, path))
+                    .fold(size.max(balance.extent(&found)), f64::max),
             );
             if self.was_known(balance, &mut paths, &found, seed.parameter) {
                 continue;
@@ -53,7 +56,7 @@ impl Asked<'_> {
 
     /// Keeps a branch that is none of those that are known, nor the mirror image of one.
     fn keep(&self, balance: &Balance, mut path: Path, paths: &mut Vec<Path>) {
-        if path.nodes.len() < 2 {
+        if path.nodes.len() < 2 || self.is_centre(&path) {
             return;
         }
         self.cut_at_crossing(balance, &mut path);
@@ -98,7 +101,7 @@ impl Asked<'_> {
         /// The part of a motion by which a guess between two points may be off.
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
-        let size = extent(coefficients).max(1e-3 * coefficients.norm());
+        let size = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let period = std::f64::consts::TAU / self.question.periods as f64;
         let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
         let shifted: Vec<DVector<f64>> = shifts.clone().map(|shift| later(coefficients, shift)).collect();
@@ -106,10 +109,9 @@ impl Asked<'_> {
         // Places between which the force does not change, such as those a turn of a pendulum apart, are one.
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
             let near = |shifted: &DVector<f64>| {
-                let mut apart = motion - shifted;
+                let apart = motion - shifted;
                 let mean = apart[0];
-                apart[0] = 0.0;
-                let allowed = within * size.max(extent(motion));
+                let allowed = within * size.max(balance.extent(motion));
                 apart.norm() <= allowed && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
             };
             of.iter().any(near)
@@ -148,35 +150,36 @@ impl Asked<'_> {
         })
     }
 
-    /// Follows the branch that crosses another one here.
-    pub(super) fn follow_crossing(&self, balance: &Balance, walk: &Walk, at: &Node, paths: &mut Vec<Path>) {
+    /// Follows the branch that crosses another one here; whether that has motions of every amplitude at this one value of the parameter.
+    pub(super) fn follow_crossing(&self, balance: &Balance, walk: &Walk, at: &Node, paths: &mut Vec<Path>) -> bool {
+        let mut is_centre = false;
         for node in walk.crossing(balance, at) {
             if self.was_known(balance, paths, &node.coefficients, node.parameter) {
                 continue;
             }
             if let Some(path) = walk.along(balance, &node.coefficients, node.parameter, &node.tangent) {
+                is_centre |= self.is_centre(&path);
                 self.keep(balance, path, paths);
             }
         }
+        is_centre
+    }
+
+    /// Whether these are motions without drive at one value of the parameter.
+    fn is_centre(&self, path: &Path) -> bool {
+        /// Of the range.
+        const NOTHING: f64 = 1e-9;
+        let [low, high] = self.question.range;
+        let first = path.nodes.first().map_or(low, |node| node.parameter);
+        let moves = |node: &Node| (node.parameter - first).abs() > NOTHING * (high - low);
+        self.driven.self_excited && !path.nodes.iter().any(moves)
     }
 }
 
 /// The size of the largest motion of a branch.
-pub(super) fn largest(path: &Path) -> f64 {
+pub(super) fn largest(balance: &Balance, path: &Path) -> f64 {
     path.nodes
         .iter()
-        .map(|node| extent(&node.coefficients))
+        .map(|node| balance.extent(&node.coefficients))
         .fold(0.0, f64::max)
-}
-
-/// The motion begun later by a phase.
-fn later(coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
-    let mut turned = coefficients.clone();
-    for harmonic in 1..=(coefficients.len() - 1) / 2 {
-        let (sine, cosine) = (phase * harmonic as f64).sin_cos();
-        let (a, b) = (coefficients[2 * harmonic - 1], coefficients[2 * harmonic]);
-        turned[2 * harmonic - 1] = a * cosine + b * sine;
-        turned[2 * harmonic] = b * cosine - a * sine;
-    }
-    turned
 }

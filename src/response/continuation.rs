@@ -13,6 +13,7 @@
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::balance::{Balance, CONVERGED, Linearised};
+use super::hopf;
 use crate::interrupt::Interrupt;
 
 /// A point of a branch.
@@ -51,6 +52,10 @@ pub enum BranchEnd {
     Lost,
     /// After as many points as are allowed.
     Points,
+    /// Its amplitude has come to zero: a self-excited motion is born from rest there.
+    Rest,
+    /// Its period grows without bound: a self-excited motion comes near a place of rest that it cannot pass.
+    Slow,
     /// Somebody asked for it.
     Interrupted,
 }
@@ -88,22 +93,24 @@ pub struct Walk {
 struct Weights {
     coefficients: f64,
     parameter: f64,
+    /// Of the frequency and its place, where it is an unknown.
+    frequency: Option<(usize, f64)>,
 }
 
 impl Weights {
+    /// Of an unknown, of which there are `size`, or behind them of the parameter.
     fn of(&self, index: usize, size: usize) -> f64 {
-        let weight = if index < size {
-            self.coefficients
-        } else {
-            self.parameter
-        };
-        weight * weight
+        match self.frequency {
+            Some((place, weight)) if place == index => weight,
+            _ if index < size => self.coefficients,
+            _ => self.parameter,
+        }
     }
 
     fn dot(&self, one: &DVector<f64>, other: &DVector<f64>) -> f64 {
         let size = one.len() - 1;
         (0..one.len())
-            .map(|index| self.of(index, size) * one[index] * other[index])
+            .map(|index| self.of(index, size).powi(2) * one[index] * other[index])
             .sum()
     }
 
@@ -114,13 +121,8 @@ impl Weights {
     /// The last row of the bordered equations: a product with it is one with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
-        DVector::from_fn(size + 1, |index, _| self.of(index, size) * direction[index])
+        DVector::from_fn(size + 1, |index, _| self.of(index, size).powi(2) * direction[index])
     }
-}
-
-/// The size of what moves in a motion.
-pub fn extent(coefficients: &DVector<f64>) -> f64 {
-    coefficients.rows(1, coefficients.len() - 1).norm()
 }
 
 /// Coefficients and parameter as one vector.
@@ -139,14 +141,17 @@ fn bordered(linear: &Linearised, row: &DVector<f64>) -> DMatrix<f64> {
 }
 
 impl Walk {
-    fn weights(&self, coefficients: &DVector<f64>) -> Weights {
+    fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
-        let own = extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let own = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let size = own.max(SMALLEST * self.size);
         Weights {
             coefficients: if size > 0.0 { 1.0 / size } else { 1.0 },
             parameter: 1.0 / (self.range[1] - self.range[0]),
+            frequency: balance
+                .frequency_place()
+                .map(|place| (place, 1.0 / coefficients[place])),
         }
     }
 
@@ -187,7 +192,7 @@ impl Walk {
 
     /// A point between two of a branch, at this part of the way.
     pub fn between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
-        let weights = self.weights(&from.coefficients);
+        let weights = self.weights(balance, &from.coefficients);
         let (start, end) = (
             joined(&from.coefficients, from.parameter),
             joined(&to.coefficients, to.parameter),
@@ -217,7 +222,7 @@ impl Walk {
         parameter: f64,
         direction: &DVector<f64>,
     ) -> Option<Path> {
-        let weights = self.weights(coefficients);
+        let weights = self.weights(balance, coefficients);
         let linear = balance.linearised(coefficients, parameter)?;
         let length = weights.norm(direction);
         let factors = bordered(&linear, &weights.row(&(direction / length))).lu();
@@ -236,7 +241,7 @@ impl Walk {
         }
         let largest = nodes
             .iter()
-            .map(|node| extent(&node.coefficients))
+            .map(|node| balance.extent(&node.coefficients))
             .fold(self.size, f64::max);
         let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
         let turned = before.into_iter().skip(1).map(|mut node| {
@@ -263,9 +268,12 @@ impl Walk {
         /// Cosine of the angle between tangents beyond which a step was too long.
         const SHARPEST: f64 = 0.94;
         const ENORMOUS: f64 = 1e4;
+        /// Of the highest frequency of a branch: what is slower is no more than a sum of waves can say.
+        const SLOW: f64 = 0.05;
         let [low, high] = self.range;
-        let bound = ENORMOUS * extent(&start.coefficients).max(self.ordinary);
+        let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
         let mut nodes = vec![start];
+        let mut fastest = 0.0_f64;
         let mut step = FIRST * self.longest;
         loop {
             if self.interrupt.is_requested() {
@@ -275,7 +283,7 @@ impl Walk {
                 return (nodes, BranchEnd::Points);
             }
             let here = &nodes[nodes.len() - 1];
-            let weights = self.weights(&here.coefficients);
+            let weights = self.weights(balance, &here.coefficients);
             let tangent = &here.tangent / weights.norm(&here.tangent);
             let start = joined(&here.coefficients, here.parameter);
             let guess = &start + &tangent * step;
@@ -287,7 +295,9 @@ impl Walk {
             let Some((mut node, iterations)) = found else {
                 step *= 0.5;
                 if step < SHORTEST {
-                    return (nodes, BranchEnd::Lost);
+                    // Where the damping has a corner at rest the branch has one there as well.
+                    let near = here.parameter;
+                    return self.ended_at_rest(balance, nodes, near);
                 }
                 continue;
             };
@@ -298,7 +308,20 @@ impl Walk {
                 }
                 return (nodes, BranchEnd::Range);
             }
-            let size = extent(&node.coefficients);
+            if balance.driven.self_excited && here.coefficients[1] * node.coefficients[1] <= 0.0 {
+                // Beyond rest the same motions come again, begun half a period later.
+                let part = here.coefficients[1] / (here.coefficients[1] - node.coefficients[1]);
+                let near = here.parameter + part * (node.parameter - here.parameter);
+                return self.ended_at_rest(balance, nodes, near);
+            }
+            if let Some(place) = balance.frequency_place() {
+                let own = node.coefficients[place];
+                fastest = fastest.max(own);
+                if own < SLOW * fastest {
+                    return (nodes, BranchEnd::Slow);
+                }
+            }
+            let size = balance.extent(&node.coefficients);
             if size > bound {
                 return (nodes, BranchEnd::Unbounded);
             }
@@ -315,6 +338,40 @@ impl Walk {
             }
             step = step.min(self.longest);
         }
+    }
+
+    /// These points, and the motion of amplitude zero behind them where the branch ends in one near this parameter.
+    fn ended_at_rest(&self, balance: &Balance, mut nodes: Vec<Node>, near: f64) -> (Vec<Node>, BranchEnd) {
+        let Some(rest) = self.rest_beside(balance, &nodes[nodes.len() - 1], near) else {
+            return (nodes, BranchEnd::Lost);
+        };
+        nodes.push(rest);
+        (nodes, BranchEnd::Rest)
+    }
+
+    /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited motion is born.
+    fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
+        /// Of the largest motion, and of the range: what is beside.
+        const BESIDE: f64 = 0.1;
+        let small = BESIDE * self.size.max(self.ordinary);
+        if !balance.driven.self_excited || balance.extent(&here.coefficients) > small {
+            return None;
+        }
+        let [low, high] = self.range;
+        let born = hopf::near(balance.driven, here.coefficients[0], near, [small, high - low])?;
+        let far = (born.parameter - here.parameter).abs() > BESIDE * (high - low)
+            || (born.position - here.coefficients[0]).abs() > small;
+        if far || !(low..=high).contains(&born.parameter) {
+            return None;
+        }
+        let mut coefficients = DVector::zeros(balance.size());
+        coefficients[0] = born.position;
+        coefficients[balance.frequency_place()?] = born.frequency;
+        Some(Node {
+            coefficients,
+            parameter: born.parameter,
+            ..here.clone()
+        })
     }
 
     /// Whether the way from one point to the next passes the first one in its direction.
@@ -341,7 +398,7 @@ impl Walk {
         let part = (bound - inside.parameter) / way;
         let guess = &inside.coefficients + (&outside.coefficients - &inside.coefficients) * part;
         let coefficients = balance.solve(&guess, bound)?;
-        let weights = self.weights(&inside.coefficients);
+        let weights = self.weights(balance, &inside.coefficients);
         let jump = weights.norm(&joined(&(&coefficients - &guess), 0.0));
         if jump > self.longest {
             return None;
@@ -359,23 +416,17 @@ impl Walk {
         let Some(linear) = balance.linearised(&at.coefficients, at.parameter) else {
             return vec![];
         };
-        let weights = self.weights(&at.coefficients);
+        let weights = self.weights(balance, &at.coefficients);
         // In weighted variables, so that right angles are those of the steps.
         let matrix = DMatrix::from_fn(size, size + 1, |i, j| match j < size {
-            true => linear.jacobian[(i, j)] / weights.coefficients,
-            false => linear.by_parameter[i] / weights.parameter,
+            true => linear.jacobian[(i, j)] / weights.of(j, size),
+            false => linear.by_parameter[i] / weights.of(j, size),
         });
         let square = matrix.transpose() * &matrix;
         let eigen = square.symmetric_eigen();
         let mut order: Vec<usize> = (0..=size).collect();
         order.sort_by(|one, other| eigen.eigenvalues[*one].total_cmp(&eigen.eigenvalues[*other]));
-        let scale = |index: usize| {
-            if index < size {
-                weights.coefficients
-            } else {
-                weights.parameter
-            }
-        };
+        let scale = |index: usize| weights.of(index, size);
         let tangent = DVector::from_fn(size + 1, |index, _| at.tangent[index] * scale(index));
         let tangent = &tangent / tangent.norm();
         let candidates = order.iter().take(2).map(|index| {

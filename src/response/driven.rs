@@ -7,6 +7,7 @@
 //! In: an oscillator with exact numbers for all parameters but one, p, which varies, and how many periods of the drive, n, a period
 //! of the motion takes. Out: f and its derivatives by x, x' and p at a fixed phase as straight lists of operations. Time may stand
 //! inside `sin`, `cos` and `tan` alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
+//! Where it does not occur at all, omega is an unknown of every motion.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, Zero};
@@ -26,6 +27,8 @@ pub struct Driven {
     pub parameter: Symbol,
     /// Periods of the drive in a period of the motion.
     pub periods: usize,
+    /// Whether nothing drives it: the frequency of a motion is then an unknown, for which `frequency` is a name.
+    pub self_excited: bool,
     /// f(x, x', theta; p).
     force: CompiledFunction,
     /// Its derivatives by x, x' and p.
@@ -91,13 +94,21 @@ fn jump_of_velocity(oscillator: &Oscillator) -> Result<Option<Expr>, ResponseErr
 }
 
 impl Driven {
-    /// Of an oscillator without other parameters than the one that varies.
+    /// Of an oscillator without other parameters than the one that varies; self-excited where time does not occur.
     ///
     /// # Errors
-    /// No drive, or one that is not periodic; several frequencies that are no multiples of one; a derivative that cannot be written.
+    /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative that cannot be written.
     pub fn new(oscillator: &Oscillator, parameter: Symbol, periods: usize) -> Result<Self, ResponseError> {
         if let Some(term) = jump_of_velocity(oscillator)? {
             return Err(ResponseError::Jump(term.to_string()));
+        }
+        if !oscillator.force.contains(Symbol::new("t")) {
+            let names: Vec<Symbol> = oscillator.names().into_iter().chain([parameter]).collect();
+            return Ok(Self {
+                frequency: Expr::from(fresh("omega", &names)),
+                self_excited: true,
+                ..Self::of_frequency(oscillator, Expr::from(1), parameter, 1)?
+            });
         }
         let frequency = drive_frequency(oscillator)?;
         Self::of_frequency(oscillator, frequency, parameter, periods)
@@ -134,12 +145,13 @@ impl Driven {
             frequency,
             parameter,
             periods,
+            self_excited: false,
             undamped,
             smooth: !CORNERS.iter().any(|corner| oscillator.force.contains_function(*corner)),
         })
     }
 
-    /// omega: that of the motion, a whole part of that of the drive.
+    /// omega: that of the motion, a whole part of that of the drive; 1 where there is no drive.
     pub fn frequency_at(&self, parameter: f64) -> f64 {
         self.base[0].call(&[parameter])
     }

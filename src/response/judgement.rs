@@ -1,9 +1,12 @@
 //! Points of a branch beside the true motion that shooting finds, and simulations let go beside the stable ones.
 
+use nalgebra::Matrix2;
+
 use super::balance::Balance;
-use super::continuation::{Node, extent};
+use super::continuation::Node;
+use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
-    Floquet, Settled, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
+    Floquet, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
 };
 use super::{Asked, Branch, MOST_EVALUATIONS, Point, Simulated};
 
@@ -15,19 +18,61 @@ impl Asked<'_> {
     pub(super) fn judged(&self, balance: &Balance, node: &Node) -> Judged {
         /// Parts of its size by which the true motion may differ: beyond it is another one.
         const OTHER: f64 = 0.3;
+        if self.driven.self_excited {
+            return self.judged_cycle(balance, node);
+        }
         let start = balance.start(&node.coefficients, node.parameter);
-        let size = extent(&node.coefficients);
+        let size = balance.extent(&node.coefficients);
         let truth = periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
             let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
             (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size.max(1e-12)
         });
         let floquet = truth.map(|truth| truth.floquet);
         let along = || {
-            multipliers_along(&self.driven, node.parameter, |phase| {
+            let frequency = self.driven.frequency_at(node.parameter);
+            multipliers_along(&self.driven, node.parameter, frequency, |phase| {
                 balance.at(&node.coefficients, node.parameter, phase)
             })
         };
         (floquet.or_else(along), truth)
+    }
+
+    /// The same of a motion without drive: the true one may begin at another phase.
+    fn judged_cycle(&self, balance: &Balance, node: &Node) -> Judged {
+        const OTHER: f64 = 0.3;
+        let (u, parameter) = (&node.coefficients, node.parameter);
+        let frequency = balance.frequency(u, parameter);
+        let guess = Guess {
+            start: balance.start(u, parameter),
+            frequency,
+            size: balance.extent(u),
+        };
+        let damping = balance.motion(u).into_iter().map(|[x, by_phase, _]| {
+            let [_, by_velocity, _] = self.driven.slopes(&[x, frequency * by_phase, 0.0, parameter]);
+            by_velocity
+        });
+        let mean = damping.sum::<f64>() / balance.samples() as f64;
+        let along = Floquet {
+            monodromy: Matrix2::new((-mean * std::f64::consts::TAU / frequency).exp(), 0.0, 0.0, 1.0),
+            self_excited: true,
+        };
+        if guess.size == 0.0 {
+            // At rest it is what it is: there the place and the frequency come from the equation itself.
+            let at_rest = TrueMotion {
+                start: guess.start,
+                frequency,
+                floquet: along,
+                first_harmonic: [0.0, 0.0],
+                peak: 0.0,
+            };
+            return (Some(along), Some(at_rest));
+        }
+        let amplitude = |[cosine, sine]: [f64; 2]| cosine.hypot(sine);
+        let truth = true_cycle(&self.driven, &guess, parameter, along.largest() > 1.0).filter(|truth| {
+            let apart = amplitude(truth.first_harmonic) - amplitude(balance.harmonic(u, 1));
+            apart.abs() <= OTHER * guess.size
+        });
+        (Some(truth.map_or(along, |truth| truth.floquet)), truth)
     }
 
     pub(super) fn point(&self, balance: &Balance, node: &Node, (floquet, truth): Judged, size: f64) -> Point {
@@ -35,29 +80,30 @@ impl Asked<'_> {
         let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
         /// Of the motion: less is rounding.
         const NOTHING: f64 = 1e-12;
-        let (amplitude, peak) = (u[1].hypot(u[2]), half_of_peak_to_peak(&positions));
+        let [cosine, sine] = balance.harmonic(u, 1);
+        let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&positions));
+        let frequency = balance.frequency(u, node.parameter);
         let (amplitude, phase) = match amplitude > NOTHING * peak {
             // Half a turn is pi, whatever rounding has left of the sine.
-            true if u[2].abs() <= NOTHING * amplitude => {
-                (amplitude, if u[1] < 0.0 { std::f64::consts::PI } else { 0.0 })
+            true if sine.abs() <= NOTHING * amplitude => {
+                (amplitude, if cosine < 0.0 { std::f64::consts::PI } else { 0.0 })
             }
-            true => (amplitude, u[2].atan2(u[1])),
+            true => (amplitude, sine.atan2(cosine)),
             false => (0.0, 0.0),
         };
         let error = truth.map(|truth| {
             let [cosine, sine] = truth.first_harmonic;
-            relative_error([amplitude, peak], [cosine.hypot(sine), truth.peak], size)
+            let of_size = relative_error([amplitude, peak], [cosine.hypot(sine), truth.peak], size);
+            of_size.max((frequency / truth.frequency - 1.0).abs())
         });
         // On the circle itself only rounding tells.
         let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
         Point {
             parameter: node.parameter,
             harmonics: (0..=balance.harmonics)
-                .map(|harmonic| match harmonic {
-                    0 => [u[0], 0.0],
-                    _ => [u[2 * harmonic - 1], u[2 * harmonic]],
-                })
+                .map(|harmonic| balance.harmonic(u, harmonic))
                 .collect(),
+            frequency,
             amplitude,
             phase,
             peak,
@@ -99,14 +145,25 @@ impl Asked<'_> {
                     let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
                     let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
                     let stopped = self.question.interrupt.is_requested();
-                    if !(needed > 0.0 && needed < PERIODS) || found.len() >= MOST || stopped {
+                    // Without drive what shooting does not find may be no motion at all.
+                    let nothing = self.driven.self_excited && point.error.is_none();
+                    if !(needed > 0.0 && needed < PERIODS) || found.len() >= MOST || stopped || nothing {
                         continue;
                     }
                     let most = needed.ceil() as usize + 8;
                     let mut run = |disturbance: f64| {
                         let start = [point.start[0] + disturbance * point.peak, point.start[1]];
+                        if self.driven.self_excited {
+                            let guess = Guess {
+                                start,
+                                frequency: point.frequency,
+                                size: point.peak,
+                            };
+                            let found = cycle::settled(&self.driven, &guess, point.parameter, most, &mut budget)?;
+                            return Some(simulated(point, &found.1, found.0, size));
+                        }
                         let settled = settle(&self.driven, start, point.parameter, (most, CLOSELY), &mut budget)?;
-                        Some(simulated(point, &settled, size))
+                        Some(simulated(point, &settled.positions, point.frequency, size))
                     };
                     // Where the first leads to another motion the second, much smaller, decides.
                     let first = run(DISTURBANCES[0]);
@@ -122,14 +179,16 @@ impl Asked<'_> {
     }
 }
 
-fn simulated(point: &Point, settled: &Settled, size: f64) -> Simulated {
-    let [cosine, sine] = first_harmonic(&settled.positions);
-    let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&settled.positions));
+fn simulated(point: &Point, positions: &[f64], frequency: f64, size: f64) -> Simulated {
+    let [cosine, sine] = first_harmonic(positions);
+    let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(positions));
+    let of_size = relative_error([point.amplitude, point.peak], [amplitude, peak], size);
     Simulated {
         parameter: point.parameter,
+        frequency,
         amplitude,
         peak,
-        error: relative_error([point.amplitude, point.peak], [amplitude, peak], size),
+        error: of_size.max((point.frequency / frequency - 1.0).abs()),
     }
 }
 

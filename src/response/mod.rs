@@ -1,4 +1,5 @@
-//! Steady states of a driven oscillator: all branches of periodic motions with their stability, and what happens between them.
+//! Steady states of an oscillator, driven or self-excited: all branches of periodic motions with their stability, and what happens
+//! between them.
 //!
 //! ```text
 //! x'' + f(x, x', t; p) = 0,  f periodic in t:    X(theta) = a_0 + sum a_k cos(k theta) + b_k sin(k theta),  theta = omega t
@@ -17,17 +18,23 @@
 //! - [`backbone`]: the free motion without damping.
 //! - [`slow`]: the same motions by slow equations of amplitude and phase.
 //!
+//! - [`cycle`]: the true motion where nothing drives it, for start and period together; [`hopf`]: where it is born.
+//!
 //! Branches start where a simulation settles, from rest and from a ring of starts at several values of the parameter, and where others
-//! cross: that finds closed and disconnected ones wherever a simulation finds its way to them.
+//! cross: that finds closed and disconnected ones wherever a simulation finds its way to them. Limit cycles are found by their return
+//! to where they turn, forward and backward in time.
 
 pub mod backbone;
 pub mod balance;
 pub mod bifurcation;
 mod branches;
 pub mod continuation;
+pub mod cycle;
 pub mod driven;
+pub mod hopf;
 mod judgement;
 mod seeds;
+mod self_excited;
 pub mod slow;
 pub mod stability;
 
@@ -48,7 +55,7 @@ use backbone::{BackbonePoint, backbones};
 use balance::Balance;
 use bifurcation::BifurcationKind;
 use branches::largest;
-use continuation::{BranchEnd, Node, Walk};
+use continuation::{BranchEnd, Node, Path, Walk};
 use driven::Driven;
 use judgement::Judged;
 use seeds::{Seed, size_of};
@@ -79,9 +86,20 @@ pub struct Question {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ResponseError {
-    /// Time does not occur.
+    /// Time does not occur, and nothing feeds or damps the motion.
     #[error("there is no drive: time `t` does not occur in the equation")]
     NoDrive,
+    /// Time does not occur, and nothing excites the motion either.
+    #[error("there is no drive, and no limit cycle was found for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
+    NoCycle {
+        /// The parameter.
+        parameter: Symbol,
+        /// Its range.
+        range: [f64; 2],
+    },
+    /// Periods of a drive that there is not.
+    #[error("there is no drive of which a motion could take {0} periods: time `t` does not occur in the equation")]
+    NoPeriods(usize),
     /// Time enters in a way that does not repeat.
     #[error("the term `{0}` is not periodic in time")]
     NotPeriodic(String),
@@ -171,6 +189,8 @@ pub struct Point {
     pub parameter: f64,
     /// Coefficients of cos(k theta) and sin(k theta), from k = 0, the mean.
     pub harmonics: Vec<[f64; 2]>,
+    /// The frequency of the motion: that of the drive over the periods of it, or its own.
+    pub frequency: f64,
     /// The amplitude of the first harmonic of the motion.
     pub amplitude: f64,
     /// Its phase: amplitude * cos(theta - phase).
@@ -182,10 +202,10 @@ pub struct Point {
     /// Whether small disturbances die out, by the multipliers; without damping, whether they do not grow. Nothing where they could not
     /// be found.
     pub stable: Option<bool>,
-    /// The multipliers, the larger first.
+    /// The multipliers, the larger first; of a self-excited motion the one that decides, then the one along the motion, which is 1.
     pub multipliers: Option<[Complex<f64>; 2]>,
-    /// The error of amplitude or peak against the true motion that shooting found, the larger, over the true peak; nothing where it
-    /// found none near.
+    /// The error of amplitude or peak against the true motion that shooting found, the larger, over the true peak, or that of the
+    /// frequency, over the true one, if that is larger; nothing where it found none near.
     pub error: Option<f64>,
 }
 
@@ -209,6 +229,8 @@ pub struct Bifurcation {
     pub branch: usize,
     /// The parameter.
     pub parameter: f64,
+    /// The frequency of the motion.
+    pub frequency: f64,
     /// The amplitude of the first harmonic.
     pub amplitude: f64,
     /// Half of peak to peak.
@@ -235,11 +257,13 @@ impl Bifurcation {
 pub struct Simulated {
     /// The parameter.
     pub parameter: f64,
+    /// Its frequency.
+    pub frequency: f64,
     /// The amplitude of its first harmonic.
     pub amplitude: f64,
     /// Half of peak to peak.
     pub peak: f64,
-    /// The error of the point against it: of amplitude or peak, the larger, over its peak.
+    /// The error of the point against it: of amplitude or peak, the larger, over its peak, or of the frequency.
     pub error: f64,
 }
 
@@ -257,8 +281,10 @@ pub struct Elsewhere {
 pub struct Response {
     /// What was asked.
     pub question: Question,
-    /// The frequency of the drive.
+    /// The frequency of the drive; where there is none a name for that of the motion, of which each point has the number.
     pub frequency: Expr,
+    /// Whether nothing drives the motion.
+    pub self_excited: bool,
     /// Whether nothing damps the motion.
     pub undamped: bool,
     /// How many harmonics were kept.
@@ -339,9 +365,31 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
         if last {
             response.elsewhere = elsewhere;
-            return Ok(response);
+            return match response.self_excited {
+                true => asked.without_tails(response),
+                false => Ok(response),
+            };
         }
         harmonics *= 2;
+    }
+}
+
+impl Response {
+    /// The same with the largest error of its points and simulations, and the verdict on it.
+    fn with_verdict(mut self) -> Self {
+        let points = || self.branches.iter().flat_map(|branch| &branch.points);
+        let errors = points().filter_map(|point| point.error);
+        let errors = errors.chain(self.simulated.iter().map(|simulated| simulated.error));
+        let error = errors.fold(None, |largest: Option<f64>, error| {
+            Some(largest.map_or(error, |largest| largest.max(error)))
+        });
+        let (all, unjudged) = points().fold((0, 0), |(all, none), point| {
+            (all + 1, none + usize::from(point.error.is_none()))
+        });
+        let small = error.is_some_and(|error| error <= self.question.tolerance);
+        self.verdict = Verdict::of(small && 20 * unjudged <= all);
+        (self.error, self.unjudged) = (error, unjudged);
+        self
     }
 }
 
@@ -383,8 +431,12 @@ impl<'a> Asked<'a> {
             oscillator, parameter, ..
         } = question;
         let known = &oscillator.parameters;
-        if !oscillator.force.contains(Symbol::new("t")) {
+        let self_excited = !oscillator.force.contains(Symbol::new("t"));
+        if self_excited && oscillator.parts().is_ok_and(|parts| parts.damping.is_zero()) {
             return Err(ResponseError::NoDrive);
+        }
+        if self_excited && question.periods != 1 {
+            return Err(ResponseError::NoPeriods(question.periods));
         }
         if !known.contains(parameter) {
             return Err(ResponseError::NoParameter {
@@ -422,23 +474,33 @@ impl<'a> Asked<'a> {
         let values: BTreeMap<Symbol, Expr> = question.values.split(known).0;
         let oscillator = oscillator.with_values(&values)?;
         let driven = Driven::new(&oscillator, *parameter, question.periods)?;
+        if driven.self_excited && driven.undamped {
+            return Err(ResponseError::NoDrive);
+        }
+        let asked = Self {
+            question,
+            oscillator,
+            driven,
+        };
+        asked.has_frequency()
+    }
+
+    /// Whether the drive has a frequency in all of the range.
+    fn has_frequency(self) -> Result<Self, ResponseError> {
+        let (parameter, [low, high]) = (self.question.parameter, self.question.range);
         for part in 0..=20 {
             let at = low + (high - low) * f64::from(part) / 20.0;
-            let value = driven.frequency_at(at);
+            let value = self.driven.frequency_at(at);
             if !(value > 0.0 && value.is_finite()) {
                 return Err(ResponseError::Frequency {
-                    frequency: driven.frequency.to_string(),
-                    value: value * question.periods as f64,
-                    parameter: *parameter,
+                    frequency: self.driven.frequency.to_string(),
+                    value: value * self.question.periods as f64,
+                    parameter,
                     at,
                 });
             }
         }
-        Ok(Self {
-            question,
-            oscillator,
-            driven,
-        })
+        Ok(self)
     }
 
     fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
@@ -457,45 +519,10 @@ impl<'a> Asked<'a> {
         let question = self.question;
         let balance = Balance::new(&self.driven, harmonics);
         let mut paths = self.branches(&balance, seeds, size_of(seeds));
-        let walk = self.walk(seeds, paths.iter().map(largest).fold(size_of(seeds), f64::max));
-        let floquet = |node: &Node| self.judged(&balance, node).0;
-        let mut all_judged: Vec<Vec<Judged>> = Vec::new();
-        let mut changes = Vec::new();
-        while let Some(path) = paths.get(all_judged.len()).cloned() {
-            let judged: Vec<Judged> = path.nodes.iter().map(|node| self.judged(&balance, node)).collect();
-            for (pair, known) in path.nodes.windows(2).zip(judged.windows(2)) {
-                let ([from, to], [before, after]) = (pair, known) else {
-                    continue;
-                };
-                let found = bifurcation::between(&balance, &walk, [(from, before.0), (to, after.0)], &floquet);
-                for (kind, node) in found {
-                    if kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES {
-                        self.follow_crossing(&balance, &walk, &node, &mut paths);
-                    }
-                    changes.push((kind, all_judged.len(), node));
-                }
-            }
-            all_judged.push(judged);
-        }
+        let (all_judged, changes) = self.judged_paths(&balance, seeds, &mut paths);
         // What is small is small beside the largest motion of all.
-        let size = paths.iter().map(largest).fold(0.0, f64::max);
-        let mut bifurcations: Vec<Bifurcation> = Vec::new();
-        for (kind, branch, node) in changes {
-            let point = self.point(&balance, &node, (None, None), size);
-            let new = Bifurcation {
-                kind,
-                branch,
-                parameter: point.parameter,
-                amplitude: point.amplitude,
-                peak: point.peak,
-            };
-            if !bifurcations
-                .iter()
-                .any(|known| new.is_near(known, question.range, size))
-            {
-                bifurcations.push(new);
-            }
-        }
+        let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
+        let bifurcations = self.bifurcations(&balance, changes, size);
         let branches: Vec<Branch> = paths
             .iter()
             .zip(all_judged)
@@ -511,49 +538,155 @@ impl<'a> Asked<'a> {
             })
             .collect();
         if branches.is_empty() {
-            return Err(match question.interrupt.is_requested() {
-                true => ResponseError::Interrupted,
-                false => ResponseError::NoMotion {
-                    parameter: question.parameter,
-                    at: question.range[0],
-                    undamped: self.driven.undamped,
-                },
-            });
+            return Err(self.nothing());
         }
         let simulated = self.simulated(&branches);
-        let errors = branches
-            .iter()
-            .flat_map(|branch| &branch.points)
-            .filter_map(|point| point.error);
-        let errors = errors.chain(simulated.iter().map(|simulated| simulated.error));
-        let error = errors.fold(None, |largest: Option<f64>, error| {
-            Some(largest.map_or(error, |largest| largest.max(error)))
-        });
-        let points = branches.iter().flat_map(|branch| &branch.points);
-        let (all, unjudged) = points.fold((0, 0), |(all, none), point| {
-            (all + 1, none + usize::from(point.error.is_none()))
-        });
+        let points = || branches.iter().flat_map(|branch| &branch.points);
         let complete = !question.interrupt.is_requested();
-        let peak = branches
-            .iter()
-            .flat_map(|branch| &branch.points)
-            .map(|point| point.amplitude)
-            .fold(0.0, f64::max);
-        Ok(Response {
+        let amplitude = points().map(|point| point.amplitude).fold(0.0, f64::max);
+        let response = Response {
             question: question.clone(),
             frequency: self.driven.frequency.clone(),
+            self_excited: self.driven.self_excited,
             undamped: self.driven.undamped,
             harmonics: balance.harmonics,
-            backbone: backbones(&self.oscillator, &self.driven, harmonics, question.range, 1.15 * peak)?,
+            backbone: backbones(
+                &self.oscillator,
+                &self.driven,
+                harmonics,
+                question.range,
+                1.15 * amplitude,
+            )?,
             branches,
             bifurcations,
             simulated,
             elsewhere: vec![],
-            verdict: Verdict::of(error.is_some_and(|error| error <= question.tolerance) && 20 * unjudged <= all),
-            error,
-            unjudged,
+            verdict: Verdict::Fail,
+            error: None,
+            unjudged: 0,
             slow: None,
             complete,
-        })
+        };
+        Ok(response.with_verdict())
+    }
+
+    /// The same without what waves cannot say: ends of branches on which no true motion was found, because the period grows without
+    /// bound or the waves are too few.
+    fn without_tails(&self, mut response: Response) -> Result<Response, ResponseError> {
+        /// Points without a true motion in a row that are no accident.
+        const FEW: usize = 3;
+        let mut slowest: Vec<f64> = Vec::new();
+        for branch in &mut response.branches {
+            let points = &mut branch.points;
+            let count = points.len();
+            let judged = (0..count).filter(|index| points[*index].error.is_some());
+            let judged: Vec<usize> = judged.collect();
+            let together = judged.chunk_by(|one, next| next - one <= FEW + 1);
+            let longest = together.max_by_key(|part| part.len()).unwrap_or_default();
+            let (Some(&first), Some(&last)) = (longest.first(), longest.last()) else {
+                points.clear();
+                slowest.push(f64::INFINITY);
+                continue;
+            };
+            if count - 1 - last > FEW {
+                points.truncate(last + 1);
+                branch.ends[1] = BranchEnd::Slow;
+            }
+            if first > FEW {
+                points.drain(..first);
+                branch.ends[0] = BranchEnd::Slow;
+            }
+            let frequencies = points.iter().map(|point| point.frequency);
+            slowest.push(frequencies.fold(f64::INFINITY, f64::min));
+        }
+        // What changes beyond the end of a branch is not known to.
+        let slowest_of = |branch: usize| slowest.get(branch).copied().unwrap_or(f64::INFINITY);
+        let bifurcations = response.bifurcations.iter();
+        let kept = bifurcations.filter(|found| found.frequency >= slowest_of(found.branch));
+        let number = |branch: usize| (0..branch).filter(|index| slowest_of(*index).is_finite()).count();
+        response.bifurcations = kept
+            .map(|found| Bifurcation {
+                branch: number(found.branch),
+                ..*found
+            })
+            .collect();
+        response.branches.retain(|branch| !branch.points.is_empty());
+        match response.branches.is_empty() {
+            true => Err(self.nothing()),
+            false => Ok(response.with_verdict()),
+        }
+    }
+
+    /// Every point of the branches judged, and what happens between them; branches that cross are followed and added.
+    fn judged_paths(
+        &self,
+        balance: &Balance,
+        seeds: &[Seed],
+        paths: &mut Vec<Path>,
+    ) -> (Vec<Vec<Judged>>, Vec<Change>) {
+        let size = paths.iter().map(|path| largest(balance, path));
+        let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
+        let floquet = |node: &Node| self.judged(balance, node).0;
+        let mut all_judged: Vec<Vec<Judged>> = Vec::new();
+        let mut changes = Vec::new();
+        while let Some(path) = paths.get(all_judged.len()).cloned() {
+            let branch = all_judged.len();
+            let judged: Vec<Judged> = path.nodes.iter().map(|node| self.judged(balance, node)).collect();
+            for (pair, known) in path.nodes.windows(2).zip(judged.windows(2)) {
+                let ([from, to], [before, after]) = (pair, known) else {
+                    continue;
+                };
+                let found = bifurcation::between(balance, &walk, [(from, before.0), (to, after.0)], &floquet);
+                for (mut kind, node) in found {
+                    let crossed = kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES;
+                    if crossed && self.follow_crossing(balance, &walk, &node, paths) {
+                        kind = BifurcationKind::Centre;
+                    }
+                    changes.push((kind, branch, node));
+                }
+            }
+            let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
+            let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
+            changes.extend(born.filter_map(|(_, node)| Some((BifurcationKind::Hopf, branch, node?.clone()))));
+            all_judged.push(judged);
+        }
+        (all_judged, changes)
+    }
+
+    /// The places where branches change, each once.
+    fn bifurcations(&self, balance: &Balance, changes: Vec<Change>, size: f64) -> Vec<Bifurcation> {
+        let mut found: Vec<Bifurcation> = Vec::new();
+        for (kind, branch, node) in changes {
+            let point = self.point(balance, &node, (None, None), size);
+            let new = Bifurcation {
+                kind,
+                branch,
+                parameter: point.parameter,
+                frequency: point.frequency,
+                amplitude: point.amplitude,
+                peak: point.peak,
+            };
+            if !found.iter().any(|known| new.is_near(known, self.question.range, size)) {
+                found.push(new);
+            }
+        }
+        found
+    }
+
+    /// Why there is nothing.
+    fn nothing(&self) -> ResponseError {
+        let Question { parameter, range, .. } = *self.question;
+        match (self.question.interrupt.is_requested(), self.driven.self_excited) {
+            (true, _) => ResponseError::Interrupted,
+            (false, true) => ResponseError::NoCycle { parameter, range },
+            (false, false) => ResponseError::NoMotion {
+                parameter,
+                at: range[0],
+                undamped: self.driven.undamped,
+            },
+        }
     }
 }
+
+/// A place where a branch, counted from 0, changes.
+type Change = (BifurcationKind, usize, Node);

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::backbone::places_of_rest;
 use super::balance::Balance;
-use super::continuation::{Path, extent};
+use super::continuation::Path;
 use super::stability::{half_of_peak_to_peak, settle};
 use super::{Asked, Elsewhere, MOST_EVALUATIONS, ResponseError};
 
@@ -12,6 +12,8 @@ use super::{Asked, Elsewhere, MOST_EVALUATIONS, ResponseError};
 #[derive(Clone, Debug)]
 pub(super) struct Seed {
     pub(super) parameter: f64,
+    /// Of the motion.
+    pub(super) frequency: f64,
     pub(super) positions: Vec<f64>,
 }
 
@@ -23,6 +25,9 @@ impl Asked<'_> {
         const VALUES: u32 = 5;
         const RINGS: [f64; 2] = [0.5, 1.3];
         const SAMPLES: usize = 256;
+        if self.driven.self_excited {
+            return Ok((self.cycles()?, vec![]));
+        }
         let [low, high] = self.question.range;
         let balance = Balance::new(&self.driven, harmonics);
         let values: Vec<f64> = (0..VALUES)
@@ -43,13 +48,14 @@ impl Asked<'_> {
                 let mut still = DVector::zeros(balance.size());
                 still[0] = place;
                 if let Some(found) = balance.solve(&still, *parameter) {
-                    size = size.max(extent(&found));
+                    size = size.max(balance.extent(&found));
                     let positions = (0..SAMPLES).map(|sample| {
                         let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
                         balance.at(&found, *parameter, phase)[0]
                     });
                     seeds.push(Seed {
                         parameter: *parameter,
+                        frequency: self.driven.frequency_at(*parameter),
                         positions: positions.collect(),
                     });
                 }
@@ -62,7 +68,7 @@ impl Asked<'_> {
         let widest = first
             .iter()
             .flat_map(|path| &path.nodes)
-            .map(|node| extent(&node.coefficients));
+            .map(|node| balance.extent(&node.coefficients));
         size = widest.fold(size, f64::max);
         if !self.driven.undamped {
             for parameter in &values {
@@ -86,14 +92,7 @@ impl Asked<'_> {
         });
         elsewhere.dedup();
         if seeds.is_empty() {
-            return Err(match self.question.interrupt.is_requested() {
-                true => ResponseError::Interrupted,
-                false => ResponseError::NoMotion {
-                    parameter: self.question.parameter,
-                    at: low,
-                    undamped: self.driven.undamped,
-                },
-            });
+            return Err(self.nothing());
         }
         Ok((seeds, elsewhere))
     }
@@ -114,6 +113,7 @@ impl Asked<'_> {
         }
         seeds.push(Seed {
             parameter,
+            frequency: self.driven.frequency_at(parameter),
             positions: settled.positions,
         });
         None

@@ -16,18 +16,23 @@ use super::driven::Driven;
 use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
-const SAMPLES: usize = 256;
+pub(super) const SAMPLES: usize = 256;
 
 /// What a small disturbance of a periodic motion has become after a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floquet {
     /// M(T).
     pub monodromy: Matrix2<f64>,
+    /// Whether nothing drives the motion: M(T) is then diagonal, and its second multiplier, along the motion, is 1.
+    pub self_excited: bool,
 }
 
 impl Floquet {
-    /// The eigenvalues of M(T), the larger first.
+    /// The eigenvalues of M(T), the larger first; of a self-excited motion the one that decides, then the one that is 1.
     pub fn multipliers(&self) -> [Complex<f64>; 2] {
+        if self.self_excited {
+            return [self.monodromy[(0, 0)], 1.0].map(|value| Complex::new(value, 0.0));
+        }
         let (half, determinant) = (0.5 * self.monodromy.trace(), self.monodromy.determinant());
         let square = half * half - determinant;
         if square < 0.0 {
@@ -40,11 +45,9 @@ impl Floquet {
         [Complex::new(large, 0.0), Complex::new(small, 0.0)]
     }
 
-    /// The size of the larger one.
+    /// The size of the one that decides: the larger.
     pub fn largest(&self) -> f64 {
-        self.multipliers()
-            .iter()
-            .fold(0.0, |largest, multiplier| multiplier.norm().max(largest))
+        self.multipliers()[0].norm()
     }
 }
 
@@ -53,6 +56,8 @@ impl Floquet {
 pub struct TrueMotion {
     /// Position and velocity at phase zero.
     pub start: [f64; 2],
+    /// Its frequency.
+    pub frequency: f64,
     /// The multipliers.
     pub floquet: Floquet,
     /// Coefficients of cos(theta) and sin(theta).
@@ -67,7 +72,7 @@ pub(super) const TOLERANCE: f64 = 1e-10;
 /// Steps that a period may take.
 const STEPS: usize = 4_000;
 
-fn options(size: f64, tolerance: f64) -> Options {
+pub(super) fn options(size: f64, tolerance: f64) -> Options {
     Options {
         absolute_tolerance: tolerance * size.clamp(1e-12, 1.0),
         maximum_steps: STEPS,
@@ -103,6 +108,7 @@ fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<T
 fn monodromy(end: &[f64; 6]) -> Floquet {
     Floquet {
         monodromy: Matrix2::new(end[2], end[4], end[3], end[5]),
+        self_excited: false,
     }
 }
 
@@ -125,7 +131,7 @@ pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f
         // Near a fold rounding is magnified: what does not shrink any more has come as near as it will.
         let settled = moved <= 1e-6 * size && moved >= 0.5 * before;
         if settled || moved <= 1e-9 * size || measure([missed[0], missed[1]]) <= 1e-12 * size {
-            return Some(described(&path, start, floquet));
+            return Some(described(&path, start, (omega, floquet)));
         }
         before = moved;
         start = [start[0] + step[0], start[1] + step[1]];
@@ -137,9 +143,13 @@ pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f
     None
 }
 
-/// The multipliers of a motion that is given, not followed: `motion` has position and velocity at a phase.
-pub fn multipliers_along(driven: &Driven, parameter: f64, motion: impl Fn(f64) -> [f64; 2]) -> Option<Floquet> {
-    let omega = driven.frequency_at(parameter);
+/// The multipliers of a motion that is given with its frequency, not followed: `motion` has position and velocity at a phase.
+pub fn multipliers_along(
+    driven: &Driven,
+    parameter: f64,
+    omega: f64,
+    motion: impl Fn(f64) -> [f64; 2],
+) -> Option<Floquet> {
     let rates = |t: f64, y: &[f64; 4], rates: &mut [f64; 4]| {
         let [position, velocity] = motion(omega * t);
         let [by_position, by_velocity, _] = driven.slopes(&[position, velocity, omega * t, parameter]);
@@ -165,10 +175,11 @@ pub fn multipliers_along(driven: &Driven, parameter: f64, motion: impl Fn(f64) -
     let end = path.end().y;
     path.is_complete().then_some(Floquet {
         monodromy: Matrix2::new(end[0], end[2], end[1], end[3]),
+        self_excited: false,
     })
 }
 
-fn described(path: &Trajectory<Point<[f64; 6]>>, start: [f64; 2], floquet: Floquet) -> TrueMotion {
+fn described(path: &Trajectory<Point<[f64; 6]>>, start: [f64; 2], (frequency, floquet): (f64, Floquet)) -> TrueMotion {
     let positions: Vec<f64> = path
         .samples(SAMPLES + 1)
         .take(SAMPLES)
@@ -176,6 +187,7 @@ fn described(path: &Trajectory<Point<[f64; 6]>>, start: [f64; 2], floquet: Floqu
         .collect();
     TrueMotion {
         start,
+        frequency,
         floquet,
         first_harmonic: first_harmonic(&positions),
         peak: half_of_peak_to_peak(&positions),

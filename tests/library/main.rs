@@ -27,6 +27,7 @@ mod ranges;
 mod response;
 mod ring;
 mod section;
+mod self_excited;
 mod series_properties;
 mod simulate;
 mod starts;

@@ -1,4 +1,4 @@
-//! Kind `response`: all steady states of a driven oscillator, with their stability.
+//! Kind `response`: all steady states of an oscillator, driven or self-excited, with their stability.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use crate::response::slow::SlowResponse;
 use crate::response::{self, Response};
 use crate::verify::Verdict;
 
-/// Steady states of a driven oscillator as a parameter varies. Units are those of the equation and the values given.
+/// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those of the equation and the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct ResponseDocument {
@@ -32,8 +32,10 @@ pub struct ResponseDocument {
     pub harmonics: usize,
     /// How many periods of the drive a period of the motion takes.
     pub periods: usize,
-    /// theta/t: the frequency of the motion, that of the drive over `periods`.
+    /// theta/t: the frequency of the motion, that of the drive over `periods`; a name where nothing drives it.
     pub frequency: String,
+    /// Whether nothing drives the motion: each point then has a frequency of its own.
+    pub self_excited: bool,
     /// Whether nothing damps the motion; `stable` then means that disturbances do not grow.
     pub undamped: bool,
     /// The branches, each a list of points in order.
@@ -63,19 +65,23 @@ pub struct ResponseDocument {
 pub struct ResponsePoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
+    /// The frequency of the motion: theta/t.
+    pub frequency: f64,
     /// The amplitude of the first harmonic, amplitude*cos(theta - phase).
     pub amplitude: f64,
     /// Its phase, in radians.
     pub phase: f64,
     /// Half of the way from the lowest to the highest point of the motion.
     pub peak: f64,
-    /// Whether small disturbances die out: both multipliers lie inside the unit circle; null where they could not be found.
+    /// Whether small disturbances die out: both multipliers lie inside the unit circle, of a self-excited motion the first; null where
+    /// they could not be found.
     pub stable: Option<bool>,
-    /// The multipliers of a period, each its real and imaginary part, the larger first; null where they could not be found.
+    /// The multipliers of a period, each its real and imaginary part, the larger first, of a self-excited motion the one along it, which
+    /// is 1, last; null where they could not be found.
     pub multipliers: Option<[[f64; 2]; 2]>,
     /// Position and velocity at t = 0, by shooting where that found the true motion.
     pub start: [f64; 2],
-    /// The error of amplitude or peak, the larger, over the true peak; null where no true motion was found near.
+    /// The error of amplitude or peak, the larger, over the true peak, or that of the frequency; null where no true motion was found near.
     pub error: Option<f64>,
 }
 
@@ -154,13 +160,16 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct ResponseBifurcation {
-    /// What happens: the branch turns back, another one crosses, motions of twice the period come off, a second frequency comes in.
+    /// What happens: the branch turns back, another one crosses, motions of twice the period come off, a second frequency comes in, a
+    /// self-excited motion is born from rest, motions of every amplitude at one value of the parameter.
     #[schemars(extend("enum" = KINDS))]
     pub kind: String,
     /// The branch, counted from 0.
     pub branch: usize,
     /// The value of the parameter that varies.
     pub parameter: f64,
+    /// The frequency of the motion.
+    pub frequency: f64,
     /// The amplitude of the first harmonic.
     pub amplitude: f64,
     /// Half of peak to peak.
@@ -168,11 +177,13 @@ pub struct ResponseBifurcation {
 }
 
 /// The names of the kinds of bifurcations.
-const KINDS: [&str; 4] = [
+const KINDS: [&str; 6] = [
     BifurcationKind::Fold.name(),
     BifurcationKind::BranchPoint.name(),
     BifurcationKind::PeriodDoubling.name(),
     BifurcationKind::NeimarkSacker.name(),
+    BifurcationKind::Hopf.name(),
+    BifurcationKind::Centre.name(),
 ];
 
 /// A free motion without damping.
@@ -191,11 +202,13 @@ pub struct BackbonePoint {
 pub struct SimulatedPoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
+    /// Its frequency.
+    pub frequency: f64,
     /// The amplitude of its first harmonic.
     pub amplitude: f64,
     /// Half of peak to peak.
     pub peak: f64,
-    /// The error of the point of the branch against it, over its peak.
+    /// The error of the point of the branch against it, over its peak; or that of the frequency, if it is larger.
     pub error: f64,
 }
 
@@ -238,6 +251,7 @@ pub fn response(response: &Response) -> ResponseDocument {
     let asked = &response.question;
     let point = |point: &response::Point| ResponsePoint {
         parameter: point.parameter,
+        frequency: point.frequency,
         amplitude: point.amplitude,
         phase: point.phase,
         peak: point.peak,
@@ -260,6 +274,7 @@ pub fn response(response: &Response) -> ResponseDocument {
         harmonics: response.harmonics,
         periods: asked.periods,
         frequency: motion_frequency(response),
+        self_excited: response.self_excited,
         undamped: response.undamped,
         branches: response
             .branches
@@ -274,6 +289,7 @@ pub fn response(response: &Response) -> ResponseDocument {
                 kind: found.kind.name().to_owned(),
                 branch: found.branch,
                 parameter: found.parameter,
+                frequency: found.frequency,
                 amplitude: found.amplitude,
                 peak: found.peak,
             })
@@ -297,6 +313,7 @@ pub fn response(response: &Response) -> ResponseDocument {
             .iter()
             .map(|found| SimulatedPoint {
                 parameter: found.parameter,
+                frequency: found.frequency,
                 amplitude: found.amplitude,
                 peak: found.peak,
                 error: found.error,

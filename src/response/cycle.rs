@@ -1,0 +1,182 @@
+//! The true limit cycle beside a balance, and whether it lasts.
+//!
+//! ```text
+//! y = (x, x'),   y(T; y_0) = y_0,   flow(y_0) . dy_0 = 0:      [M - 1  flow(y_T)] [dy_0]     [y_T - y_0]
+//!                                                             [flow(y_0)^T    0] [ dT ] = - [    0    ]
+//! multipliers: 1, along the motion, and det M = exp(-integral of f_v over T)
+//! ```
+//!
+//! In: a start near a motion without drive, and about its frequency. Out: the motion itself by shooting for start and period together
+//! (R. Seydel, *Practical Bifurcation and Stability Analysis*, Springer 2010, chapter 7). A motion that repels is followed backward in
+//! time, in which it attracts, so that errors shrink on the way. The multiplier along the motion is 1 by itself; the other one is that
+//! of Liouville's theorem, which does not cancel however small it is.
+
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+use super::driven::Driven;
+use super::stability::{Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options};
+use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::{Point, Trajectory, integrate_first_order};
+
+/// A motion that is known but for rounding: where it starts, its frequency, how large it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guess {
+    /// Position and velocity.
+    pub start: [f64; 2],
+    /// 2 pi over the period.
+    pub frequency: f64,
+    /// The size of the motion.
+    pub size: f64,
+}
+
+/// The motion over a time with its variations and the integral of -f_v; backward in time where `backward` says so. Nothing where it
+/// cannot be followed.
+fn followed(
+    driven: &Driven,
+    guess: &Guess,
+    start: [f64; 2],
+    (period, backward): (f64, bool),
+    parameter: f64,
+) -> Option<Trajectory<Point<[f64; 7]>>> {
+    let sign = if backward { -1.0 } else { 1.0 };
+    let rates = |_: f64, y: &[f64; 7], rates: &mut [f64; 7]| {
+        let at = [y[0], y[1], 0.0, parameter];
+        let [by_position, by_velocity, _] = driven.slopes(&at);
+        *rates = [
+            sign * y[1],
+            -sign * driven.force(&at),
+            sign * y[3],
+            sign * (-by_position * y[2] - by_velocity * y[3]),
+            sign * y[5],
+            sign * (-by_position * y[4] - by_velocity * y[5]),
+            -by_velocity,
+        ];
+    };
+    let begin = Point {
+        t: 0.0,
+        y: [start[0], start[1], 1.0, 0.0, 0.0, 1.0, 0.0],
+    };
+    let path = integrate_first_order(rates, begin, period, &[], &options(guess.size, TOLERANCE)).ok()?;
+    path.is_complete().then_some(path)
+}
+
+/// The periodic motion beside this one, and its frequency; nothing where shooting does not settle, or goes far away.
+pub fn true_cycle(driven: &Driven, guess: &Guess, parameter: f64, backward: bool) -> Option<TrueMotion> {
+    const MOST: usize = 15;
+    /// Parts of the size of the motion by which the start may move, and of its period.
+    const FAR: f64 = 0.3;
+    let &Guess { frequency, size, .. } = guess;
+    let sign = if backward { -1.0 } else { 1.0 };
+    let flow = |[x, v]: [f64; 2]| [sign * v, -sign * driven.force(&[x, v, 0.0, parameter])];
+    let measure = |step: [f64; 2]| step[0].hypot(step[1] / frequency);
+    let first_period = std::f64::consts::TAU / frequency;
+    let (mut start, mut period) = (guess.start, first_period);
+    let mut before = f64::INFINITY;
+    for _ in 0..MOST {
+        let path = followed(driven, guess, start, (period, backward), parameter)?;
+        let end = path.end().y;
+        let missed = [end[0] - start[0], end[1] - start[1]];
+        let (there, back) = (flow(start), flow([end[0], end[1]]));
+        // Positions in the size, velocities in the size times the frequency, time in periods.
+        let (x, v) = (size, size * frequency);
+        let matrix = Matrix3::new(
+            end[2] - 1.0,
+            end[4] * v / x,
+            back[0] * period / x,
+            end[3] * x / v,
+            end[5] - 1.0,
+            back[1] * period / v,
+            there[0] * period / x,
+            there[1] * period / v,
+            0.0,
+        );
+        let right = Vector3::new(missed[0] / x, missed[1] / v, 0.0);
+        // Where every amplitude is a motion the nearest one is taken.
+        let step = matrix.svd(true, true).solve(&right, 1e-9).ok()?;
+        let moved = step.norm();
+        let settled = moved <= 1e-6 && moved >= 0.5 * before;
+        if settled || moved <= 1e-10 || measure(missed) <= 1e-12 * size {
+            let determinant = end[6].exp();
+            return Some(described(&path, start, period, determinant));
+        }
+        before = moved;
+        start = [start[0] - step[0] * x, start[1] - step[1] * v];
+        period *= 1.0 - step[2];
+        let away = measure([start[0] - guess.start[0], start[1] - guess.start[1]]);
+        let longer = (period / first_period - 1.0).abs();
+        if !(away <= FAR * size && longer <= FAR) {
+            return None;
+        }
+    }
+    None
+}
+
+fn described(path: &Trajectory<Point<[f64; 7]>>, start: [f64; 2], period: f64, determinant: f64) -> TrueMotion {
+    let positions: Vec<f64> = path
+        .samples(SAMPLES + 1)
+        .take(SAMPLES)
+        .map(|point| point.y[0])
+        .collect();
+    TrueMotion {
+        start,
+        frequency: std::f64::consts::TAU / period,
+        floquet: Floquet {
+            monodromy: Matrix2::new(determinant, 0.0, 0.0, 1.0),
+            self_excited: true,
+        },
+        first_harmonic: first_harmonic(&positions),
+        peak: half_of_peak_to_peak(&positions),
+    }
+}
+
+/// Where a simulation has come to that was let go here and followed for so many periods of about this frequency: its frequency by its
+/// own return, and its positions over that period at equal steps. Nothing where it does not come back, escapes, or the budget is spent.
+pub fn settled(
+    driven: &Driven,
+    guess: &Guess,
+    parameter: f64,
+    periods: usize,
+    budget: &mut usize,
+) -> Option<(f64, Vec<f64>)> {
+    const CLOSELY: f64 = 1e-11;
+    /// A period and what the first guess of it may be off.
+    const LONGER: f64 = 1.3;
+    /// Part of its size by which a simulation that has settled may miss its start.
+    const BACK: f64 = 1e-3;
+    let period = std::f64::consts::TAU / guess.frequency;
+    let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
+        *rates = [y[1], -driven.force_in_time(&[y[0], y[1], t, parameter])];
+    };
+    let mut follow = |start: [f64; 2], duration: f64| {
+        let begin = Point { t: 0.0, y: start };
+        let path = integrate_first_order(rates, begin, duration, &[], &options(guess.size, CLOSELY)).ok()?;
+        *budget = budget.saturating_sub(path.evaluations());
+        (path.is_complete() && *budget > 0).then_some(path)
+    };
+    let mut state = guess.start;
+    for _ in 0..periods {
+        state = follow(state, period)?.end().y;
+    }
+    let path = follow(state, LONGER * period)?;
+    let [x, v] = state;
+    let flow = [v, -driven.force(&[x, v, 0.0, parameter])];
+    // It comes back through the line at right angles to its way.
+    let across = |t: f64| {
+        path.state_at(t).map_or(f64::NAN, |point| {
+            (point.y[0] - x) * flow[0] + (point.y[1] - v) * flow[1] / guess.frequency.powi(2)
+        })
+    };
+    let away = |t: f64| {
+        path.state_at(t).map_or(f64::INFINITY, |point| {
+            (point.y[0] - x).hypot((point.y[1] - v) / guess.frequency)
+        })
+    };
+    const CELLS: u32 = 60;
+    let time = |cell: u32| period * (2.0 - LONGER + 2.0 * (LONGER - 1.0) * f64::from(cell) / f64::from(CELLS));
+    let returns = (0..CELLS).filter(|cell| across(time(*cell)) < 0.0 && across(time(cell + 1)) >= 0.0);
+    let own = returns
+        .filter_map(|cell| find_root(across, time(cell), time(cell + 1)).ok())
+        .find(|time| away(*time) <= BACK * guess.size)?;
+    let positions = (0..SAMPLES).filter_map(|sample| path.state_at(own * sample as f64 / SAMPLES as f64));
+    Some((std::f64::consts::TAU / own, positions.map(|point| point.y[0]).collect()))
+}

@@ -1,0 +1,140 @@
+//! Limit cycles to begin with: where a motion released at rest comes back to where it was.
+//!
+//! ```text
+//! P(x): the next turning point on the same side        P(x) = x: a cycle
+//! ```
+//!
+//! Every cycle turns right of a place of rest, so that starts there, from near to far, at several values of the parameter, forward and
+//! backward in time, find those that attract and those that repel (A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*,
+//! Pergamon 1966, chapter V).
+
+use super::backbone::places_of_rest;
+use super::seeds::Seed;
+use super::{Asked, ResponseError};
+use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+
+/// Values of the parameter at which cycles are looked for; the second where the first find none.
+const VALUES: [u32; 2] = [5, 33];
+
+/// Starts: `RATIO^k` for `|k| <= RINGS`, a thousandth to a thousand units from rest.
+const RATIO: f64 = 1.36;
+const RINGS: i32 = 22;
+
+/// Growth that is no more than the error of the steps.
+const ROUNDING: f64 = 1e-8;
+
+impl Asked<'_> {
+    /// Limit cycles, each with its frequency and its positions.
+    pub(super) fn cycles(&self) -> Result<Vec<Seed>, ResponseError> {
+        let [low, high] = self.question.range;
+        let mut seeds = Vec::new();
+        for count in VALUES {
+            for index in 0..count {
+                if self.question.interrupt.is_requested() {
+                    break;
+                }
+                let parameter = low + (high - low) * f64::from(index) / f64::from(count - 1);
+                for place in self.places(parameter) {
+                    self.cycles_about(place, parameter, &mut seeds);
+                }
+            }
+            if !seeds.is_empty() {
+                return Ok(seeds);
+            }
+        }
+        Err(self.nothing())
+    }
+
+    /// The places of rest about which something may swing.
+    fn places(&self, parameter: f64) -> Vec<f64> {
+        const SIZES: [f64; 3] = [1.0, 0.03, 30.0];
+        let mut found: Vec<f64> = Vec::new();
+        for size in SIZES {
+            for place in places_of_rest(&self.driven, parameter, size) {
+                if !found.iter().any(|known| (known - place).abs() <= 1e-9 * size) {
+                    found.push(place);
+                }
+            }
+        }
+        found
+    }
+
+    /// Adds the cycles that turn right of a place of rest.
+    fn cycles_about(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
+        for backward in [false, true] {
+            let growth = |radius: f64| {
+                let path = self.swing(place, radius, parameter, backward, SEARCHED);
+                path.map_or(f64::NAN, |path| path.end().x - 1.0)
+            };
+            let mut before = f64::NAN;
+            for ring in -RINGS..=RINGS {
+                let radius = RATIO.powi(ring);
+                let after = growth(radius);
+                let changes = before * after < 0.0 && before.abs().min(after.abs()) > ROUNDING;
+                let fixed = changes.then(|| find_root(growth, radius / RATIO, radius).ok());
+                before = after;
+                let Some(radius) = fixed.flatten() else { continue };
+                let Some(path) = self.swing(place, radius, parameter, backward, FOUND) else {
+                    continue;
+                };
+                // A jump from growing to shrinking is no cycle.
+                if (path.end().x - 1.0).abs() > 1e-4 {
+                    continue;
+                }
+                const SAMPLES: usize = 512;
+                let around = path.samples(SAMPLES + 1).take(SAMPLES);
+                let mut positions: Vec<f64> = around.map(|state| place + radius * state.x).collect();
+                if backward {
+                    positions[1..].reverse();
+                }
+                let period = path.end().t / self.pace(place, radius, parameter);
+                seeds.push(Seed {
+                    parameter,
+                    frequency: std::f64::consts::TAU / period,
+                    positions,
+                });
+            }
+        }
+    }
+
+    /// About the frequency of a motion so far from rest.
+    fn pace(&self, place: f64, radius: f64, parameter: f64) -> f64 {
+        (self.driven.force(&[place + radius, 0.0, 0.0, parameter]) / radius).sqrt()
+    }
+
+    /// From rest right of a place to the next turning point there, in radii and in times of the pace; nothing where it does not turn.
+    fn swing(
+        &self,
+        place: f64,
+        radius: f64,
+        parameter: f64,
+        backward: bool,
+        (tolerance, maximum_steps): (f64, usize),
+    ) -> Option<Trajectory> {
+        const LONGEST: f64 = 2e3;
+        /// Radii away from where it does not come back.
+        const GONE: f64 = 1e3;
+        let pace = self.pace(place, radius, parameter);
+        let speed = radius * pace * if backward { -1.0 } else { 1.0 };
+        let scaled = |_: f64, x: f64, v: f64| {
+            -self.driven.force(&[place + radius * x, speed * v, 0.0, parameter]) / (radius * pace * pace)
+        };
+        let start = State { t: 0.0, x: 1.0, v: 0.0 };
+        let events = [
+            Event::stop(|_, _, v| v).falling(),
+            Event::stop(|_, x, _| GONE - x.abs()).falling(),
+        ];
+        let options = Options {
+            maximum_steps,
+            ..Options::with_tolerance(tolerance)
+        };
+        let path = integrate(scaled, start, LONGEST, &events, &options).ok()?;
+        let turned = matches!(path.stop_reason(), StopReason::Event { event: 0, .. });
+        (turned && path.end().x > 0.0).then_some(path)
+    }
+}
+
+/// Tolerance of a step and steps, while cycles are looked for and where one is found.
+const SEARCHED: (f64, usize) = (1e-9, 600);
+const FOUND: (f64, usize) = (1e-11, 4000);

@@ -32,6 +32,25 @@ impl Integer {
         Self(self.0.pow(exponent as usize))
     }
 
+    /// How often a number that is not zero can be halved.
+    pub fn halvings(&self) -> Option<usize> {
+        self.0.trailing_zeros()
+    }
+
+    /// The absolute value in words, the lowest first.
+    pub(crate) fn to_words(&self) -> Vec<u64> {
+        let (_, magnitude) = self.0.clone().into_parts();
+        let bytes = magnitude.to_le_bytes();
+        let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+        bytes.chunks(8).map(word).collect()
+    }
+
+    /// The positive number of these words, the lowest first.
+    pub(crate) fn from_words(words: &[u64]) -> Self {
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        Self(dashu_int::UBig::from_le_bytes(&bytes).into())
+    }
+
     /// The `degree`-th root, rounded towards zero.
     ///
     /// # Panics

@@ -10,6 +10,7 @@ pub(crate) mod integer;
 pub(crate) mod polynomial;
 pub(crate) mod rational;
 pub(crate) mod real_roots;
+pub(crate) mod residue;
 pub(crate) mod ring;
 pub(crate) mod scaled;
 

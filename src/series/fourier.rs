@@ -77,6 +77,19 @@ impl<R: Ring> FourierSeries<R> {
         series
     }
 
+    /// The series over a denominator that has nothing in common with all of its numerators; trailing zeros are dropped.
+    pub(crate) fn in_lowest_terms(
+        ring: R,
+        denominator: Integer,
+        cosine: Vec<R::Element>,
+        sine: Vec<R::Element>,
+    ) -> Self {
+        let mut series = Self::raw(ring, cosine, sine);
+        series.reduce();
+        series.denominator = denominator;
+        series
+    }
+
     fn raw(ring: R, cosine: Vec<R::Element>, sine: Vec<R::Element>) -> Self {
         Self {
             ring,

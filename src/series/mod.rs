@@ -10,6 +10,7 @@ pub(crate) mod recurrence;
 pub(crate) mod tape;
 pub(crate) mod taylor;
 pub(crate) mod terms;
+pub(crate) mod waves;
 
 pub use convolution::{Convolutions, Node};
 pub use fourier::{FourierSeries, Resonance, fraction, linear_combination, sum_of_products};

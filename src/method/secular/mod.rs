@@ -13,10 +13,14 @@
 //! omega_n = (W_n - sum_(0<i<n) omega_i omega_(n-i)) / 2
 //! ```
 
+mod denominators;
+mod modular;
+mod reconstruct;
+
 use std::collections::HashMap;
 
-use crate::exact::Ring;
 use crate::exact::ring::Indivisible;
+use crate::exact::{Integers, Ring};
 use crate::series::convolution::{Convolutions, Node};
 use crate::series::fourier::{FourierSeries, sum_of_products};
 use crate::solution::AmplitudeConvention;
@@ -185,6 +189,46 @@ pub fn expand<R: Ring>(
     scheme: &Scheme,
 ) -> Result<Expansion<R>, SecularError> {
     expand_from_root(ring, force, highest, scheme, None)
+}
+
+/// As [`expand`] over the whole numbers, and with the same result: by [many primes](reconstruct) where numbers are long.
+///
+/// # Errors
+/// See [`SecularError`].
+///
+/// ```
+/// use lindstedt::exact::{Integers, Integer};
+/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand_numbers};
+/// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
+///
+/// // Duffing: y'' + y + delta y^3 = 0
+/// let cube = ForceTerm { order: 1, position: 3, velocity: 0, coefficient: FourierSeries::integer(Integers, 1) };
+/// let scheme = Scheme {
+///     normalisation: AmplitudeConvention::Initial,
+///     amplitude: Amplitude::Free,
+///     detuning: Detuning::Acceleration,
+/// };
+/// let found = expand_numbers(&[cube], 40, &scheme)?;
+/// assert_eq!(found.frequency_squared[1].mean(), (Integer::from(3), &Integer::from(4)));
+/// assert!(found.frequency_squared[40].mean().1.bits() > 150);
+/// # Ok::<(), lindstedt::method::secular::SecularError>(())
+/// ```
+pub fn expand_numbers(
+    force: &[ForceTerm<Integers>],
+    highest: usize,
+    scheme: &Scheme,
+) -> Result<Expansion<Integers>, SecularError> {
+    /// Below, whole numbers are short enough.
+    const LONG: usize = 12;
+    bounded(
+        force.iter().map(|term| (term.order, term.position + term.velocity)),
+        highest,
+    )?;
+    let by_primes = (highest >= LONG).then(|| reconstruct::expand(force, highest, scheme));
+    match by_primes.flatten() {
+        Some(expansion) => Ok(expansion),
+        None => expand(&Integers, force, highest, scheme),
+    }
 }
 
 /// As [`expand`], about a limit cycle whose amplitude is a symbol for a root: `inverse_slope` is `1/J`, a constant series.
@@ -466,8 +510,8 @@ fn divided<R: Ring>(order: usize, series: FourierSeries<R>) -> Result<FourierSer
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::Rational;
     use crate::exact::rational::ratio;
-    use crate::exact::{Integers, Rational};
     use crate::series::fourier::fraction;
 
     fn numbers(series: &[FourierSeries<Integers>]) -> Vec<Rational> {

@@ -1,0 +1,119 @@
+//! The work that the fastest programs for perturbation series are measured by, printed line by line so that theirs can be compared:
+//! `workloads W1 40`. W1 Duffing, W2 the pendulum, W3 van der Pol, W4 three symbolic coefficients; `T` is the time of the
+//! calculation alone, in seconds.
+
+use std::error::Error;
+use std::time::Instant;
+
+use lindstedt::exact::{Integer, Integers, Rational, factorial};
+use lindstedt::method::secular::{Amplitude, Detuning, Expansion, ForceTerm, Scheme, expand_numbers};
+use lindstedt::method::{Options, solve};
+use lindstedt::series::{FourierSeries, fraction};
+use lindstedt::solution::{AmplitudeConvention, Law};
+use lindstedt::{Oscillator, Symbol};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [work, order] = arguments.as_slice() else {
+        return Err("usage: workloads W1|W2|W3|W4 ORDER".into());
+    };
+    let order: usize = order.parse()?;
+    match work.as_str() {
+        "W1" => conservative(&[term(1, 3, 0, Rational::from_integer(1.into()))], order),
+        "W2" => conservative(&sine(order), order),
+        "W3" => van_der_pol(order),
+        "W4" => symbolic(order),
+        _ => Err(format!("no work {work}").into()),
+    }
+}
+
+fn term(order: usize, position: u32, velocity: u32, coefficient: Rational) -> ForceTerm<Integers> {
+    let numerator = FourierSeries::constant(Integers, coefficient.numer().clone());
+    ForceTerm {
+        order,
+        position,
+        velocity,
+        coefficient: numerator.over(coefficient.denom()),
+    }
+}
+
+/// `sin x - x` in powers of `A^2`.
+fn sine(order: usize) -> Vec<ForceTerm<Integers>> {
+    let coefficient = |n: usize| {
+        let sign = if n.is_multiple_of(2) { 1 } else { -1 };
+        Rational::new(Integer::from(sign), factorial(2 * n as u32 + 1))
+    };
+    (1..=order)
+        .map(|n| term(n, 2 * n as u32 + 1, 0, coefficient(n)))
+        .collect()
+}
+
+fn timed(
+    force: &[ForceTerm<Integers>],
+    order: usize,
+    amplitude: Amplitude,
+) -> Result<Expansion<Integers>, Box<dyn Error>> {
+    let scheme = Scheme {
+        normalisation: AmplitudeConvention::Initial,
+        amplitude,
+        detuning: Detuning::Acceleration,
+    };
+    let start = Instant::now();
+    let expansion = expand_numbers(force, order, &scheme)?;
+    println!("T {:.9}", start.elapsed().as_secs_f64());
+    Ok(expansion)
+}
+
+fn conservative(force: &[ForceTerm<Integers>], order: usize) -> Result<(), Box<dyn Error>> {
+    let expansion = timed(force, order, Amplitude::Free)?;
+    for (k, square) in expansion.frequency_squared.iter().enumerate() {
+        println!("W {k} {}", mean(square));
+    }
+    for j in 0..=order {
+        println!("F {j} {}", mean(&expansion.displacement[order].cosine(2 * j + 1)));
+    }
+    Ok(())
+}
+
+/// `x'' + eps (x^2 - 1) x' + x = 0` with `x = 2 y`.
+fn van_der_pol(order: usize) -> Result<(), Box<dyn Error>> {
+    let number = |value: i64| Rational::from_integer(value.into());
+    let force = [term(1, 2, 1, number(4)), term(1, 0, 1, number(-1))];
+    let expansion = timed(&force, order, Amplitude::Determined)?;
+    let twice = |series: &FourierSeries<Integers>| mean(&series.times(2));
+    for k in 0..=order / 2 {
+        println!("W {k} {}", mean(&expansion.frequency[2 * k]));
+    }
+    for k in (0..=order - 2).step_by(2) {
+        println!("A {k} {}", twice(&expansion.displacement[k].at_zero()));
+    }
+    for j in 0..order {
+        println!("F {j} {}", twice(&expansion.displacement[order - 1].sine(2 * j + 1)));
+    }
+    Ok(())
+}
+
+fn mean(constant: &FourierSeries<Integers>) -> Rational {
+    let (numerator, denominator) = constant.mean();
+    fraction(&numerator, denominator)
+}
+
+fn symbolic(order: usize) -> Result<(), Box<dyn Error>> {
+    let oscillator = Oscillator::parse("x'' + x + eps*(a2*x^2 + a3*x^3 + a5*x^5) = 0")?;
+    let options = Options {
+        order: Some(u32::try_from(order)?),
+        ..Options::default()
+    };
+    let start = Instant::now();
+    let solution = solve(&oscillator, &options)?;
+    println!("T {:.9}", start.elapsed().as_secs_f64());
+    let Law::Series { squared, .. } = &solution.law else {
+        return Err("no series".into());
+    };
+    for (monomial, coefficient) in squared.terms() {
+        let exponent = |name: &str| monomial.exponent(Symbol::new(name));
+        let [n, i, j, k] = ["eps", "a2", "a3", "a5"].map(exponent);
+        println!("W {n} {i} {j} {k} {coefficient}");
+    }
+    Ok(())
+}

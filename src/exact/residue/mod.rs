@@ -1,0 +1,309 @@
+//! Residues modulo primes of one word, and the way back to whole numbers.
+//!
+//! References: P. L. Montgomery, *Modular multiplication without trial division*, Math. Comp. 44 (1985) 519-521; J. von zur
+//! Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013, chapter 5.
+//!
+//! ```text
+//! a is held as a R mod p,  R = 2^radix        (a R)(b R)/R = (a b) R
+//! x = sum_i t_i M/p_i - q M,   M = p_1 ... p_r,   t_i = x (M/p_i)^-1 mod p_i     (Chinese remainders)
+//! ```
+//!
+//! A long exact computation is done modulo many primes, each by machine words alone, and put together at the end. In come
+//! [`Modulus`] and rows of [`Lanes`], eight residues side by side; an [`Arithmetic`] says how eight products at a time are summed,
+//! by the processor's wide multiply-add where it has one ([`wide`]) and by plain words elsewhere ([`portable`]), with the same
+//! results after the [remainders](remainder) are put together.
+
+pub mod lanes;
+pub mod portable;
+pub mod remainder;
+pub mod sums;
+#[cfg(target_arch = "x86_64")]
+pub mod wide;
+
+pub use lanes::{Arithmetic, Lanes, Rows, WIDTH, padded};
+
+use num_integer::Integer as _;
+use num_traits::ToPrimitive;
+
+use super::Integer;
+
+/// Work that is written once for every arithmetic.
+pub trait Work {
+    /// What comes out.
+    type Output;
+
+    /// Does it.
+    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
+}
+
+/// Does the work by the widest arithmetic of this processor.
+pub fn by_widest<W: Work>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(wide) = wide::Wide::try_new() {
+        return work.by(wide);
+    }
+    work.by(portable::Portable::new())
+}
+
+/// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and stand for themselves times
+/// `R = 2^radix`, except where they are called plain.
+#[derive(Clone, Copy, Debug)]
+pub struct Modulus {
+    /// The prime, odd, below `2^(radix - 2)`.
+    pub prime: u64,
+    /// One, which is `R` modulo the prime.
+    pub one: u64,
+    /// `R^2` modulo the prime: what a plain residue is multiplied by.
+    square: u64,
+    /// `1/prime` modulo `R`.
+    pub(super) inverse: u64,
+    /// `2^(2 radix - 7)/prime`, rounded down: the quotient by the prime is guessed with it.
+    pub(super) quotient: u64,
+    radix: u32,
+}
+
+impl Modulus {
+    /// A prime with `R = 2^radix`, where the radix is that of an [`Arithmetic`].
+    pub fn new(prime: u64, radix: u32) -> Self {
+        // Newton's iteration doubles the digits that are right; an odd number is its own inverse modulo 8.
+        let inverse = (0..5).fold(prime, |inverse, _| {
+            inverse.wrapping_mul(2_u64.wrapping_sub(prime.wrapping_mul(inverse)))
+        });
+        let remainder = |value: u128| (value % u128::from(prime)) as u64;
+        let one = remainder(1 << radix);
+        Self {
+            prime,
+            one,
+            square: remainder(u128::from(one) * u128::from(one)),
+            inverse: inverse & ((1 << radix) - 1),
+            quotient: ((1_u128 << (2 * radix - 7)) / u128::from(prime)) as u64,
+            radix,
+        }
+    }
+
+    /// `left right / R`: the product of two residues, or of two digits below `R`, one of them below the prime.
+    #[inline(always)]
+    pub fn product(&self, left: u64, right: u64) -> u64 {
+        let product = u128::from(left) * u128::from(right);
+        let multiple = (product as u64).wrapping_mul(self.inverse) & ((1 << self.radix) - 1);
+        let taken = ((u128::from(multiple) * u128::from(self.prime)) >> self.radix) as u64;
+        self.difference((product >> self.radix) as u64, taken)
+    }
+
+    /// The sum.
+    #[inline(always)]
+    pub fn sum(&self, left: u64, right: u64) -> u64 {
+        // Below zero a word is large, so the smaller of the two is the residue: no branch to guess.
+        let sum = left + right;
+        sum.min(sum.wrapping_sub(self.prime))
+    }
+
+    /// The difference.
+    #[inline(always)]
+    pub fn difference(&self, left: u64, right: u64) -> u64 {
+        let difference = left.wrapping_sub(right);
+        difference.min(difference.wrapping_add(self.prime))
+    }
+
+    /// Zero minus the residue.
+    #[inline(always)]
+    pub fn negative(&self, residue: u64) -> u64 {
+        self.difference(0, residue)
+    }
+
+    /// The residue of a word.
+    pub fn residue(&self, value: u64) -> u64 {
+        self.product(value % self.prime, self.square)
+    }
+
+    /// The residue of a small whole number.
+    pub fn small(&self, value: i64) -> u64 {
+        let size = self.residue(value.unsigned_abs());
+        if value < 0 { self.negative(size) } else { size }
+    }
+
+    /// The residue of a whole number of any length.
+    pub fn integer(&self, value: &Integer) -> u64 {
+        let remainder = value.mod_floor(&Integer::from(self.prime));
+        self.residue(remainder.to_u64().unwrap_or_default())
+    }
+
+    /// A plain residue, below the prime, from one in Montgomery's form.
+    pub fn plain(&self, residue: u64) -> u64 {
+        self.product(residue, 1)
+    }
+
+    /// A residue in Montgomery's form from a plain one.
+    pub fn of_plain(&self, plain: u64) -> u64 {
+        self.product(plain, self.square)
+    }
+
+    /// `base^exponent`.
+    pub fn power(&self, base: u64, mut exponent: u64) -> u64 {
+        let (mut power, mut square) = (self.one, base);
+        while exponent > 0 {
+            if exponent % 2 == 1 {
+                power = self.product(power, square);
+            }
+            square = self.product(square, square);
+            exponent /= 2;
+        }
+        power
+    }
+
+    /// The inverse of a residue, by Fermat; zero of zero.
+    pub fn inverse(&self, residue: u64) -> u64 {
+        self.power(residue, self.prime - 2)
+    }
+
+    /// The inverses of all of them with a single power; `None` if one of them is zero.
+    pub fn invert(&self, residues: &mut [u64]) -> Option<()> {
+        let mut before = Vec::with_capacity(residues.len());
+        let all = residues.iter().fold(self.one, |product, &residue| {
+            before.push(product);
+            self.product(product, residue)
+        });
+        if all == 0 {
+            return None;
+        }
+        let mut inverse = self.inverse(all);
+        for (residue, before) in residues.iter_mut().zip(before).rev() {
+            let next = self.product(inverse, *residue);
+            *residue = self.product(inverse, before);
+            inverse = next;
+        }
+        Some(())
+    }
+
+    /// A residue whose powers run through `order` values before they are one again; `order` divides `prime - 1`.
+    pub fn root_of_unity(&self, order: u64) -> Option<u64> {
+        let factors = prime_factors(order);
+        let roots = (2..1000).map(|base| self.power(self.small(base), (self.prime - 1) / order));
+        let is_primitive = |root: &u64| {
+            factors
+                .iter()
+                .all(|factor| self.power(*root, order / factor) != self.one)
+        };
+        roots.into_iter().find(is_primitive)
+    }
+}
+
+fn prime_factors(mut number: u64) -> Vec<u64> {
+    let mut factors = Vec::new();
+    let mut candidate = 2;
+    while candidate * candidate <= number {
+        if number.is_multiple_of(candidate) {
+            factors.push(candidate);
+            while number.is_multiple_of(candidate) {
+                number /= candidate;
+            }
+        }
+        candidate += 1;
+    }
+    if number > 1 {
+        factors.push(number);
+    }
+    factors
+}
+
+/// The primes up to `last`, in order.
+pub fn primes_up_to(last: u64) -> Vec<u64> {
+    let mut primes: Vec<u64> = Vec::new();
+    for number in 2..=last {
+        let small = primes.iter().take_while(|&prime| prime * prime <= number);
+        if small.into_iter().all(|prime| !number.is_multiple_of(*prime)) {
+            primes.push(number);
+        }
+    }
+    primes
+}
+
+/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^64`.
+fn is_prime(number: u64) -> bool {
+    /// Sorenson and Webster, Math. Comp. 86 (2017) 985-1003.
+    const BASES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+    if let Some(divisor) = BASES.iter().find(|&base| number.is_multiple_of(*base)) {
+        return number == *divisor;
+    }
+    if number < 2 {
+        return false;
+    }
+    let modulus = Modulus::new(number, 52);
+    let halvings = (number - 1).trailing_zeros();
+    let minus_one = modulus.negative(modulus.one);
+    BASES.iter().all(|&base| {
+        let mut power = modulus.power(modulus.residue(base), (number - 1) >> halvings);
+        if power == modulus.one {
+            return true;
+        }
+        for _ in 1..halvings {
+            if power == minus_one {
+                return true;
+            }
+            power = modulus.product(power, power);
+        }
+        power == minus_one
+    })
+}
+
+/// The primes below `2^bits` that are one more than a multiple of `step`, from the largest down to half of `2^bits`; `bits` is
+/// at most 50.
+pub fn primes_below(bits: u32, step: u64) -> impl Iterator<Item = u64> {
+    let (highest, lowest) = ((1 << bits) - 1, 1_u64 << (bits - 1));
+    let first = (highest - 1) / step;
+    let numbers = (1..=first).rev().map(move |multiple| multiple * step + 1);
+    numbers
+        .take_while(move |&number| number > lowest)
+        .filter(|&number| is_prime(number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By division alone.
+    fn is_prime_by_division(number: u64) -> bool {
+        number > 1 && (2..).take_while(|d| d * d <= number).all(|d| !number.is_multiple_of(d))
+    }
+
+    #[test]
+    fn primes_are_those_without_a_divisor() {
+        for number in 1..5000 {
+            assert_eq!(is_prime(number), is_prime_by_division(number), "{number}");
+        }
+        // Products of two primes, the first of them a pseudoprime to the bases 2, 3, 5 and 7.
+        for composite in [3_215_031_751, 1_000_003 * 1_000_033, 33_554_393 * 33_554_383] {
+            assert!(!is_prime(composite), "{composite}");
+        }
+        let found: Vec<u64> = primes_below(30, 24).take(3).collect();
+        assert!(
+            found.iter().all(|p| p % 24 == 1 && is_prime_by_division(*p)),
+            "{found:?}"
+        );
+        assert_eq!(primes_up_to(30), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29]);
+    }
+
+    #[test]
+    fn residues_multiply_as_whole_numbers_do() {
+        for (bits, radix) in [(50, 52), (30, 32)] {
+            for prime in primes_below(bits, 48).take(3) {
+                let modulus = Modulus::new(prime, radix);
+                let mut value = 12_345;
+                for other in [0, 1, 2, prime - 1, prime / 2, 987_654_321 % prime] {
+                    let product = modulus.product(modulus.residue(value), modulus.residue(other));
+                    let expected = u128::from(value) * u128::from(other) % u128::from(prime);
+                    assert_eq!(u128::from(modulus.plain(product)), expected);
+                    value = (value * 31 + other) % prime;
+                }
+                let inverse = modulus.inverse(modulus.small(-7));
+                assert_eq!(modulus.product(inverse, modulus.small(-7)), modulus.one);
+                let mut all = [modulus.small(2), modulus.small(3), modulus.small(-5)];
+                modulus.invert(&mut all).expect("none is zero");
+                assert_eq!(modulus.product(all[2], modulus.small(-5)), modulus.one);
+                let root = modulus.root_of_unity(48).expect("48 divides p - 1");
+                assert_eq!(modulus.power(root, 24), modulus.negative(modulus.one));
+                assert_ne!(modulus.power(root, 16), modulus.one);
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Sums of products on any processor: residues of 30 binary digits, multiplied in words of 64, which compilers turn into the
+//! vector instructions that there are.
+
+use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
+
+use super::{Arithmetic, Lanes, Modulus, WIDTH};
+
+/// Any processor.
+#[derive(Clone, Copy, Debug)]
+pub struct Portable(Arch);
+
+impl Portable {
+    /// With the vector instructions that are there at run time.
+    pub fn new() -> Self {
+        Self(Arch::new())
+    }
+}
+
+/// Products not carried yet, and the sums of the low and of the high halves of those that are.
+#[derive(Clone, Copy)]
+pub struct Sum {
+    recent: Lanes,
+    low: Lanes,
+    high: Lanes,
+}
+
+/// The digits that a multiplication of half words sees.
+#[inline(always)]
+fn half(word: u64) -> u64 {
+    word & 0xffff_ffff
+}
+
+impl Arithmetic for Portable {
+    const BITS: u32 = 30;
+    const RADIX: u32 = 32;
+    const DIGIT: u32 = 30;
+    // Of products of 60 digits, sixteen fill a word.
+    const RUN: usize = 15;
+    type Sum = Sum;
+
+    #[inline(always)]
+    fn none(self) -> Sum {
+        let none = Lanes([0; WIDTH]);
+        Sum {
+            recent: none,
+            low: none,
+            high: none,
+        }
+    }
+    #[inline(always)]
+    fn add_product(self, mut sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
+        for k in 0..WIDTH {
+            sum.recent.0[k] = sum.recent.0[k].wrapping_add(half(left.0[k]).wrapping_mul(half(right.0[k])));
+        }
+        sum
+    }
+    #[inline(always)]
+    fn add_multiple(self, mut sum: Sum, left: u64, right: &Lanes) -> Sum {
+        for k in 0..WIDTH {
+            sum.recent.0[k] = sum.recent.0[k].wrapping_add(half(left).wrapping_mul(half(right.0[k])));
+        }
+        sum
+    }
+    #[inline(always)]
+    fn carry(self, mut sum: Sum) -> Sum {
+        for k in 0..WIDTH {
+            sum.low.0[k] = sum.low.0[k].wrapping_add(half(sum.recent.0[k]));
+            sum.high.0[k] = sum.high.0[k].wrapping_add(sum.recent.0[k] >> 32);
+            sum.recent.0[k] = 0;
+        }
+        sum
+    }
+    #[inline(always)]
+    fn join(self, left: Sum, right: Sum) -> Sum {
+        let (mut sum, right) = (self.carry(left), self.carry(right));
+        for k in 0..WIDTH {
+            sum.low.0[k] = sum.low.0[k].wrapping_add(right.low.0[k]);
+            sum.high.0[k] = sum.high.0[k].wrapping_add(right.high.0[k]);
+        }
+        sum
+    }
+    #[inline(always)]
+    fn parts(self, sum: Sum) -> (Lanes, Lanes) {
+        let sum = self.carry(sum);
+        (sum.low, sum.high)
+    }
+    #[inline(always)]
+    fn reduce(self, sum: Sum, modulus: &Modulus) -> Lanes {
+        let sum = self.carry(sum);
+        let prime = modulus.prime;
+        let mut residues = Lanes::default();
+        for k in 0..WIDTH {
+            // As in the wide arithmetic, with a high part below 2^42.
+            let low = half(sum.low.0[k]);
+            let high = sum.high.0[k].wrapping_add(sum.low.0[k] >> 32);
+            let guess = half(high >> 10).wrapping_mul(half(modulus.quotient)) >> 47;
+            let high = high.wrapping_sub(half(guess).wrapping_mul(half(prime)));
+            let multiple = half(low.wrapping_mul(half(modulus.inverse)));
+            let taken = multiple.wrapping_mul(half(prime)) >> 32;
+            let residue = high.wrapping_add(prime).wrapping_sub(taken);
+            residues.0[k] = (0..3).fold(residue, |value, _| value.min(value.wrapping_sub(prime)));
+        }
+        residues
+    }
+    #[inline(always)]
+    fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {
+        self.0.dispatch(Vectorized(function))
+    }
+}
+
+/// A function for every set of vector instructions.
+struct Vectorized<F>(F);
+
+impl<F: NullaryFnOnce> WithSimd for Vectorized<F> {
+    type Output = F::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> F::Output {
+        self.0.call()
+    }
+}

@@ -1,0 +1,323 @@
+//! The denominators of an expansion, guessed from its first orders.
+//!
+//! The elimination divides order `n` by `1 - k^2` for its harmonics `k`, so that no prime above the highest harmonic can stand in a
+//! denominator, and their powers grow by what `lcm(1 .. highest)` has of them. Often much cancels: Duffing's denominators
+//! are powers of two, the pendulum's divide `64^n (2n+1)!`. Which of the three it is is read off the first orders, half of them to
+//! fit and the other half to test. It is a guess: every number that is found with it is tried modulo one more prime.
+
+use std::collections::BTreeMap;
+
+use num_integer::Integer as _;
+use num_traits::{One, ToPrimitive, Zero};
+
+use crate::exact::Integer;
+use crate::exact::residue::{Modulus, primes_up_to};
+
+/// A positive whole number by its prime factors and their exponents.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Factored(BTreeMap<u64, u64>);
+
+impl Factored {
+    /// The factors of a number whose primes are all small; `None` of another.
+    pub fn of(number: &Integer) -> Option<Self> {
+        /// Larger ones come from coefficients with such a number in them.
+        const LARGEST: u64 = 1000;
+        let mut rest = number.clone();
+        let mut factored = Self::default();
+        for prime in primes_up_to(LARGEST) {
+            if rest.is_one() {
+                break;
+            }
+            let exponent = remove(&mut rest, prime, u64::MAX);
+            factored.set(prime, exponent);
+        }
+        rest.is_one().then_some(factored)
+    }
+
+    fn exponent(&self, prime: u64) -> u64 {
+        self.0.get(&prime).copied().unwrap_or(0)
+    }
+
+    fn set(&mut self, prime: u64, exponent: u64) {
+        match exponent {
+            0 => self.0.remove(&prime),
+            _ => self.0.insert(prime, exponent),
+        };
+    }
+
+    /// Whether it is one.
+    pub fn is_one(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The product.
+    pub fn times(&self, other: &Self) -> Self {
+        let mut product = self.clone();
+        for (&prime, exponent) in &other.0 {
+            product.set(prime, product.exponent(prime) + exponent);
+        }
+        product
+    }
+
+    /// The quotient, where what the divisor has more of is left out.
+    pub fn over(&self, divisor: &Self) -> Self {
+        let mut quotient = self.clone();
+        for (&prime, exponent) in &divisor.0 {
+            quotient.set(prime, self.exponent(prime).saturating_sub(*exponent));
+        }
+        quotient
+    }
+
+    /// The number.
+    pub fn value(&self) -> Integer {
+        let powers = self.0.iter();
+        powers
+            .map(|(prime, exponent)| Integer::from(*prime).pow(u32::try_from(*exponent).unwrap_or(u32::MAX)))
+            .product()
+    }
+
+    /// Its residue.
+    pub fn residue(&self, modulus: &Modulus) -> u64 {
+        self.0.iter().fold(modulus.one, |product, (prime, exponent)| {
+            modulus.product(product, modulus.power(modulus.residue(*prime), *exponent))
+        })
+    }
+
+    /// The number of its binary digits.
+    pub fn bits(&self) -> f64 {
+        let powers = self.0.iter();
+        powers
+            .map(|(prime, exponent)| (*prime as f64).log2() * *exponent as f64)
+            .sum()
+    }
+
+    /// The numerator and denominator in lowest terms of a number over this one.
+    pub fn lowest_terms(&self, numerator: Integer) -> (Integer, Integer) {
+        if numerator.is_zero() {
+            return (numerator, Integer::one());
+        }
+        let mut numerator = numerator;
+        let mut denominator = self.clone();
+        for (&prime, &exponent) in &self.0 {
+            let common = remove(&mut numerator, prime, exponent);
+            denominator.set(prime, exponent - common);
+        }
+        (numerator, denominator.value())
+    }
+
+    /// What all of these numbers have in common with this one.
+    pub fn common(&self, numbers: &[Integer]) -> Self {
+        let numbers: Vec<&Integer> = numbers.iter().filter(|number| !number.is_zero()).collect();
+        let mut common = Self::default();
+        let halvings = numbers.iter().filter_map(|number| number.halvings()).min();
+        let halvings = halvings.map_or(0, |count| count as u64);
+        common.set(2, halvings.min(self.exponent(2)));
+        // Many primes in one division: most are in common with none of the first numbers already.
+        let odd: Vec<u64> = self.0.keys().copied().filter(|prime| *prime != 2).collect();
+        let mut rest = odd.as_slice();
+        while !rest.is_empty() {
+            let products = rest.iter().scan(1_u64, |product, prime| {
+                *product = product.checked_mul(*prime)?;
+                Some(*product)
+            });
+            let products: Vec<u64> = products.collect();
+            let (lot, others) = rest.split_at(products.len().max(1));
+            let all = products.last().copied().unwrap_or(lot[0]);
+            let mut shared = all;
+            for number in &numbers {
+                shared = shared.gcd(&remainder(number, all));
+                if shared == 1 {
+                    break;
+                }
+            }
+            for &prime in lot.iter().filter(|prime| shared.is_multiple_of(**prime)) {
+                common.set(prime, self.least_power(prime, &numbers));
+            }
+            rest = others;
+        }
+        common
+    }
+
+    /// The highest power of a prime in all of the numbers, as far as a word sees it.
+    fn least_power(&self, prime: u64, numbers: &[&Integer]) -> u64 {
+        let (power, count) = largest_power(prime);
+        numbers.iter().fold(self.exponent(prime).min(count), |least, number| {
+            let mut rest = remainder(number, power);
+            let mut exponent = 0;
+            while exponent < least && rest.is_multiple_of(prime) {
+                rest /= prime;
+                exponent += 1;
+            }
+            exponent
+        })
+    }
+}
+
+/// The absolute remainder of a division by a word.
+fn remainder(number: &Integer, divisor: u64) -> u64 {
+    let remainder = number % Integer::from(divisor);
+    remainder
+        .to_i128()
+        .map_or(0, |remainder| remainder.unsigned_abs() as u64)
+}
+
+/// The largest power of a prime in one word, and its exponent.
+fn largest_power(prime: u64) -> (u64, u64) {
+    let mut power = (prime, 1);
+    while let Some(next) = power.0.checked_mul(prime) {
+        power = (next, power.1 + 1);
+    }
+    power
+}
+
+/// Divides by a prime as often as it goes, `most` times at most, and says how often.
+fn remove(number: &mut Integer, prime: u64, most: u64) -> u64 {
+    if number.is_zero() {
+        return 0;
+    }
+    if prime == 2 {
+        let halvings = number.halvings().map_or(0, |count| count as u64).min(most);
+        *number = std::mem::take(number) >> halvings as usize;
+        return halvings;
+    }
+    let mut removed = 0;
+    for (power, count) in [largest_power(prime), (prime, 1)] {
+        let divisor = Integer::from(power);
+        while removed + count <= most {
+            let (quotient, rest) = number.div_rem(&divisor);
+            if !rest.is_zero() {
+                break;
+            }
+            *number = quotient;
+            removed += count;
+        }
+    }
+    removed
+}
+
+/// How denominators grow with the order, beside a factor `c^n`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Growth {
+    /// Not at all.
+    Power,
+    /// As `(2n+1)!`.
+    Factorial,
+    /// As the product of `lcm(1 .. highest factor)` over the orders: no structure is left out.
+    Multiples,
+}
+
+impl Growth {
+    /// From the one with the shortest numbers on.
+    pub const ALL: [Self; 3] = [Self::Power, Self::Factorial, Self::Multiples];
+
+    /// The number of an order; `largest_factor` is that of the divisors of each order.
+    fn of_order(self, order: usize, largest_factor: &dyn Fn(usize) -> u64) -> Factored {
+        let mut number = Factored::default();
+        let order_as_word = order as u64;
+        match self {
+            Self::Power => {}
+            Self::Factorial => {
+                let last = 2 * order_as_word + 1;
+                for prime in primes_up_to(last) {
+                    // Legendre.
+                    let powers = std::iter::successors(Some(last / prime), |rest| Some(rest / prime));
+                    number.set(prime, powers.take_while(|&rest| rest > 0).sum());
+                }
+            }
+            Self::Multiples => {
+                for prime in primes_up_to(largest_factor(order)) {
+                    let exponent = |last: u64| u64::from(last.checked_ilog(prime).unwrap_or(0));
+                    number.set(prime, (1..=order).map(|order| exponent(largest_factor(order))).sum());
+                }
+            }
+        }
+        number
+    }
+
+    /// The denominators of all orders up to `highest` if those of the first ones, `known`, are of this growth; the known ones as
+    /// they are.
+    pub fn denominators(
+        self,
+        known: &[Factored],
+        highest: usize,
+        largest_factor: &dyn Fn(usize) -> u64,
+    ) -> Option<Vec<Factored>> {
+        let fitted = |count: usize| {
+            let mut base = Factored::default();
+            for (order, own) in known.iter().enumerate().take(count).skip(1) {
+                let rest = own.over(&self.of_order(order, largest_factor));
+                for (&prime, exponent) in &rest.0 {
+                    base.set(prime, base.exponent(prime).max(u64::div_ceil(*exponent, order as u64)));
+                }
+            }
+            base
+        };
+        let base = fitted(known.len());
+        // The last resort is not tested here: what it says is tried modulo another prime, as everything is.
+        let untested = self == Self::Multiples || known.len() > highest;
+        if !untested && fitted(known.len().div_ceil(2)) != base {
+            return None;
+        }
+        let denominator = |order: usize| match known.get(order) {
+            Some(known) => known.clone(),
+            None => {
+                let mut power = base.clone();
+                power.0.values_mut().for_each(|exponent| *exponent *= order as u64);
+                power.times(&self.of_order(order, largest_factor))
+            }
+        };
+        Some((0..=highest).map(denominator).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::factorial;
+
+    fn integer(value: i64) -> Integer {
+        Integer::from(value)
+    }
+
+    #[test]
+    fn factors_and_lowest_terms() {
+        let number = Factored::of(&integer(720_720)).expect("small factors");
+        assert_eq!(number.value(), integer(720_720));
+        assert_eq!(number.lowest_terms(integer(-1001 * 9)), (integer(-1), integer(80)));
+        assert_eq!(number.lowest_terms(integer(0)), (integer(0), integer(1)));
+        let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
+        assert_eq!(common.value(), integer(12));
+        assert_eq!(number.over(&common).value(), integer(60_060));
+        assert!(Factored::of(&integer(1_000_003)).is_none());
+    }
+
+    #[test]
+    fn growth_is_told_from_the_first_orders() {
+        let divisors = |order: usize| order as u64 + 1;
+        let known = |denominator: &dyn Fn(u32) -> Integer| -> Vec<Factored> {
+            (0..=10)
+                .map(|n| Factored::of(&denominator(n)).expect("small factors"))
+                .collect()
+        };
+        let powers = known(&|n| integer(32).pow(n));
+        let found = Growth::Power.denominators(&powers, 20, &divisors).expect("a power");
+        assert_eq!(found[20].value(), integer(32).pow(20));
+        let factorials = known(&|n| integer(64).pow(n) * factorial(2 * n + 1));
+        assert_eq!(Growth::Power.denominators(&factorials, 20, &divisors), None);
+        let found = Growth::Factorial
+            .denominators(&factorials, 20, &divisors)
+            .expect("factorials");
+        assert!((integer(64).pow(20) * factorial(41)).is_multiple_of(&found[20].value()));
+        // Product of lcm(1 .. m) over m = 2 .. 21 has 17 exactly from m = 17 on.
+        let multiples = known(&|n| {
+            (1..=i64::from(n) + 1)
+                .map(|m| (1..=m).fold(integer(1), |l, k| l.lcm(&integer(k))))
+                .product()
+        });
+        assert_eq!(Growth::Factorial.denominators(&multiples, 20, &divisors), None);
+        let found = Growth::Multiples
+            .denominators(&multiples, 20, &divisors)
+            .expect("multiples");
+        assert_eq!(found[20].exponent(17), 5);
+    }
+}

@@ -1,0 +1,592 @@
+//! The elimination of secular terms modulo one prime, on values at points.
+//!
+//! The same recursion as in [the ring's own](super), with three changes that make it fast. Products of series are sums of products of
+//! values at [points](crate::series::waves), `sum_i u_i v_(n-i)`, instead of products of Fourier series. A term `y^p (omega y')` is
+//! the derivative of `y^(p+1)/(p+1)` and needs no values of the velocity. And everything is a [residue](crate::exact::residue), eight
+//! side by side.
+//!
+//! Two symmetries are used, and an equation without the second is left to the ring: half-wave (every `p + q` odd: odd harmonics
+//! alone), and under reversal of time, where `y_n` consists of cosines (every `q` even) or of cosines for even `n` and of sines
+//! for odd `n` (every `q` as even as the order of its term).
+//!
+//! Cost for `P` products to order `N` with `K` harmonics: `P K N^2/2` multiplications of words (half for a square), `K N^2/6` for
+//! each series that is multiplied by the frequency, and `N` transforms each way.
+
+use super::{Amplitude, Detuning, Scheme};
+use crate::exact::Rational;
+use crate::exact::residue::sums::{Part, Product, combine, convolve, mixture, multiply};
+use crate::exact::residue::{Arithmetic, Modulus, Rows, WIDTH, padded};
+use crate::series::waves::{Grid, Wave, Waves};
+use crate::solution::AmplitudeConvention;
+
+/// A term `delta^order coefficient y^position (omega y')^velocity` of the force.
+#[derive(Clone, Debug)]
+pub(super) struct Term {
+    pub order: usize,
+    pub position: u32,
+    pub velocity: u32,
+    pub coefficient: Rational,
+}
+
+/// What is the same for every prime: the products, their symmetries and the points they are formed at.
+pub(super) struct Plan<'a> {
+    terms: &'a [Term],
+    scheme: Scheme,
+    /// The highest order that is kept; the amplitude of a limit cycle follows from one order more.
+    pub highest: usize,
+    last: usize,
+    half_wave: bool,
+    /// Sines at odd orders.
+    alternating: bool,
+    /// How many harmonics an order brings.
+    growth: usize,
+    grid: Grid,
+    /// The tables of values: `y`, `omega y'` where it is needed, and products of those before.
+    tables: usize,
+    products: Vec<Product>,
+    /// Which table belongs to each term, and whether its derivative is meant.
+    of_terms: Vec<(usize, bool)>,
+    has_velocity: bool,
+}
+
+impl<'a> Plan<'a> {
+    /// `None` for an equation without the symmetry under reversal of time, and for one without terms.
+    pub fn new(terms: &'a [Term], highest: usize, scheme: Scheme) -> Option<Self> {
+        let conservative = terms.iter().all(|term| term.velocity % 2 == 0);
+        let alternating = terms.iter().all(|term| term.velocity as usize % 2 == term.order % 2);
+        if !(conservative || alternating) || terms.iter().any(|term| term.position + term.velocity == 0) {
+            return None;
+        }
+        let power = |term: &Term| (term.position + term.velocity) as usize;
+        let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
+        let growth = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order)).max()?;
+        let last = highest + usize::from(scheme.amplitude == Amplitude::Determined);
+        let mut plan = Self {
+            terms,
+            scheme,
+            highest,
+            last,
+            half_wave,
+            alternating: !conservative,
+            growth,
+            grid: Grid::new(1, half_wave),
+            tables: 1,
+            products: vec![],
+            of_terms: vec![],
+            has_velocity: terms.iter().any(|term| term.velocity > 1),
+        };
+        // One more than there are, for the last order is only looked at in its first harmonic.
+        plan.grid = Grid::new(plan.harmonics(last) + 1, half_wave);
+        plan.tables += usize::from(plan.has_velocity);
+        plan.of_terms = terms.iter().map(|term| plan.table_of(term)).collect();
+        Some(plan)
+    }
+
+    fn table_of(&mut self, term: &Term) -> (usize, bool) {
+        let needed = self.last.saturating_sub(term.order);
+        match (term.position, term.velocity) {
+            (position, 0) => (self.power(0, position, needed), false),
+            (position, 1) => (self.power(0, position + 1, needed), true),
+            (0, velocity) => (self.power(1, velocity, needed), false),
+            (position, velocity) => {
+                let (position, velocity) = (self.power(0, position, needed), self.power(1, velocity, needed));
+                (self.product(position, velocity, needed), false)
+            }
+        }
+    }
+
+    /// By steps of two, so that neighbouring powers share their work.
+    fn power(&mut self, base: usize, exponent: u32, needed: usize) -> usize {
+        if exponent <= 1 {
+            return base;
+        }
+        let square = self.product(base, base, needed);
+        let start = if exponent.is_multiple_of(2) { square } else { base };
+        (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square, needed))
+    }
+
+    fn product(&mut self, left: usize, right: usize, needed: usize) -> usize {
+        let (left, right) = (left.min(right), left.max(right));
+        let known = self
+            .products
+            .iter_mut()
+            .find(|known| (known.left, known.right) == (left, right));
+        if let Some(known) = known {
+            known.needed = known.needed.max(needed);
+            return known.to;
+        }
+        let to = self.tables;
+        self.tables += 1;
+        self.products.push(Product {
+            left,
+            right,
+            to,
+            needed,
+        });
+        to
+    }
+
+    /// How many harmonics `y_order` may have: `1, 3, ...` or `0, 1, 2, ...`.
+    pub fn harmonics(&self, order: usize) -> usize {
+        match self.half_wave {
+            true => order * self.growth / 2 + 1,
+            false => order * self.growth + 2,
+        }
+    }
+
+    /// The harmonic of an index.
+    pub fn harmonic(&self, index: usize) -> usize {
+        if self.half_wave { 2 * index + 1 } else { index }
+    }
+
+    /// The first harmonic's index.
+    fn resonant(&self) -> usize {
+        usize::from(!self.half_wave)
+    }
+
+    /// What `y_order` consists of.
+    pub fn wave(&self, order: usize) -> Wave {
+        match self.alternating && order % 2 == 1 {
+            true => Wave::Sine,
+            false => Wave::Cosine,
+        }
+    }
+
+    /// What a prime minus one has to be a multiple of.
+    pub fn circle(&self) -> u64 {
+        self.grid.circle() as u64
+    }
+
+    /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above this.
+    pub fn largest_factor(&self, order: usize) -> u64 {
+        let highest = self.harmonic(self.harmonics(order) - 1) as u64 + 1;
+        if self.half_wave { highest / 2 } else { highest }
+    }
+
+    /// The first order, counted in steps from `start`, at which eight harmonics are not all zero.
+    fn first(&self, block: usize, start: usize, step: usize) -> usize {
+        let index = block * WIDTH;
+        let order = match self.half_wave {
+            true => (2 * index).div_ceil(self.growth.max(1)),
+            false => index.saturating_sub(1).div_ceil(self.growth.max(1)),
+        };
+        order.saturating_sub(start) / step
+    }
+}
+
+/// What one prime sees: plain residues, order by order.
+pub(super) struct Image {
+    pub modulus: Modulus,
+    /// The coefficients of the harmonics of `y_n`; empty for orders that nobody wants from this prime.
+    pub displacement: Vec<Vec<u64>>,
+    /// `W_n`.
+    pub frequency_squared: Vec<u64>,
+    /// `omega_n`.
+    pub frequency: Vec<u64>,
+}
+
+/// Everything that is wanted, modulo one prime; the motion from the order `wanted` on. `None` where a divisor is a multiple of the
+/// prime, and where a secular sine stays: the ring's own recursion says which.
+pub(super) fn expand<A: Arithmetic>(arithmetic: A, plan: &Plan, prime: u64, wanted: usize) -> Option<Image> {
+    let mut recursion = Recursion::new(arithmetic, plan, Modulus::new(prime, A::RADIX))?;
+    for order in 1..=plan.highest {
+        recursion.solve_order(order)?;
+    }
+    if plan.last > plan.highest && plan.highest > 0 {
+        let mut right_side = recursion.right_side(plan.last);
+        recursion.fix_amplitude(plan.last, &mut right_side);
+    }
+    let modulus = recursion.modulus;
+    let plain = |residues: &[u64]| residues.iter().map(|residue| modulus.plain(*residue)).collect();
+    let motion = recursion.motion.iter().enumerate();
+    Some(Image {
+        modulus,
+        displacement: motion
+            .map(|(order, own)| match order < wanted {
+                true => vec![],
+                false => plain(&own[..plan.harmonics(order)]),
+            })
+            .collect(),
+        frequency_squared: plain(&recursion.frequency_squared),
+        frequency: plain(&recursion.frequency),
+    })
+}
+
+struct Recursion<'a, A> {
+    arithmetic: A,
+    plan: &'a Plan<'a>,
+    modulus: Modulus,
+    waves: Waves,
+    factors: Factors,
+    coefficients: Vec<u64>,
+    /// Values at the points, an entry for each order.
+    tables: Vec<Rows>,
+    /// Coefficients of the harmonics: of `y_n''` or `-y_n`, of `y_n'`, and of the derivative of all terms with one velocity.
+    detuned: Rows,
+    derived: Rows,
+    damped: Rows,
+    motion: Vec<Vec<u64>>,
+    frequency_squared: Vec<u64>,
+    frequency: Vec<u64>,
+    of_amplitude: Option<Variation>,
+    values: Vec<u64>,
+    reversed: Vec<u64>,
+}
+
+/// What the coefficients of the harmonics are multiplied by, one by one.
+struct Factors {
+    /// `1/(1 - k^2)`, zero for the first harmonic.
+    solution: Vec<u64>,
+    /// `-k^2`, or minus one where the frequency stands before `y`.
+    detuning: Vec<u64>,
+    /// `k`: from sines to the cosines of their derivative.
+    rising: Vec<u64>,
+    /// `-k`: from cosines to sines.
+    falling: Vec<u64>,
+}
+
+impl Factors {
+    fn new(modulus: &Modulus, plan: &Plan) -> Option<Self> {
+        let count = plan.harmonics(plan.last).max(plan.resonant() + 1);
+        let all = |factor: &dyn Fn(i64) -> i64| -> Vec<u64> {
+            let mut factors: Vec<u64> = (0..count)
+                .map(|index| modulus.small(factor(plan.harmonic(index) as i64)))
+                .collect();
+            factors.resize(padded(count), 0);
+            factors
+        };
+        let mut solution = all(&|k| if k == 1 { 1 } else { 1 - k * k });
+        modulus.invert(&mut solution[..count])?;
+        solution[plan.resonant()] = 0;
+        Some(Self {
+            solution,
+            detuning: match plan.scheme.detuning {
+                Detuning::Acceleration => all(&|k| -k * k),
+                Detuning::Displacement => all(&|_| -1),
+            },
+            rising: all(&|k| k),
+            falling: all(&|k| -k),
+        })
+    }
+
+    /// For the derivative of a sum of these waves.
+    fn derivative(&self, of: Wave) -> &[u64] {
+        match of {
+            Wave::Cosine => &self.falling,
+            Wave::Sine => &self.rising,
+        }
+    }
+}
+
+/// How everything changes with the amplitude of `y_0`, for limit cycles.
+struct Variation {
+    /// Of each table, its values.
+    tables: Vec<Vec<u64>>,
+    /// Of the right side without the terms with one velocity, and of those.
+    plain: Vec<u64>,
+    damped: Vec<u64>,
+    /// `1/J`.
+    inverse_slope: u64,
+}
+
+impl<'a, A: Arithmetic> Recursion<'a, A> {
+    fn new(arithmetic: A, plan: &'a Plan, modulus: Modulus) -> Option<Self> {
+        let orders = plan.last + 1;
+        let points = plan.grid.size();
+        let harmonics = plan.harmonics(plan.last).max(plan.resonant() + 1);
+        let coefficient = |(term, (_, derivative)): (&Term, &(usize, bool))| {
+            let (numerator, denominator) = (term.coefficient.numer(), term.coefficient.denom());
+            let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
+            let divisor = modulus.product(modulus.integer(denominator), modulus.small(power));
+            (divisor != 0).then(|| modulus.product(modulus.integer(numerator), modulus.inverse(divisor)))
+        };
+        let pairs = plan.terms.iter().zip(&plan.of_terms);
+        let table = |wanted: bool| Rows::new(if wanted { harmonics } else { 0 }, orders + 1);
+        let mut recursion = Self {
+            arithmetic,
+            plan,
+            modulus,
+            waves: Waves::new(&modulus, plan.grid)?,
+            factors: Factors::new(&modulus, plan)?,
+            coefficients: pairs.map(coefficient).collect::<Option<_>>()?,
+            tables: vec![Rows::new(points, orders); plan.tables],
+            detuned: table(true),
+            derived: table(plan.has_velocity),
+            damped: table(plan.of_terms.iter().any(|(_, derivative)| *derivative)),
+            motion: Vec::with_capacity(orders),
+            frequency_squared: vec![modulus.one],
+            frequency: vec![modulus.one],
+            of_amplitude: None,
+            values: vec![0; padded(points)],
+            reversed: Vec::with_capacity(orders),
+        };
+        let mut start = vec![0; WIDTH];
+        start[plan.resonant()] = modulus.one;
+        recursion.push_displacement(0, start);
+        if plan.scheme.amplitude == Amplitude::Determined {
+            recursion.of_amplitude = Some(recursion.variation()?);
+        }
+        Some(recursion)
+    }
+
+    fn solve_order(&mut self, order: usize) -> Option<()> {
+        let mut right_side = self.right_side(order);
+        if order > 1 {
+            self.fix_amplitude(order, &mut right_side);
+        }
+        let (modulus, resonant) = (self.modulus, self.plan.resonant());
+        let wave = self.plan.wave(order);
+        let square = match wave {
+            Wave::Sine if right_side[resonant] != 0 => return None,
+            Wave::Sine => 0,
+            Wave::Cosine => modulus.negative(right_side[resonant]),
+        };
+        let lower = (1..order).filter(|&i| self.frequency[i] != 0);
+        let products = lower.fold(0, |sum, i| {
+            modulus.sum(sum, modulus.product(self.frequency[i], self.frequency[order - i]))
+        });
+        let twice = modulus.difference(square, products);
+        // Half of it: an odd one is made even by the prime.
+        let half = if twice % 2 == 0 {
+            twice / 2
+        } else {
+            twice.midpoint(modulus.prime)
+        };
+        self.frequency_squared.push(square);
+        self.frequency.push(half);
+        let mut displacement = right_side;
+        multiply(self.arithmetic, &modulus, &mut displacement, &self.factors.solution);
+        self.normalise(wave, &mut displacement);
+        self.push_displacement(order, displacement);
+        Some(())
+    }
+
+    /// `r_n` as in the head of the module, in the coefficients of its harmonics.
+    fn right_side(&mut self, order: usize) -> Vec<u64> {
+        let (arithmetic, modulus, plan) = (self.arithmetic, self.modulus, self.plan);
+        let wave = plan.wave(order);
+        let count = plan.harmonics(order);
+        let mut right_side = vec![0; padded(count)];
+        if self.mixed(order, false) {
+            let out = &mut right_side[..count];
+            self.waves
+                .coefficients((arithmetic, &modulus), wave, &mut self.values, out);
+            out.iter_mut().for_each(|value| *value = modulus.negative(*value));
+        }
+        if self.mixed(order, true) {
+            let mut damped = vec![0; padded(count)];
+            let out = &mut damped[..count];
+            self.waves
+                .coefficients((arithmetic, &modulus), wave.other(), &mut self.values, out);
+            multiply(arithmetic, &modulus, &mut damped, self.factors.derivative(wave.other()));
+            self.damped.write(self.slot(order), &damped);
+            if plan.scheme.detuning == Detuning::Acceleration {
+                self.delayed(
+                    |this| (&this.damped, &this.frequency[..]),
+                    order,
+                    1..order + 1,
+                    &mut damped,
+                );
+            }
+            subtract(&modulus, &mut right_side, &damped);
+        }
+        if order > 1 {
+            let mut detuned = vec![0; right_side.len()];
+            self.delayed(
+                |this| (&this.detuned, &this.frequency_squared[..]),
+                order,
+                1..order,
+                &mut detuned,
+            );
+            subtract(&modulus, &mut right_side, &detuned);
+        }
+        right_side
+    }
+
+    /// The sum of all terms at an order, with a derivative or without, into `values`; whether there are any such terms.
+    fn mixed(&mut self, order: usize, derivative: bool) -> bool {
+        let terms = self.plan.terms.iter().zip(&self.plan.of_terms).zip(&self.coefficients);
+        let parts: Vec<Part> = terms
+            .filter(|((_, (_, own)), _)| *own == derivative)
+            .filter_map(|((term, (table, _)), factor)| {
+                Some(Part {
+                    factor: *factor,
+                    table: *table,
+                    order: order.checked_sub(term.order)?,
+                })
+            })
+            .collect();
+        mixture(self.arithmetic, &self.modulus, &parts, &self.tables, &mut self.values);
+        !parts.is_empty()
+    }
+
+    /// Where an order stands among the coefficients: those of the same symmetry side by side.
+    fn slot(&self, order: usize) -> usize {
+        match self.plan.alternating {
+            true => order / 2 + order % 2 * (self.plan.last / 2 + 1),
+            false => order,
+        }
+    }
+
+    /// `out = sum over i in range of frequency_(order-i) series_i`, where orders of the other symmetry are zero.
+    fn delayed(
+        &mut self,
+        series: impl Fn(&Self) -> (&Rows, &[u64]),
+        order: usize,
+        range: std::ops::Range<usize>,
+        out: &mut [u64],
+    ) {
+        let step = if self.plan.alternating { 2 } else { 1 };
+        let start = match self.plan.alternating {
+            true => range.start + (order + range.start) % 2,
+            false => range.start,
+        };
+        let mut reversed = std::mem::take(&mut self.reversed);
+        let (rows, frequency) = series(self);
+        reversed.clear();
+        reversed.extend((start..range.end).step_by(step).map(|i| frequency[order - i]));
+        let first = |block| self.plan.first(block, start, step);
+        let table = (rows, self.slot(start));
+        combine(self.arithmetic, &self.modulus, &reversed, table, first, out);
+        self.reversed = reversed;
+    }
+
+    /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular sine.
+    fn fix_amplitude(&mut self, order: usize, right_side: &mut [u64]) {
+        let Some(variation) = &self.of_amplitude else { return };
+        let (modulus, plan, resonant) = (self.modulus, self.plan, self.plan.resonant());
+        if plan.wave(order) == Wave::Cosine || right_side[resonant] == 0 {
+            return;
+        }
+        let secular = modulus.negative(right_side[resonant]);
+        let amplitude = modulus.product(secular, variation.inverse_slope);
+        for (table, change) in self.tables.iter_mut().zip(&variation.tables) {
+            let mut values = table.read(order - 1);
+            add_multiple(&modulus, &mut values, amplitude, change);
+            table.write(order - 1, &values);
+        }
+        let before = self.slot(order - 1);
+        let first = &mut self.motion[order - 1][resonant];
+        *first = modulus.sum(*first, amplitude);
+        let first = *first;
+        let detuned = modulus.product(first, self.factors.detuning[resonant]);
+        self.detuned.set(resonant, before, detuned);
+        if plan.has_velocity {
+            self.derived.set(resonant, before, modulus.negative(first));
+        }
+        add_multiple(&modulus, right_side, amplitude, &variation.plain);
+        add_multiple(&modulus, right_side, modulus.negative(amplitude), &variation.damped);
+        let slot = self.slot(order);
+        if self.damped.blocks() > 0 {
+            for (index, change) in variation.damped.iter().enumerate() {
+                let changed = modulus.sum(self.damped.get(index, slot), modulus.product(amplitude, *change));
+                self.damped.set(index, slot, changed);
+            }
+        }
+    }
+
+    /// Adds the homogeneous solution that the amplitude convention asks for.
+    fn normalise(&self, wave: Wave, displacement: &mut [u64]) {
+        if self.plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
+            return;
+        }
+        let modulus = &self.modulus;
+        let at_zero = match (wave, self.plan.scheme.amplitude) {
+            (Wave::Sine, _) => displacement
+                .iter()
+                .zip(&self.factors.rising)
+                .fold(0, |sum, (value, k)| modulus.sum(sum, modulus.product(*value, *k))),
+            (Wave::Cosine, Amplitude::Free) => displacement.iter().fold(0, |sum, value| modulus.sum(sum, *value)),
+            (Wave::Cosine, Amplitude::Determined) => return,
+        };
+        displacement[self.plan.resonant()] = modulus.negative(at_zero);
+    }
+
+    fn push_displacement(&mut self, order: usize, displacement: Vec<u64>) {
+        let (arithmetic, modulus, plan) = (self.arithmetic, self.modulus, self.plan);
+        let (wave, count, slot) = (plan.wave(order), plan.harmonics(order), self.slot(order));
+        self.waves
+            .values((arithmetic, &modulus), wave, &displacement[..count], &mut self.values);
+        self.tables[0].write(order, &self.values);
+        let mut detuned = displacement.clone();
+        multiply(arithmetic, &modulus, &mut detuned, &self.factors.detuning);
+        self.detuned.write(slot, &detuned);
+        if plan.has_velocity {
+            let mut velocity = displacement.clone();
+            multiply(arithmetic, &modulus, &mut velocity, self.factors.derivative(wave));
+            self.derived.write(slot, &velocity);
+            if plan.scheme.detuning == Detuning::Acceleration {
+                self.delayed(
+                    |this| (&this.derived, &this.frequency[..]),
+                    order,
+                    0..order + 1,
+                    &mut velocity,
+                );
+            }
+            self.waves.values(
+                (arithmetic, &modulus),
+                wave.other(),
+                &velocity[..count],
+                &mut self.values,
+            );
+            self.tables[1].write(order, &self.values);
+        }
+        self.motion.push(displacement);
+        convolve(arithmetic, &modulus, &plan.products, &mut self.tables, order);
+    }
+
+    /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.
+    fn variation(&mut self) -> Option<Variation> {
+        let (arithmetic, modulus, plan) = (self.arithmetic, self.modulus, self.plan);
+        let start: Vec<Vec<u64>> = self.tables.iter().map(|table| table.read(0)).collect();
+        // Of y and of omega y': themselves.
+        let leaves = 1 + usize::from(plan.has_velocity);
+        let mut tables: Vec<Vec<u64>> = start[..leaves].to_vec();
+        for product in &plan.products {
+            let mut change = vec![0; self.values.len()];
+            for (one, other) in [(product.left, product.right), (product.right, product.left)] {
+                for ((sum, varied), value) in change.iter_mut().zip(&tables[one]).zip(&start[other]) {
+                    *sum = modulus.sum(*sum, modulus.product(*varied, *value));
+                }
+            }
+            tables.push(change);
+        }
+        let count = plan.harmonics(1);
+        let mut changes = [(Wave::Sine, false), (Wave::Cosine, true)].map(|(wave, derivative)| {
+            let mut values = vec![0; self.values.len()];
+            let terms = plan.terms.iter().zip(&plan.of_terms).zip(&self.coefficients);
+            for ((_, (table, _)), coefficient) in
+                terms.filter(|((term, (_, own)), _)| term.order == 1 && *own == derivative)
+            {
+                add_multiple(&modulus, &mut values, *coefficient, &tables[*table]);
+            }
+            let mut change = vec![0; padded(count)];
+            let out = &mut change[..count];
+            self.waves.coefficients((arithmetic, &modulus), wave, &mut values, out);
+            change
+        });
+        let [plain, damped] = &mut changes;
+        plain.iter_mut().for_each(|value| *value = modulus.negative(*value));
+        multiply(arithmetic, &modulus, damped, &self.factors.falling);
+        let slope = modulus.difference(plain[plan.resonant()], damped[plan.resonant()]);
+        let [plain, damped] = changes;
+        (slope != 0).then(|| Variation {
+            tables,
+            plain,
+            damped,
+            inverse_slope: modulus.inverse(slope),
+        })
+    }
+}
+
+fn subtract(modulus: &Modulus, values: &mut [u64], others: &[u64]) {
+    for (value, other) in values.iter_mut().zip(others) {
+        *value = modulus.difference(*value, *other);
+    }
+}
+
+fn add_multiple(modulus: &Modulus, sums: &mut [u64], factor: u64, values: &[u64]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum = modulus.sum(*sum, modulus.product(factor, *value));
+    }
+}

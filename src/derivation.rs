@@ -18,8 +18,6 @@ use crate::symbol::Symbol;
 pub struct Step {
     /// The order `n`; at order zero there is no force, and `y_0 = cos(theta)`.
     pub order: u32,
-    /// What drives `y_n` beside the secular term.
-    pub right_side: FourierSeries<Polynomials>,
     /// The coefficient of the secular `cos(theta)` that the nonlinear terms leave.
     pub resonance: Polynomial,
     /// `W_n`, which the secular condition fixes.
@@ -30,6 +28,13 @@ pub struct Step {
     pub displacement: FourierSeries<Polynomials>,
     /// Limit cycles: what fixes the amplitude of `y_n`.
     pub amplitude: Option<AmplitudeCondition>,
+}
+
+impl Step {
+    /// What drives `y_n` beside the secular term: `y_n'' + y_n`.
+    pub fn right_side(&self) -> FourierSeries<Polynomials> {
+        self.displacement.derivative().derivative().sum(&self.displacement)
+    }
 }
 
 /// What a homogeneous solution is chosen by.

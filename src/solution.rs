@@ -357,7 +357,6 @@ impl Solution {
             }
             step.resonance = rounded(&step.resonance);
             step.correction = rounded(&step.correction);
-            step.right_side = step.right_side.map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
             step.displacement = step
                 .displacement
                 .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));

@@ -109,7 +109,7 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
             format!("{w}{n}"),
         );
         let driven = terms::waves(
-            &step.right_side,
+            &step.right_side(),
             |coefficient| solution.ordered(coefficient).to_string(),
             &NOTATION,
         );
@@ -225,7 +225,7 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
             true => format!("{secular} \\cos \\theta"),
             false => format!("\\left({secular}\\right) \\cos \\theta"),
         };
-        let driven = latex::waves(&step.right_side, solution);
+        let driven = latex::waves(&step.right_side(), solution);
         let right_side = terms::sum(driven.into_iter().chain([resonant]));
         lines.push(format!("{y}'' + {y} &= {right_side}"));
         let fixes = match step.resonance.is_zero() {

@@ -41,7 +41,6 @@ impl ExactSeries {
         self.frequency_squared = change(&self.frequency_squared);
         self.displacement = series(&self.displacement);
         for step in &mut self.steps {
-            step.right_side = series(&step.right_side);
             step.displacement = series(&step.displacement);
             step.resonance = change(&step.resonance);
             step.correction = change(&step.correction);
@@ -207,7 +206,6 @@ fn collect<R: Ring>(
         };
         Step {
             order: n as u32,
-            right_side: driven(&expansion.right_side),
             resonance: driven(&expansion.removed).constant_term(),
             correction: driven(&expansion.frequency_squared[1..]).constant_term(),
             conditions: conditions(n, scheme),

@@ -157,7 +157,6 @@ fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, &FourierSeries<R>)> 
         ("omega", &expansion.frequency),
         ("omega^2", &expansion.frequency_squared),
         ("motion", &expansion.displacement),
-        ("right side", &expansion.right_side),
         ("removed", &expansion.removed),
     ];
     let mut parts = Vec::new();

@@ -98,7 +98,8 @@ impl Arithmetic for Portable {
             let multiple = half(low.wrapping_mul(half(modulus.inverse)));
             let taken = multiple.wrapping_mul(half(prime)) >> 32;
             let residue = high.wrapping_add(prime).wrapping_sub(taken);
-            residues.0[k] = (0..3).fold(residue, |value, _| value.min(value.wrapping_sub(prime)));
+            let once = residue.min(residue.wrapping_sub(prime));
+            residues.0[k] = once.min(once.wrapping_sub(prime));
         }
         residues
     }

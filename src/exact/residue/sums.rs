@@ -63,7 +63,10 @@ fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Su
         for ((left, right), sum) in rest.zip(&mut sums) {
             *sum = arithmetic.add_product(*sum, left, right);
         }
-        sums = sums.map(|sum| arithmetic.carry(sum));
+        // A loop, for a closure would not be compiled for this processor.
+        for sum in &mut sums {
+            *sum = arithmetic.carry(*sum);
+        }
     }
     joined(arithmetic, sums)
 }
@@ -125,7 +128,10 @@ pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[La
         for ((factor, entry), sum) in factors.remainder().iter().zip(row.remainder()).zip(&mut sums) {
             *sum = arithmetic.add_multiple(*sum, *factor, entry);
         }
-        sums = sums.map(|sum| arithmetic.carry(sum));
+        // A loop, for a closure would not be compiled for this processor.
+        for sum in &mut sums {
+            *sum = arithmetic.carry(*sum);
+        }
     }
     joined(arithmetic, sums)
 }
@@ -198,7 +204,8 @@ pub fn combine_here<A: Arithmetic>(arithmetic: A, modulus: &Modulus, factors: &[
     let blocks = out.len() / WIDTH;
     let mut block = 0;
     while block + 4 <= blocks {
-        let rows: [&[Lanes]; 4] = std::array::from_fn(|k| &table.row(block + k)[..factors.len()]);
+        let row = |k: usize| &table.row(block + k)[..factors.len()];
+        let rows = [row(0), row(1), row(2), row(3)];
         let mut sums = [arithmetic.none(); 4];
         let mut start = 0;
         while start < factors.len() {
@@ -208,12 +215,14 @@ pub fn combine_here<A: Arithmetic>(arithmetic: A, modulus: &Modulus, factors: &[
                     sums[k] = arithmetic.add_multiple(sums[k], factors[i], &rows[k][i]);
                 }
             }
-            sums = sums.map(|sum| arithmetic.carry(sum));
+            // A loop, for a closure would not be compiled for this processor.
+            for sum in &mut sums {
+                *sum = arithmetic.carry(*sum);
+            }
             start = end;
         }
-        for (k, sum) in sums.into_iter().enumerate() {
-            let place = (block + k) * WIDTH;
-            out[place..place + WIDTH].copy_from_slice(&arithmetic.reduce(sum, modulus).0);
+        for (sum, out) in sums.iter().zip(out[block * WIDTH..].chunks_exact_mut(WIDTH)) {
+            out.copy_from_slice(&arithmetic.reduce(*sum, modulus).0);
         }
         block += 4;
     }

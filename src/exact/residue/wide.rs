@@ -77,8 +77,8 @@ impl Arithmetic for Wide {
     }
     #[inline(always)]
     fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
-        let add = |left, right| self.avx512f._mm512_add_epi64(left, right);
-        (add(left.0, right.0), add(left.1, right.1))
+        let f = self.avx512f;
+        (f._mm512_add_epi64(left.0, right.0), f._mm512_add_epi64(left.1, right.1))
     }
     #[inline(always)]
     fn parts(self, sum: Self::Sum) -> (Lanes, Lanes) {
@@ -90,7 +90,7 @@ impl Arithmetic for Wide {
         let (f, ifma) = (self.avx512f, self.avx512ifma);
         let (low, high) = self.carry(sum);
         let (zero, prime) = (self.all(0), self.all(modulus.prime));
-        // The high part, below 2^62, loses a multiple of the prime: what is left is below three times the prime.
+        // The high part, below 2^62, loses a multiple of the prime: what is left is below twice the prime.
         let upper = f._mm512_srli_epi64::<10>(high);
         let guess = ifma._mm512_madd52hi_epu64(zero, upper, self.all(modulus.quotient));
         let multiple = ifma._mm512_madd52lo_epu64(zero, f._mm512_srli_epi64::<35>(guess), prime);
@@ -99,8 +99,9 @@ impl Arithmetic for Wide {
         let multiple = ifma._mm512_madd52lo_epu64(zero, low, self.all(modulus.inverse));
         let taken = ifma._mm512_madd52hi_epu64(zero, multiple, prime);
         let residue = f._mm512_sub_epi64(f._mm512_add_epi64(high, prime), taken);
-        let lower = |value| f._mm512_min_epu64(value, f._mm512_sub_epi64(value, prime));
-        Lanes(pulp::cast(lower(lower(lower(residue)))))
+        let once = f._mm512_min_epu64(residue, f._mm512_sub_epi64(residue, prime));
+        let twice = f._mm512_min_epu64(once, f._mm512_sub_epi64(once, prime));
+        Lanes(pulp::cast(twice))
     }
     #[inline(always)]
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {

@@ -114,43 +114,86 @@ impl Factored {
         common.set(2, halvings.min(self.exponent(2)));
         // Many primes in one division: most are in common with none of the first numbers already.
         let odd: Vec<u64> = self.0.keys().copied().filter(|prime| *prime != 2).collect();
-        let mut rest = odd.as_slice();
-        while !rest.is_empty() {
-            let products = rest.iter().scan(1_u64, |product, prime| {
-                *product = product.checked_mul(*prime)?;
-                Some(*product)
-            });
-            let products: Vec<u64> = products.collect();
-            let (lot, others) = rest.split_at(products.len().max(1));
-            let all = products.last().copied().unwrap_or(lot[0]);
-            let mut shared = all;
+        let mut shared: Vec<u64> = Vec::new();
+        for lot in words(&odd) {
+            let all: u64 = lot.iter().product();
+            let mut left = all;
             for number in &numbers {
-                shared = shared.gcd(&remainder(number, all));
-                if shared == 1 {
+                left = left.gcd(&remainder(number, all));
+                if left == 1 {
                     break;
                 }
             }
-            for &prime in lot.iter().filter(|prime| shared.is_multiple_of(**prime)) {
-                common.set(prime, self.least_power(prime, &numbers));
-            }
-            rest = others;
+            shared.extend(lot.iter().filter(|prime| left.is_multiple_of(**prime)));
+        }
+        for (prime, exponent) in self.least_powers(&shared, &numbers) {
+            common.set(prime, exponent);
         }
         common
     }
 
-    /// The highest power of a prime in all of the numbers, as far as a word sees it.
-    fn least_power(&self, prime: u64, numbers: &[&Integer]) -> u64 {
-        let (power, count) = largest_power(prime);
-        numbers.iter().fold(self.exponent(prime).min(count), |least, number| {
-            let mut rest = remainder(number, power);
-            let mut exponent = 0;
-            while exponent < least && rest.is_multiple_of(prime) {
-                rest /= prime;
-                exponent += 1;
+    /// The highest powers of these primes in all of the numbers, at most those of this one.
+    fn least_powers(&self, primes: &[u64], numbers: &[&Integer]) -> Vec<(u64, u64)> {
+        // Squares first, several in a word; alone, as high as a word goes, those that have more than a square.
+        let squares: Vec<u64> = primes.iter().map(|prime| prime * prime).collect();
+        let mut least: Vec<(u64, u64)> = primes
+            .iter()
+            .map(|prime| (*prime, self.exponent(*prime).min(2)))
+            .collect();
+        let mut place = 0;
+        for lot in words(&squares) {
+            let all: u64 = lot.iter().product();
+            let own = &mut least[place..place + lot.len()];
+            for number in numbers {
+                lower(own, remainder(number, all));
             }
-            exponent
-        })
+            place += lot.len();
+        }
+        for (prime, exponent) in &mut least {
+            if *exponent == 2 && self.exponent(*prime) > 2 {
+                let (power, count) = largest_power(*prime);
+                *exponent = self.exponent(*prime).min(count);
+                for number in numbers {
+                    let mut own = [(*prime, *exponent)];
+                    lower(&mut own, remainder(number, power));
+                    *exponent = own[0].1;
+                }
+            }
+        }
+        least
     }
+}
+
+/// Lowers exponents to those that the primes have in a number, zero meaning any.
+fn lower(exponents: &mut [(u64, u64)], number: u64) {
+    if number == 0 {
+        return;
+    }
+    for (prime, most) in exponents {
+        let mut rest = number;
+        let mut exponent = 0;
+        while exponent < *most && rest.is_multiple_of(*prime) {
+            rest /= *prime;
+            exponent += 1;
+        }
+        *most = exponent;
+    }
+}
+
+/// Cuts a list of numbers into lots whose products are words.
+fn words(numbers: &[u64]) -> Vec<&[u64]> {
+    let mut lots = Vec::new();
+    let mut rest = numbers;
+    while !rest.is_empty() {
+        let products = rest.iter().scan(1_u64, |product, number| {
+            *product = product.checked_mul(*number)?;
+            Some(())
+        });
+        let (lot, others) = rest.split_at(products.count().max(1));
+        lots.push(lot);
+        rest = others;
+    }
+    lots
 }
 
 /// The absolute remainder of a division by a word.

@@ -77,8 +77,6 @@ pub struct Expansion<R: Ring> {
     pub frequency: Vec<FourierSeries<R>>,
     /// `y_n(tau)`.
     pub displacement: Vec<FourierSeries<R>>,
-    /// `r_n + W_n cos tau`, the right-hand side after the secular term is removed, from order one on.
-    pub right_side: Vec<FourierSeries<R>>,
     /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
     pub removed: Vec<FourierSeries<R>>,
     /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where it is free.
@@ -331,7 +329,6 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             frequency_squared: vec![FourierSeries::integer(ring.clone(), 1)],
             frequency: vec![FourierSeries::integer(ring.clone(), 1)],
             displacement: vec![start.clone()],
-            right_side: vec![],
             removed: vec![],
             amplitudes: vec![],
         };
@@ -363,9 +360,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             return Err(SecularError::Growth { order });
         }
         let frequency_squared = resonance.cosine.times(-1);
-        let balanced = right_side.sum(&frequency_squared.product(&self.wave()));
         self.result.removed.push(resonance.cosine);
-        self.result.right_side.push(balanced);
         self.result.frequency_squared.push(frequency_squared);
         self.push_frequency(order)?;
         let displacement = divided(order, self.normalised(particular))?;

@@ -140,7 +140,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The first harmonic's index.
-    fn resonant(&self) -> usize {
+    pub fn resonant(&self) -> usize {
         usize::from(!self.half_wave)
     }
 

@@ -293,13 +293,16 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         let mut lifted = Vec::with_capacity(orders.len());
         for order in orders {
             let whole = &denominators[order];
-            let shorter = whole.over(&excess);
-            let mut denominator = shorter;
-            let displacement = self.displacement(order, &denominator).or_else(|| {
-                excess = Factored::default();
-                denominator = whole.clone();
-                self.displacement(order, whole)
-            });
+            let over_whole = self.over(whole);
+            let mut denominator = whole.over(&excess);
+            let mut displacement = match excess.is_one() {
+                true => None,
+                false => self.displacement(order, &self.over(&denominator)),
+            };
+            if displacement.is_none() {
+                (excess, denominator) = (Factored::default(), whole.clone());
+                displacement = self.displacement(order, &over_whole);
+            }
             let mut displacement = displacement?;
             let common = denominator.common(&displacement);
             if !common.is_one() {
@@ -308,7 +311,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                 excess = excess.times(&common);
             }
             let constant = |number: &dyn Fn(&Image) -> u64| -> Option<Rational> {
-                let numerators = self.numbers(whole, 1, |image, _| number(image))?;
+                let numerators = self.numbers(&over_whole, 1, |image, _| number(image))?;
                 let numerator = numerators.into_iter().next()?;
                 let (numerator, denominator) = whole.lowest_terms(numerator);
                 Some(Rational::new_raw(numerator, denominator))
@@ -323,34 +326,46 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         Some(lifted)
     }
 
-    fn displacement(&self, order: usize, denominator: &Factored) -> Option<Vec<Integer>> {
+    fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
         let count = self.plan.harmonics(order);
-        self.numbers(denominator, count, |image, index| image.displacement[order][index])
+        self.numbers(over, count, |image, index| image.displacement[order][index])
+    }
+
+    fn over(&self, denominator: &Factored) -> Over {
+        Over {
+            weights: self
+                .remainders
+                .weights(|modulus| denominator.residue(modulus))
+                .collect(),
+            in_test: denominator.residue(&self.test.modulus),
+        }
     }
 
     /// The numerators of so many numbers over a denominator.
-    fn numbers(
-        &self,
-        denominator: &Factored,
-        count: usize,
-        number: impl Fn(&Image, usize) -> u64,
-    ) -> Option<Vec<Integer>> {
-        let weights: Vec<u64> = self
-            .remainders
-            .weights(|modulus| denominator.residue(modulus))
-            .collect();
+    fn numbers(&self, over: &Over, count: usize, number: impl Fn(&Image, usize) -> u64) -> Option<Vec<Integer>> {
         let modulus = &self.test.modulus;
-        let in_test = denominator.residue(modulus);
-        let numerator = |index: usize| {
+        let mut numerators = Vec::with_capacity(count);
+        for index in 0..count {
             let images = self.images.iter().copied();
             let digits = self
                 .remainders
-                .lift(&weighted(images, &weights, |image| number(image, index)));
-            let expected = modulus.product(modulus.of_plain(number(self.test, index)), in_test);
-            (digits.residue(modulus, &self.powers) == expected).then(|| digits.to_integer::<A>())
-        };
-        (0..count).map(numerator).collect()
+                .lift(&weighted(images, &over.weights, |image| number(image, index)));
+            let expected = modulus.product(modulus.of_plain(number(self.test, index)), over.in_test);
+            if digits.residue(modulus, &self.powers) != expected {
+                return None;
+            }
+            numerators.push(digits.to_integer::<A>());
+        }
+        Some(numerators)
     }
+}
+
+/// A denominator, as the way back needs it.
+struct Over {
+    /// By which residues are multiplied.
+    weights: Vec<u64>,
+    /// Its residue modulo the prime that tests.
+    in_test: u64,
 }
 
 /// The orders as series; `slope` is that of the secular sine in the amplitude.
@@ -371,51 +386,41 @@ fn expansion(plan: &Plan, orders: Vec<Order>, slope: Option<FourierSeries<Intege
         };
         FourierSeries::in_lowest_terms(Integers, denominator.value(), cosine, sine)
     };
-    // y_n'' + y_n, which has no first harmonic.
-    let right_side = |(order, own): (usize, &Order)| {
-        let factor = |index: usize| {
-            let square = plan.harmonic(index) as i64;
-            Integer::from(1 - square * square)
-        };
-        let numerators = own.displacement.iter().enumerate();
-        let mut numerators: Vec<Integer> = numerators.map(|(index, numerator)| numerator * factor(index)).collect();
-        let common = own.denominator.common(&numerators);
-        if !common.is_one() {
-            let divisor = common.value();
-            numerators.iter_mut().for_each(|numerator| *numerator /= &divisor);
-        }
-        series(order, &own.denominator.over(&common), numerators)
-    };
     let frequency_squared: Vec<_> = orders.iter().map(|order| constant(&order.frequency_squared)).collect();
-    let right_sides = orders.iter().enumerate().skip(1).map(right_side).collect();
     let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
-    let displacement: Vec<FourierSeries<Integers>> = orders
-        .into_iter()
-        .enumerate()
-        .map(|(order, own)| series(order, &own.denominator, own.displacement))
-        .collect();
-    let secular_sine = |slope: &FourierSeries<Integers>, order: &FourierSeries<Integers>| {
-        let amplitude = order.cosine(1);
-        SecularSine {
-            sine: slope.product(&amplitude).times(-1),
-            slope: slope.clone(),
-            amplitude,
-        }
-    };
-    let fixed = displacement.iter().skip(1);
+    // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
+    let amplitudes = slope.map_or_else(Vec::new, |slope| {
+        let (numerator, denominator) = slope.mean();
+        let rate = in_lowest_terms(&numerator, denominator);
+        let secular_sine = |(order, own): (usize, &Order)| {
+            let first = match plan.wave(order) {
+                Wave::Cosine => own.displacement.get(plan.resonant()).cloned().unwrap_or_default(),
+                Wave::Sine => Integer::zero(),
+            };
+            let (numerator, denominator) = own.denominator.lowest_terms(first);
+            let amplitude = Rational::new_raw(numerator, denominator);
+            SecularSine {
+                sine: constant(&-(&amplitude * &rate)),
+                slope: slope.clone(),
+                amplitude: constant(&amplitude),
+            }
+        };
+        orders.iter().enumerate().skip(1).map(secular_sine).collect()
+    });
     Expansion {
-        removed: frequency_squared
+        removed: orders
             .iter()
             .skip(1)
-            .map(|square| square.times(-1))
+            .map(|order| constant(&-&order.frequency_squared))
             .collect(),
-        amplitudes: slope.map_or_else(Vec::new, |slope| {
-            fixed.map(|order| secular_sine(&slope, order)).collect()
-        }),
+        amplitudes,
         frequency_squared,
         frequency,
-        displacement,
-        right_side: right_sides,
+        displacement: orders
+            .into_iter()
+            .enumerate()
+            .map(|(order, own)| series(order, &own.denominator, own.displacement))
+            .collect(),
     }
 }
 
@@ -454,7 +459,6 @@ mod tests {
                     assert_eq!(found.frequency_squared, exact.frequency_squared, "{scheme:?}");
                     assert_eq!(found.frequency, exact.frequency);
                     assert_eq!(found.displacement, exact.displacement);
-                    assert_eq!(found.right_side, exact.right_side);
                     assert_eq!(found.removed, exact.removed);
                     assert_eq!(found.amplitudes.len(), exact.amplitudes.len());
                     for (found, exact) in found.amplitudes.iter().zip(&exact.amplitudes) {

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use lindstedt::exact::{Integer, Integers, Rational, factorial};
-use lindstedt::method::secular::{Amplitude, Detuning, Expansion, ForceTerm, Scheme, expand_numbers};
+use lindstedt::method::secular::{Amplitude, Detuning, Expansion, Extent, ForceTerm, Scheme, expand_numbers};
 use lindstedt::method::{Options, solve};
 use lindstedt::series::{FourierSeries, fraction};
 use lindstedt::solution::{AmplitudeConvention, Law};
@@ -59,7 +59,7 @@ fn timed(
         detuning: Detuning::Acceleration,
     };
     let start = Instant::now();
-    let expansion = expand_numbers(force, order, &scheme)?;
+    let expansion = expand_numbers(force, order, &scheme, Extent::Motion)?;
     println!("T {:.9}", start.elapsed().as_secs_f64());
     Ok(expansion)
 }

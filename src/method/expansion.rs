@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::secular::{Amplitude, Expansion, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers};
+use super::secular::{Amplitude, Expansion, Extent, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers};
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -92,7 +92,7 @@ pub fn expand_exactly(
             let constant =
                 |number: Rational| FourierSeries::constant(Integers, number.numer().clone()).over(number.denom());
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
-            let expansion = expand_numbers(&force, order as usize, scheme)?;
+            let expansion = expand_numbers(&force, order as usize, scheme, Extent::Motion)?;
             let polynomial = |numerator: &Integer, denominator: &Integer| {
                 Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
             };

@@ -2,7 +2,7 @@
 //!
 //! The elimination divides order `n` by `1 - k^2` for its harmonics `k`, so that no prime above the highest harmonic can stand in a
 //! denominator, and their powers grow by what `lcm(1 .. highest)` has of them. Often much cancels: Duffing's denominators
-//! are powers of two, the pendulum's divide `64^n (2n+1)!`. Which of the three it is is read off the first orders, half of them to
+//! are powers of two, the pendulum's divide `64^n (2n+1)!`. Which of these it is is read off the first orders, half of them to
 //! fit and the other half to test. It is a guess: every number that is found with it is tried modulo one more prime.
 
 use std::collections::BTreeMap;
@@ -247,17 +247,23 @@ pub(super) enum Growth {
     Factorial,
     /// As the product of `lcm(1 .. highest factor)` over the orders: no structure is left out.
     Multiples,
+    /// As both together: a force with factorials in its coefficients.
+    FactorialMultiples,
 }
 
 impl Growth {
     /// From the one with the shortest numbers on.
-    pub const ALL: [Self; 3] = [Self::Power, Self::Factorial, Self::Multiples];
+    pub const ALL: [Self; 4] = [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
 
     /// The number of an order; `largest_factor` is that of the divisors of each order.
     fn of_order(self, order: usize, largest_factor: &dyn Fn(usize) -> u64) -> Factored {
         let mut number = Factored::default();
         let order_as_word = order as u64;
         match self {
+            Self::FactorialMultiples => {
+                let both = [Self::Factorial, Self::Multiples].map(|growth| growth.of_order(order, largest_factor));
+                number = both[0].times(&both[1]);
+            }
             Self::Power => {}
             Self::Factorial => {
                 let last = 2 * order_as_word + 1;
@@ -297,7 +303,8 @@ impl Growth {
         };
         let base = fitted(known.len());
         // The last resort is not tested here: what it says is tried modulo another prime, as everything is.
-        let untested = self == Self::Multiples || known.len() > highest;
+        let last_resort = matches!(self, Self::Multiples | Self::FactorialMultiples);
+        let untested = last_resort || known.len() > highest;
         if !untested && fitted(known.len().div_ceil(2)) != base {
             return None;
         }

@@ -17,7 +17,11 @@ mod denominators;
 mod modular;
 mod reconstruct;
 
+pub use reconstruct::Extent;
+
 use std::collections::HashMap;
+
+use num_integer::Integer as _;
 
 use crate::exact::ring::Indivisible;
 use crate::exact::{Integers, Ring};
@@ -189,14 +193,15 @@ pub fn expand<R: Ring>(
     expand_from_root(ring, force, highest, scheme, None)
 }
 
-/// As [`expand`] over the whole numbers, and with the same result: by [many primes](reconstruct) where numbers are long.
+/// As [`expand`] over the whole numbers, and with the same result: by many primes where numbers are long. Of the
+/// [frequency alone](Extent::Frequency) where no more is wanted.
 ///
 /// # Errors
 /// See [`SecularError`].
 ///
 /// ```
 /// use lindstedt::exact::{Integers, Integer};
-/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand_numbers};
+/// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_numbers};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // Duffing: y'' + y + delta y^3 = 0
@@ -206,7 +211,7 @@ pub fn expand<R: Ring>(
 ///     amplitude: Amplitude::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
-/// let found = expand_numbers(&[cube], 40, &scheme)?;
+/// let found = expand_numbers(&[cube], 40, &scheme, Extent::Frequency)?;
 /// assert_eq!(found.frequency_squared[1].mean(), (Integer::from(3), &Integer::from(4)));
 /// assert!(found.frequency_squared[40].mean().1.bits() > 150);
 /// # Ok::<(), lindstedt::method::secular::SecularError>(())
@@ -215,6 +220,7 @@ pub fn expand_numbers(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
+    extent: Extent,
 ) -> Result<Expansion<Integers>, SecularError> {
     /// Below, whole numbers are short enough.
     const LONG: usize = 12;
@@ -222,10 +228,55 @@ pub fn expand_numbers(
         force.iter().map(|term| (term.order, term.position + term.velocity)),
         highest,
     )?;
-    let by_primes = (highest >= LONG).then(|| reconstruct::expand(force, highest, scheme));
-    match by_primes.flatten() {
-        Some(expansion) => Ok(expansion),
-        None => expand(&Integers, force, highest, scheme),
+    // Where all terms stand at multiples of an order, as with an amplitude that enters squared, so does everything.
+    let step = force.iter().fold(0, |common, term| common.gcd(&term.order)).max(1);
+    let compressed: Vec<ForceTerm<Integers>> = force
+        .iter()
+        .map(|term| ForceTerm {
+            order: term.order / step,
+            ..term.clone()
+        })
+        .collect();
+    let orders = highest / step;
+    let by_primes = (orders >= LONG).then(|| reconstruct::expand(&compressed, orders, scheme, extent));
+    let mut expansion = match by_primes.flatten() {
+        Some(expansion) => expansion,
+        None => expand(&Integers, &compressed, orders, scheme)?,
+    };
+    if extent == Extent::Frequency {
+        expansion.displacement.clear();
+        expansion.removed.clear();
+        expansion.amplitudes.clear();
+    }
+    Ok(match step {
+        1 => expansion,
+        _ => expansion.spread(step, highest),
+    })
+}
+
+impl Expansion<Integers> {
+    /// The same with every order at so many times its place, up to `highest`.
+    fn spread(self, step: usize, highest: usize) -> Self {
+        let zero = || FourierSeries::zero(Integers);
+        let from = |first: usize, series: Vec<FourierSeries<Integers>>| {
+            let mut spread: Vec<_> = if series.is_empty() {
+                vec![]
+            } else {
+                vec![zero(); highest + 1 - first]
+            };
+            for (order, own) in series.into_iter().enumerate() {
+                spread[(order + first) * step - first] = own;
+            }
+            spread
+        };
+        // Where the amplitude is determined, the first order is damping, and nothing is spread.
+        Self {
+            frequency_squared: from(0, self.frequency_squared),
+            frequency: from(0, self.frequency),
+            displacement: from(0, self.displacement),
+            removed: from(1, self.removed),
+            amplitudes: self.amplitudes,
+        }
     }
 }
 

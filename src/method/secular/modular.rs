@@ -47,11 +47,14 @@ pub(super) struct Plan<'a> {
     /// Which table belongs to each term, and whether its derivative is meant.
     of_terms: Vec<(usize, bool)>,
     has_velocity: bool,
+    /// Harmonics that the frequency of the last order does not depend on are left out.
+    frequency_alone: bool,
 }
 
 impl<'a> Plan<'a> {
-    /// `None` for an equation without the symmetry under reversal of time, and for one without terms.
-    pub fn new(terms: &'a [Term], highest: usize, scheme: Scheme) -> Option<Self> {
+    /// `None` for an equation without the symmetry under reversal of time, and for one without terms. With `frequency_alone`
+    /// nothing but the frequency is right in the image.
+    pub fn new(terms: &'a [Term], highest: usize, scheme: Scheme, frequency_alone: bool) -> Option<Self> {
         let conservative = terms.iter().all(|term| term.velocity % 2 == 0);
         let alternating = terms.iter().all(|term| term.velocity as usize % 2 == term.order % 2);
         if !(conservative || alternating) || terms.iter().any(|term| term.position + term.velocity == 0) {
@@ -60,10 +63,22 @@ impl<'a> Plan<'a> {
         let power = |term: &Term| (term.position + term.velocity) as usize;
         let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
         let growth = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order)).max()?;
-        let last = highest + usize::from(scheme.amplitude == Amplitude::Determined);
+        let determined = scheme.amplitude == Amplitude::Determined;
+        let last = highest + usize::from(determined);
+        // The frequency of a limit cycle is the same however its motion is normalised, and without the sum over all harmonics
+        // that the initial value is, the high ones are not needed. That of a free motion belongs to one amplitude or the other.
+        let frequency_alone =
+            frequency_alone && (determined || scheme.normalisation == AmplitudeConvention::FirstHarmonic);
+        let normalisation = match frequency_alone {
+            true => AmplitudeConvention::FirstHarmonic,
+            false => scheme.normalisation,
+        };
         let mut plan = Self {
             terms,
-            scheme,
+            scheme: Scheme {
+                normalisation,
+                ..scheme
+            },
             highest,
             last,
             half_wave,
@@ -74,9 +89,9 @@ impl<'a> Plan<'a> {
             products: vec![],
             of_terms: vec![],
             has_velocity: terms.iter().any(|term| term.velocity > 1),
+            frequency_alone,
         };
-        // One more than there are, for the last order is only looked at in its first harmonic.
-        plan.grid = Grid::new(plan.harmonics(last) + 1, half_wave);
+        plan.grid = Grid::new(plan.points(), half_wave);
         plan.tables += usize::from(plan.has_velocity);
         plan.of_terms = terms.iter().map(|term| plan.table_of(term)).collect();
         Some(plan)
@@ -126,12 +141,37 @@ impl<'a> Plan<'a> {
         to
     }
 
-    /// How many harmonics `y_order` may have: `1, 3, ...` or `0, 1, 2, ...`.
-    pub fn harmonics(&self, order: usize) -> usize {
+    /// How many harmonics `y_order` has at most: `1, 3, ...` or `0, 1, 2, ...`.
+    fn reach(&self, order: usize) -> usize {
         match self.half_wave {
             true => order * self.growth / 2 + 1,
             false => order * self.growth + 2,
         }
+    }
+
+    /// How many harmonics of `y_order` are computed. An order changes a harmonic by no more than it reaches, so that what the
+    /// first harmonic of the last order depends on is below what is left to come.
+    pub fn harmonics(&self, order: usize) -> usize {
+        match self.frequency_alone {
+            true => self.reach(order).min(self.reach(self.last - order) + 1),
+            false => self.reach(order),
+        }
+    }
+
+    /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken for `2K - 1 - j` (`2K - j` where
+    /// all harmonics stand), which must be none that is computed.
+    fn points(&self) -> usize {
+        match self.frequency_alone {
+            true => self.reach(self.last) / 2 + self.growth + 3,
+            // One more than there are, for the last order is only looked at in its first harmonic.
+            false => self.reach(self.last) + 1,
+        }
+    }
+
+    /// The number of harmonics of the order that has the most.
+    fn most_harmonics(&self) -> usize {
+        let orders = (0..=self.last).map(|order| self.harmonics(order));
+        orders.max().unwrap_or(0).max(self.resonant() + 1)
     }
 
     /// The harmonic of an index.
@@ -159,8 +199,18 @@ impl<'a> Plan<'a> {
 
     /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above this.
     pub fn largest_factor(&self, order: usize) -> u64 {
-        let highest = self.harmonic(self.harmonics(order) - 1) as u64 + 1;
+        let highest = self.harmonic(self.reach(order) - 1) as u64 + 1;
         if self.half_wave { highest / 2 } else { highest }
+    }
+
+    /// The same for the frequency: what comes back to the first harmonic was no further away than half of the orders reach, but for
+    /// the initial value of a free motion, which is a sum over all harmonics.
+    pub fn largest_factor_of_frequency(&self, order: usize) -> u64 {
+        let free = self.scheme.amplitude == Amplitude::Free;
+        match free && self.scheme.normalisation == AmplitudeConvention::Initial {
+            true => self.largest_factor(order),
+            false => self.largest_factor(order / 2),
+        }
     }
 
     /// The first order, counted in steps from `start`, at which eight harmonics are not all zero.
@@ -247,7 +297,7 @@ struct Factors {
 
 impl Factors {
     fn new(modulus: &Modulus, plan: &Plan) -> Option<Self> {
-        let count = plan.harmonics(plan.last).max(plan.resonant() + 1);
+        let count = plan.most_harmonics();
         let all = |factor: &dyn Fn(i64) -> i64| -> Vec<u64> {
             let mut factors: Vec<u64> = (0..count)
                 .map(|index| modulus.small(factor(plan.harmonic(index) as i64)))
@@ -293,7 +343,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     fn new(arithmetic: A, plan: &'a Plan, modulus: Modulus) -> Option<Self> {
         let orders = plan.last + 1;
         let points = plan.grid.size();
-        let harmonics = plan.harmonics(plan.last).max(plan.resonant() + 1);
+        let harmonics = plan.most_harmonics();
         let coefficient = |(term, (_, derivative)): (&Term, &(usize, bool))| {
             let (numerator, denominator) = (term.coefficient.numer(), term.coefficient.denom());
             let power = if *derivative { i64::from(term.position) + 1 } else { 1 };

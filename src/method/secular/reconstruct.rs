@@ -26,19 +26,33 @@ use crate::series::FourierSeries;
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
 
-/// The expansion by many primes; `None` where the equation has no symmetry to use, where the denominators grow in no known way,
-/// and where there is none: the ring's own recursion answers then.
-pub fn expand(force: &[ForceTerm<Integers>], highest: usize, scheme: &Scheme) -> Option<Expansion<Integers>> {
-    by_widest(Expand(force, highest, *scheme))
+/// What is wanted of an expansion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Frequency and motion.
+    Motion,
+    /// The frequency alone, with half the digits and a part of the harmonics; the lists of everything else are empty.
+    Frequency,
 }
 
-struct Expand<'a>(&'a [ForceTerm<Integers>], usize, Scheme);
+/// The expansion by many primes; `None` where the equation has no symmetry to use, where the denominators grow in no known way,
+/// and where there is none: the ring's own recursion answers then.
+pub fn expand(
+    force: &[ForceTerm<Integers>],
+    highest: usize,
+    scheme: &Scheme,
+    extent: Extent,
+) -> Option<Expansion<Integers>> {
+    by_widest(Expand(force, highest, *scheme, extent))
+}
+
+struct Expand<'a>(&'a [ForceTerm<Integers>], usize, Scheme, Extent);
 
 impl Work for Expand<'_> {
     type Output = Option<Expansion<Integers>>;
 
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        let Self(force, highest, scheme) = self;
+        let Self(force, highest, scheme, extent) = self;
         let terms: Vec<Term> = force
             .iter()
             .map(|term| {
@@ -51,23 +65,23 @@ impl Work for Expand<'_> {
                 }
             })
             .collect();
-        let plan = Plan::new(&terms, highest, scheme)?;
+        let plan = Plan::new(&terms, highest, scheme, extent == Extent::Frequency)?;
         // Where the amplitude is determined, its condition has the same slope at every order.
-        let slope = match scheme.amplitude {
-            Amplitude::Free => None,
-            Amplitude::Determined => {
+        let slope = match (scheme.amplitude, extent) {
+            (Amplitude::Free, _) | (_, Extent::Frequency) => None,
+            (Amplitude::Determined, Extent::Motion) => {
                 let first = super::expand(&Integers, force, 1, &scheme).ok()?;
                 Some(first.amplitudes.first()?.slope.clone())
             }
         };
-        let orders = Reconstruction::new(arithmetic, &plan).orders()?;
-        Some(expansion(&plan, orders, slope))
+        let orders = Reconstruction::new(arithmetic, &plan, extent).orders()?;
+        Some(expansion(&plan, orders, slope, extent))
     }
 }
 
 /// One order of the result.
 struct Order {
-    /// Of all coefficients.
+    /// Of all coefficients of the motion.
     denominator: Factored,
     displacement: Vec<Integer>,
     frequency_squared: Rational,
@@ -77,6 +91,7 @@ struct Order {
 struct Reconstruction<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
+    extent: Extent,
     primes: Vec<u64>,
     source: Box<dyn Iterator<Item = u64> + Send + Sync>,
     /// What the first primes see, of all orders.
@@ -84,10 +99,11 @@ struct Reconstruction<'a, A> {
 }
 
 impl<'a, A: Arithmetic> Reconstruction<'a, A> {
-    fn new(arithmetic: A, plan: &'a Plan<'a>) -> Self {
+    fn new(arithmetic: A, plan: &'a Plan<'a>, extent: Extent) -> Self {
         Self {
             arithmetic,
             plan,
+            extent,
             primes: vec![],
             source: Box::new(primes_below(A::BITS, plan.circle())),
             first: vec![],
@@ -96,12 +112,26 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
 
     fn orders(mut self) -> Option<Vec<Order>> {
         let beginning = self.beginning()?;
-        let known = &beginning.denominators;
-        Growth::ALL.into_iter().find_map(|growth| {
-            let largest_factor = |order| self.plan.largest_factor(order);
-            let denominators = growth.denominators(known, self.plan.highest, &largest_factor)?;
-            self.lifted(&denominators, beginning.growth)
-        })
+        let highest = self.plan.highest;
+        let motion = match self.extent {
+            Extent::Frequency => vec![vec![Factored::default(); highest + 1]],
+            Extent::Motion => {
+                let factor = |order| self.plan.largest_factor(order);
+                beginning.motion.denominators(highest, &factor)
+            }
+        };
+        let factor = |order| self.plan.largest_factor_of_frequency(order);
+        let frequency = beginning.frequency.denominators(highest, &factor);
+        let pairs = motion
+            .iter()
+            .flat_map(|motion| frequency.iter().map(move |frequency| (motion, frequency)));
+        for (motion, frequency) in pairs {
+            let lifted = self.lifted(motion, frequency, &beginning);
+            if lifted.is_some() {
+                return lifted;
+            }
+        }
+        None
     }
 
     /// The number of primes whose product has more than so many binary digits; `None` where there are not enough.
@@ -137,43 +167,56 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let last = self.plan.highest.min(ORDERS);
         let mut beginning = Beginning::default();
         let mut digits = if last > 5 { 200.0 } else { 100.0 };
-        while beginning.denominators.len() <= last {
+        while beginning.frequency.known.len() <= last {
             let count = self.primes_for(digits)?;
             if count > MOST_PRIMES {
                 return None;
             }
-            let more = self.images(count, |_| 0)?;
+            let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
+            let more = self.images(count, |_| from)?;
             self.first.extend(more);
             digits *= 1.5;
             let moduli: Vec<Modulus> = self.first.iter().map(|image| image.modulus).collect();
             let remainders = Remainders::new(self.arithmetic, &moduli);
             let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-            while let Some(known) = self.known(beginning.denominators.len(), &remainders, &product) {
-                beginning.add(known)?;
-                if beginning.denominators.len() > last {
+            let known = |count, number: &dyn Fn(&Image, usize) -> u64| self.known(count, &remainders, &product, number);
+            while beginning.frequency.known.len() <= last {
+                let order = beginning.frequency.known.len();
+                let count = match self.extent {
+                    Extent::Motion => self.plan.harmonics(order),
+                    Extent::Frequency => 0,
+                };
+                let motion = known(count, &|image, index| image.displacement[order][index]);
+                let frequency = known(2, &|image, index| match index {
+                    0 => image.frequency[order],
+                    _ => image.frequency_squared[order],
+                });
+                let (Some(motion), Some(frequency)) = (motion, frequency) else {
                     break;
-                }
+                };
+                beginning.motion.add(motion)?;
+                beginning.frequency.add(frequency)?;
             }
         }
         Some(beginning)
     }
 
-    /// The common denominator of one order and the digits that its largest number has before the point; `None` where the primes
+    /// The common denominator of so many numbers and the digits that the largest has before the point; `None` where the primes
     /// are too few.
-    fn known(&self, order: usize, remainders: &Remainders<A>, product: &Integer) -> Option<(Integer, f64)> {
+    fn known(
+        &self,
+        count: usize,
+        remainders: &Remainders<A>,
+        product: &Integer,
+        number: &dyn Fn(&Image, usize) -> u64,
+    ) -> Option<(Integer, f64)> {
         let mut denominator = Integer::one();
-        let mut largest = f64::MIN;
-        let coefficients = (0..self.plan.harmonics(order)).map(Some);
-        for index in coefficients.chain([None]) {
-            let number = |image: &Image| match index {
-                Some(index) => image.displacement[order][index],
-                None => image.frequency[order],
-            };
+        let mut largest = 0.0_f64;
+        for index in 0..count {
             let scaled = |modulus: &Modulus| modulus.integer(&denominator);
             let weights: Vec<u64> = remainders.weights(scaled).collect();
-            let residue = remainders
-                .lift(&weighted(&self.first, &weights, number))
-                .to_integer::<A>();
+            let residues = weighted(&self.first, &weights, |image| number(image, index));
+            let residue = remainders.lift(&residues).to_integer::<A>();
             let positive = if residue < Integer::zero() {
                 residue + product
             } else {
@@ -181,10 +224,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             };
             let (numerator, more) = fraction(&positive, product)?;
             denominator *= more;
-            if !numerator.is_zero() {
-                // The digits of the numerator count only with this denominator; the next ones may be longer by theirs.
-                largest = largest.max(numerator.bits() as f64 - denominator.bits() as f64);
-            }
+            largest = largest.max(numerator.bits() as f64 - denominator.bits() as f64);
             if 2 * denominator.bits() > product.bits() {
                 return None;
             }
@@ -192,13 +232,15 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some((denominator, largest))
     }
 
-    /// All orders over these denominators; `None` where a number fails the test of the extra prime.
-    fn lifted(&mut self, denominators: &[Factored], growth: f64) -> Option<Vec<Order>> {
+    /// All orders over these denominators of motion and frequency; `None` where a number fails the test of the extra prime.
+    fn lifted(&mut self, motion: &[Factored], frequency: &[Factored], beginning: &Beginning) -> Option<Vec<Order>> {
         /// Digits beside those of denominator and size, for the factor before the growth.
         const ROOM: f64 = 24.0;
-        let mut counts = Vec::with_capacity(denominators.len());
-        for (order, denominator) in denominators.iter().enumerate() {
-            let count = self.primes_for(denominator.bits() + growth * order as f64 + ROOM)?;
+        let mut counts = Vec::with_capacity(motion.len());
+        for (order, (motion, frequency)) in motion.iter().zip(frequency).enumerate() {
+            let bits = |denominator: &Factored, guess: &Guess| denominator.bits() + guess.growth * order as f64;
+            let bits = bits(motion, &beginning.motion).max(bits(frequency, &beginning.frequency));
+            let count = self.primes_for(bits + ROOM)?;
             // Orders share the primes of the longest among their neighbours: what a set of primes needs is computed once.
             let step = (count / 8).next_power_of_two();
             counts.push(count.next_multiple_of(step).max(counts.last().copied().unwrap_or(1)));
@@ -207,7 +249,10 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         while self.primes.len() <= most {
             self.primes.push(self.source.next()?);
         }
-        let wanted = |place: usize| counts.partition_point(|count| *count < place);
+        let wanted = |place: usize| match self.extent {
+            Extent::Motion => counts.partition_point(|count| *count < place),
+            Extent::Frequency => usize::MAX,
+        };
         let images: Vec<Image> = self.images(most + 1, wanted)?;
         let all: Vec<&Image> = self.first.iter().chain(&images).collect();
         let mut groups: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
@@ -218,7 +263,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         let group = |(count, orders): (usize, std::ops::Range<usize>)| {
-            Lift::new(self.arithmetic, self.plan, &all[..=count]).orders(orders, denominators)
+            Lift::new(self.arithmetic, &all[..=count]).orders(orders, motion, frequency)
         };
         #[cfg(feature = "parallel")]
         let lifted: Option<Vec<Vec<Order>>> = groups.into_par_iter().map(group).collect();
@@ -228,20 +273,36 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 }
 
-/// The first orders.
+/// The first orders of motion and frequency.
 #[derive(Default)]
 struct Beginning {
-    denominators: Vec<Factored>,
+    motion: Guess,
+    frequency: Guess,
+}
+
+/// What the first orders show.
+#[derive(Default)]
+struct Guess {
+    /// The common denominators of the first orders.
+    known: Vec<Factored>,
     /// By how many binary digits the largest number grows with each order, at most.
     growth: f64,
 }
 
-impl Beginning {
+impl Guess {
     fn add(&mut self, (denominator, size): (Integer, f64)) -> Option<()> {
-        let order = self.denominators.len();
+        let order = self.known.len();
         self.growth = self.growth.max(size / order.max(1) as f64);
-        self.denominators.push(Factored::of(&denominator)?);
+        self.known.push(Factored::of(&denominator)?);
         Some(())
+    }
+
+    /// What the denominators of all orders may be, the likeliest first.
+    fn denominators(&self, highest: usize, largest_factor: &dyn Fn(usize) -> u64) -> Vec<Vec<Factored>> {
+        let growths = Growth::ALL.into_iter();
+        growths
+            .filter_map(|growth| growth.denominators(&self.known, highest, largest_factor))
+            .collect()
     }
 }
 
@@ -259,7 +320,6 @@ fn weighted<'a>(
 
 /// The way back for orders that share their primes.
 struct Lift<'a, A> {
-    plan: &'a Plan<'a>,
     images: &'a [&'a Image],
     remainders: Remainders<A>,
     /// The prime that only tests.
@@ -270,14 +330,13 @@ struct Lift<'a, A> {
 
 impl<'a, A: Arithmetic> Lift<'a, A> {
     /// The last of the images is the one that tests.
-    fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a Image]) -> Self {
+    fn new(arithmetic: A, images: &'a [&'a Image]) -> Self {
         let (test, images) = images.split_last().expect("one image at least");
         let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
         let digit = test.modulus.residue(1 << A::DIGIT);
         let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2;
         let next = |power: &u64| Some(test.modulus.product(*power, digit));
         Self {
-            plan,
             images,
             remainders: Remainders::new(arithmetic, &moduli),
             test,
@@ -287,21 +346,22 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         }
     }
 
-    fn orders(&self, orders: std::ops::Range<usize>, denominators: &[Factored]) -> Option<Vec<Order>> {
+    fn orders(
+        &self,
+        orders: std::ops::Range<usize>,
+        motion: &[Factored],
+        frequency: &[Factored],
+    ) -> Option<Vec<Order>> {
         // What the guessed denominators had too much of in the order before they mostly have in the next as well.
         let mut excess = Factored::default();
         let mut lifted = Vec::with_capacity(orders.len());
         for order in orders {
-            let whole = &denominators[order];
-            let over_whole = self.over(whole);
+            let whole = &motion[order];
             let mut denominator = whole.over(&excess);
-            let mut displacement = match excess.is_one() {
-                true => None,
-                false => self.displacement(order, &self.over(&denominator)),
-            };
-            if displacement.is_none() {
+            let mut displacement = self.displacement(order, &denominator);
+            if displacement.is_none() && !excess.is_one() {
                 (excess, denominator) = (Factored::default(), whole.clone());
-                displacement = self.displacement(order, &over_whole);
+                displacement = self.displacement(order, whole);
             }
             let mut displacement = displacement?;
             let common = denominator.common(&displacement);
@@ -310,25 +370,31 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                 displacement.iter_mut().for_each(|numerator| *numerator /= &divisor);
                 excess = excess.times(&common);
             }
-            let constant = |number: &dyn Fn(&Image) -> u64| -> Option<Rational> {
-                let numerators = self.numbers(&over_whole, 1, |image, _| number(image))?;
-                let numerator = numerators.into_iter().next()?;
+            let whole = &frequency[order];
+            let constants = self.numbers(&self.over(whole), 2, |image, index| match index {
+                0 => image.frequency[order],
+                _ => image.frequency_squared[order],
+            });
+            let constants = constants?.into_iter().map(|numerator| {
                 let (numerator, denominator) = whole.lowest_terms(numerator);
-                Some(Rational::new_raw(numerator, denominator))
-            };
+                Rational::new_raw(numerator, denominator)
+            });
+            let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
             lifted.push(Order {
                 denominator: denominator.over(&common),
                 displacement,
-                frequency_squared: constant(&|image| image.frequency_squared[order])?,
-                frequency: constant(&|image| image.frequency[order])?,
+                frequency_squared,
+                frequency,
             });
         }
         Some(lifted)
     }
 
-    fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
-        let count = self.plan.harmonics(order);
-        self.numbers(over, count, |image, index| image.displacement[order][index])
+    /// Empty where no prime keeps the motion.
+    fn displacement(&self, order: usize, denominator: &Factored) -> Option<Vec<Integer>> {
+        let count = self.test.displacement[order].len();
+        let over = self.over(denominator);
+        self.numbers(&over, count, |image, index| image.displacement[order][index])
     }
 
     fn over(&self, denominator: &Factored) -> Over {
@@ -369,7 +435,12 @@ struct Over {
 }
 
 /// The orders as series; `slope` is that of the secular sine in the amplitude.
-fn expansion(plan: &Plan, orders: Vec<Order>, slope: Option<FourierSeries<Integers>>) -> Expansion<Integers> {
+fn expansion(
+    plan: &Plan,
+    orders: Vec<Order>,
+    slope: Option<FourierSeries<Integers>>,
+    extent: Extent,
+) -> Expansion<Integers> {
     let constant = |value: &Rational| match value.is_zero() {
         true => FourierSeries::zero(Integers),
         false => FourierSeries::in_lowest_terms(Integers, value.denom().clone(), vec![value.numer().clone()], vec![]),
@@ -407,21 +478,22 @@ fn expansion(plan: &Plan, orders: Vec<Order>, slope: Option<FourierSeries<Intege
         };
         orders.iter().enumerate().skip(1).map(secular_sine).collect()
     });
-    Expansion {
-        removed: orders
-            .iter()
-            .skip(1)
-            .map(|order| constant(&-&order.frequency_squared))
-            .collect(),
-        amplitudes,
+    let mut expansion = Expansion {
         frequency_squared,
         frequency,
-        displacement: orders
-            .into_iter()
-            .enumerate()
+        displacement: vec![],
+        removed: vec![],
+        amplitudes,
+    };
+    if extent == Extent::Motion {
+        let squares = expansion.frequency_squared.iter().skip(1);
+        expansion.removed = squares.map(|square| square.times(-1)).collect();
+        let orders = orders.into_iter().enumerate();
+        expansion.displacement = orders
             .map(|(order, own)| series(order, &own.denominator, own.displacement))
-            .collect(),
+            .collect();
     }
+    expansion
 }
 
 #[cfg(test)]
@@ -451,10 +523,16 @@ mod tests {
                     detuning,
                 };
                 let exact = super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest = by_widest(Expand(force, highest, scheme)).expect("the same by primes");
-                let portable = Expand(force, highest, scheme)
+                let widest = by_widest(Expand(force, highest, scheme, Extent::Motion));
+                let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
+                let portable = Expand(force, highest, scheme, Extent::Motion)
                     .by(Portable::new())
                     .expect("the same by primes");
+                let alone = super::expand(force, highest, &scheme, Extent::Frequency);
+                let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
+                assert_eq!(alone.frequency_squared, exact.frequency_squared, "{scheme:?}");
+                assert_eq!(alone.frequency, exact.frequency);
+                assert!(alone.displacement.is_empty());
                 for found in [widest, portable] {
                     assert_eq!(found.frequency_squared, exact.frequency_squared, "{scheme:?}");
                     assert_eq!(found.frequency, exact.frequency);
@@ -516,7 +594,7 @@ mod tests {
         };
         // A spring and damping at the same order: sines and cosines in every y_n.
         let mixed = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(1, 3, 0, (1, 1))];
-        assert!(expand(&mixed, 12, &scheme(Amplitude::Determined)).is_none());
-        assert!(expand(&[term(1, 0, 1, (2, 1))], 12, &scheme(Amplitude::Free)).is_none());
+        assert!(expand(&mixed, 12, &scheme(Amplitude::Determined), Extent::Motion).is_none());
+        assert!(expand(&[term(1, 0, 1, (2, 1))], 12, &scheme(Amplitude::Free), Extent::Motion).is_none());
     }
 }

@@ -67,8 +67,33 @@ impl Centred {
 /// An unstable `x = 0`, or an equilibrium asked for that is none (the stable ones are named); no equilibrium, or one that
 /// has no closed form in the parameters.
 pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
+    let t = Symbol::new("t");
+    let Some(expanded) = oscillator.force.expand().ok().filter(|force| force.contains(t)) else {
+        return centred_still(oscillator, degree);
+    };
+    // What drives the motion does not decide where it swings.
+    let (driving, quiet): (Vec<Expr>, Vec<Expr>) = expanded.terms().iter().cloned().partition(|term| term.contains(t));
+    let mut free = oscillator.clone();
+    free.force = Expr::sum(quiet);
+    if !free.force.contains(oscillator.coordinate) {
+        return Ok(Centred::at_origin(oscillator));
+    }
+    let mut found = centred_still(&free, degree)?;
+    found.oscillator.force = match found.written.is_zero() {
+        true => oscillator.force.clone(),
+        false => {
+            let x = oscillator.coordinate;
+            let moved = Expr::sum(driving).substitute(x, &(Expr::from(x) + &found.written))?;
+            (&found.oscillator.force + &moved).expand()?
+        }
+    };
+    Ok(found)
+}
+
+/// As [`centred`], of a force that does not know the time.
+fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let position = oscillator.coordinate;
-    // Time-dependent terms are refused by the methods; where the force has no value at rest, so is that.
+    // Where the force has no value at rest the methods refuse it.
     let Ok(still) = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()) else {
         return Ok(Centred::at_origin(oscillator));
     };
@@ -76,13 +101,6 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
         return about(oscillator, &still, asked, degree);
     }
     let at_zero = value_at(&still, position, &Expr::zero());
-    if at_zero
-        .as_ref()
-        .map_or(&still, |force| force)
-        .contains(Symbol::new("t"))
-    {
-        return Ok(Centred::at_origin(oscillator));
-    }
     let force = Force::new(&still, position);
     let rests = match &at_zero {
         Ok(force) => force.is_zero(),

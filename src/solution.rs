@@ -12,6 +12,7 @@ pub mod law;
 mod method;
 pub mod modulation;
 pub mod note;
+mod polar;
 pub mod response;
 mod sum;
 

@@ -126,7 +126,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let values = exact_values(&arguments.at, &problem)?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
-        Some(values) => method::with_resonance_at(&oscillator, &options, values),
+        Some(values) => method::with_resonance_at(&oscillator, &options, values)
+            .map_err(|refusal| refused(&oscillator, &refusal))?,
         None => options,
     };
     let (oscillator, values, solution) = solve_at(oscillator, values, &options)?;

@@ -31,6 +31,7 @@
 //! ```
 
 pub(crate) mod action;
+mod driven;
 mod projections;
 mod small_terms;
 
@@ -39,7 +40,7 @@ use num_traits::Zero;
 use self::small_terms::SmallTerms;
 use super::limit_cycle::{AmplitudeEquation, Units};
 use super::secular::bounded;
-use super::{Options, Refusal, Unsuited, first_term, not_polynomial, transient};
+use super::{Options, Refusal, Unsuited, not_polynomial, transient};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
@@ -62,13 +63,16 @@ type Series = FourierSeries<Polynomials>;
 /// Derives the equations of amplitude and phase.
 ///
 /// # Errors
-/// A driven equation, a term without a closed projection, no linear restoring force, an order that is not 1 or 2.
+/// A drive that is no wave near a resonance, a term without a closed projection, no linear restoring force, an order that is not 1 or 2.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        let term = first_term(&parts.forcing);
-        return refuse(Unsuited::Forcing { term });
+        return driven::solve(oscillator, &parts, options);
+    }
+    if options.resonance.is_some() {
+        let choice = super::table::Choice::Resonance;
+        return refuse(Unsuited::NoSuchChoice { choice });
     }
     let order = match options.order.unwrap_or(1) {
         0 => return refuse(Unsuited::LowestOrder { lowest: 1 }),
@@ -183,14 +187,7 @@ impl Averaged {
         };
         let taken: Vec<Symbol> = oscillator.names();
         let leading = Series::cos(POLYNOMIALS, 1).product(&Series::constant(POLYNOMIALS, Polynomial::symbol(a)));
-        let mut names = small.letters().iter().copied();
-        let first = names.next().unwrap_or(small.delta());
-        let small_with: Vec<Symbol> = names.collect();
-        let cut = Note::Cut(Cut::Truncated {
-            small: std::iter::once(first).chain(small_with.iter().copied()).collect(),
-            order,
-            marks: small.letters().is_empty().then(Expr::one),
-        });
+        let (first, small_with, cut) = small_in_words(small, order);
         let mut definitions = self.definitions;
         let mut taken = taken;
         taken.extend(definitions.iter().map(|definition| definition.symbol));
@@ -236,6 +233,19 @@ impl Averaged {
             derivation: self.derivation,
         })
     }
+}
+
+/// The small parameter, those that are small with it, and how the expansion is cut.
+fn small_in_words(small: &SmallTerms, order: u32) -> (Symbol, Vec<Symbol>, Note) {
+    let mut names = small.letters().iter().copied();
+    let first = names.next().unwrap_or(small.delta());
+    let small_with: Vec<Symbol> = names.collect();
+    let cut = Note::Cut(Cut::Truncated {
+        small: std::iter::once(first).chain(small_with.iter().copied()).collect(),
+        order,
+        marks: small.letters().is_empty().then(Expr::one),
+    });
+    (first, small_with, cut)
 }
 
 /// Any order of a polynomial force.
@@ -469,49 +479,86 @@ impl Slow {
     }
 }
 
+/// The first harmonics of the small terms along a harmonic motion.
+struct Projected {
+    omega0: Expr,
+    root: Option<Definition>,
+    definitions: Vec<Definition>,
+    terms: Expr,
+    sine: Expr,
+    cosine: Expr,
+}
+
+impl Projected {
+    /// # Errors
+    /// Nothing restores, or a term whose projection has no closed form.
+    fn of(oscillator: &Oscillator, small: &SmallTerms, amplitude: &Expr) -> Result<Self, Refusal> {
+        let linear = small.linear_part()?;
+        let (omega0, root) = linear.linear_frequency(&oscillator.names());
+        let mut definitions: Vec<Definition> = root.iter().cloned().collect();
+        if root.is_none() {
+            let used = omega0.symbols();
+            let constants = linear.definitions.iter().cloned();
+            definitions.extend(constants.filter(|entry| used.contains(&entry.symbol)));
+        }
+        let omega0 = Expr::from(&omega0);
+        let terms = small.first_order()?;
+        let (mut sines, mut cosines) = (vec![], vec![]);
+        for term in terms.terms() {
+            let Some([sine, cosine]) = projections::of_term(term, oscillator.coordinate, amplitude, &omega0) else {
+                let term = term.clone().into();
+                return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
+            };
+            sines.push(sine);
+            cosines.push(cosine);
+        }
+        Ok(Self {
+            omega0,
+            root,
+            definitions,
+            terms,
+            sine: Expr::sum(sines).expand()?,
+            cosine: Expr::sum(cosines).expand()?,
+        })
+    }
+
+    /// The motion, its velocity and the small terms, as lines of a derivation.
+    fn along(&self, oscillator: &Oscillator, amplitude: &Expr, letters: &Letters) -> Result<Vec<Line>, ExprError> {
+        let theta = Expr::symbol("theta");
+        Ok(vec![
+            Line::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?).because("along"),
+            Line::equation(
+                Expr::from(oscillator.velocity()),
+                -(amplitude * &self.omega0 * theta.sin()?),
+            ),
+            Line::equation(letters.of("g", 1), self.terms.clone()).because("the small terms are"),
+        ])
+    }
+}
+
 /// The first order of any force whose terms have closed projections.
 fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Averaged, Refusal> {
-    let linear = small.linear_part()?;
-    let taken = oscillator.names();
-    let (omega0, root) = linear.linear_frequency(&taken);
-    let constants = linear.definitions.iter().cloned();
-    let mut definitions: Vec<Definition> = root.iter().cloned().collect();
-    if root.is_none() {
-        let used = omega0.symbols();
-        definitions.extend(constants.filter(|entry| used.contains(&entry.symbol)));
-    }
-    let omega0 = Expr::from(&omega0);
     let a = AmplitudeConvention::FirstHarmonic.symbol();
     let amplitude = Expr::from(a);
-    let terms = small.first_order()?;
-    let (mut sines, mut cosines) = (vec![], vec![]);
-    for term in terms.terms() {
-        let Some([sine, cosine]) = projections::of_term(term, oscillator.coordinate, &amplitude, &omega0) else {
-            return Err(Unsuited::NoProjection {
-                term: term.clone().into(),
-            }
-            .to(Method::Averaging));
-        };
-        sines.push(sine);
-        cosines.push(cosine);
-    }
-    let [sine, cosine] = [Expr::sum(sines).expand()?, Expr::sum(cosines).expand()?];
+    let found = Projected::of(oscillator, small, &amplitude)?;
+    let letters = Letters::beside(&oscillator.names());
+    let mut derivation = found.along(oscillator, &amplitude, &letters)?;
+    let Projected {
+        omega0,
+        root,
+        definitions,
+        sine,
+        cosine,
+        ..
+    } = found;
     let twice = Expr::from(2) * &omega0;
     let amplitude_rate = Expr::divide(&sine, &twice)?.expand()?;
     let phase_rate = (&omega0 + &Expr::divide(&cosine, &(&twice * &amplitude))?).expand()?;
-    let x = oscillator.coordinate;
-    let letters = Letters::beside(&oscillator.names());
     let psi = Expr::from(letters.phase.derivative());
-    let derivation = vec![
-        Line::equation(Expr::from(x), &amplitude * &Expr::from(Symbol::new("theta")).cos()?).because("along"),
-        Line::equation(
-            Expr::from(oscillator.velocity()),
-            -(&amplitude * &omega0 * Expr::from(Symbol::new("theta")).sin()?),
-        ),
-        Line::equation(letters.of("g", 1), terms.clone()).because("the small terms are"),
+    derivation.extend([
         Line::equation(&twice * &Expr::from(a.derivative()), sine).because("what sin(theta) asks for"),
         Line::equation(&twice * &amplitude * (&psi - &omega0), cosine).because("what cos(theta) asks for"),
-    ];
+    ]);
     let steady = transient::steady(a, &amplitude_rate);
     Ok(Averaged {
         amplitude: a,

@@ -10,12 +10,14 @@
 pub(crate) mod amplitude_frequency;
 pub(crate) mod averaging;
 pub(crate) mod balance;
+mod drive;
 pub(crate) mod energy_balance;
 pub(crate) mod exact;
 mod exact_motion;
 pub(crate) mod expansion;
 pub(crate) mod first_order;
 pub(crate) mod frequency_formula;
+mod frequency_response;
 pub(crate) mod hamiltonian;
 pub(crate) mod harmonic_balance;
 pub(crate) mod homotopy_analysis;
@@ -33,6 +35,7 @@ pub(crate) mod one_term;
 pub(crate) mod pade;
 pub(crate) mod parameter_expansion;
 mod quotation;
+mod resonance;
 pub mod secular;
 pub mod table;
 pub(crate) mod transient;
@@ -40,7 +43,7 @@ pub(crate) mod variational_iteration;
 
 pub use harmonic_balance::MOST_HARMONICS;
 
-pub use multiple_scales::with_resonance_at;
+pub use resonance::with_resonance_at;
 
 pub use crate::conservative::{Force, cosine_coefficient, is_odd, is_smooth, potential};
 pub use crate::equilibrium::with_numbers_where_needed;
@@ -228,6 +231,17 @@ pub enum Unsuited {
         /// Those that there are.
         others: Vec<(u32, u32)>,
     },
+    /// A driving frequency far from every resonance that is known.
+    #[error(
+        "needs a drive near a resonance, but Omega : omega0 = {} is far from {}:{}, the nearest that it finds",
+        crate::decimal::significant(*ratio, 4), nearest.0, nearest.1
+    )]
+    FarFromResonance {
+        /// Omega : omega0.
+        ratio: f64,
+        /// The nearest resonance.
+        nearest: (u32, u32),
+    },
     /// A method whose amplitude is that of the first harmonic only.
     #[error("measures the amplitude as that of the first harmonic, a")]
     ConventionOfFirstHarmonic,
@@ -353,6 +367,10 @@ impl Unsuited {
                 Some(&(driving, linear)) => Advice::words("try ").choose(Setting::Resonance(driving, linear)),
                 None => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
             },
+            Self::FarFromResonance { nearest, .. } => Advice::words(
+                "in numbers `lindstedt response` finds the steady states at any frequency; the formulas of a resonance are those of ",
+            )
+            .choose(Setting::Resonance(nearest.0, nearest.1)),
             Self::ConventionOfFirstHarmonic => {
                 Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial))
             }
@@ -479,6 +497,16 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             return Err(refusal);
         }
     }
+    // What has no series in the amplitude is averaged as it is.
+    if options.method.is_none() && driven.is_some() {
+        let expanded = solve_by(Method::MultipleScales, oscillator, options);
+        return match expanded {
+            Err(Refusal::Oscillator(
+                OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NotSmall { .. },
+            )) => solve_by(Method::Averaging, oscillator, options).or(expanded),
+            _ => expanded,
+        };
+    }
     let Some(method) = asked else {
         let periodic = solve_by(Method::LindstedtPoincare, oscillator, options);
         return match &periodic {
@@ -547,7 +575,9 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
     refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
     let polynomial = oscillator.polynomial_degree()?.is_some();
-    let degree = (entry.rounded_degree)(options, polynomial);
+    // The formulas of a driven motion have a letter for an equilibrium that is no fraction.
+    let driven = oscillator.force.contains(Symbol::new("t"));
+    let degree = (entry.rounded_degree)(options, polynomial).filter(|_| !(driven && polynomial));
     let centred = centred(oscillator, degree)?;
     let options = &about_a_load(&centred, options);
     let answer = match inertia::solve(entry, &centred.oscillator, options) {
@@ -640,6 +670,9 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
         if let Some(motion) = motion {
             *motion = motion.sum(&position);
         }
+    }
+    if let Some(response) = &mut solution.response {
+        response.motion = &response.motion + &centred.written;
     }
     solution.equation = oscillator.equation();
     if centred.numerical {

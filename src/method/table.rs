@@ -196,6 +196,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
     Entry {
         method: Method::Averaging,
         solve: averaging::solve,
+        takes: &[Choice::Order, Choice::Resonance],
         rounded_degree: |_, polynomial| polynomial.then_some(0),
         definition: None,
         signed: true,

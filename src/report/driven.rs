@@ -73,8 +73,18 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
             }
         }
     }
+    if let Some(closed) = &response.closed {
+        blocks.push(said("frequency response", Expr::zero(), closed.relation.clone()));
+        if let (Some(detuning), Ok(width)) = (detuning, closed.width_squared.sqrt()) {
+            blocks.push(said("solved for the detuning", detuning, &closed.centre - &width));
+            blocks.push(said("and", detuning, &closed.centre + &width));
+        }
+    }
     if let Some(frequency) = solution.law.frequency() {
         blocks.push(said("backbone", Symbol::new("omega"), polynomial(frequency)));
+    }
+    if let Some(form) = solution.law.closed_form() {
+        blocks.push(said("backbone", Symbol::new("omega"), form.value.clone()));
     }
     let a = solution.amplitude.symbol();
     if let Some(peak) = &response.peak {

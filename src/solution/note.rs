@@ -99,6 +99,13 @@ pub enum Note {
         /// As which power of the small parameter.
         power: usize,
     },
+    /// A drive against dry friction: below the least force there is no steady motion.
+    LeastForce {
+        /// The drive.
+        force: Expr,
+        /// The least force.
+        least: Expr,
+    },
     /// Where the steady amplitudes come from, where they are not written down.
     SteadyAmplitudes {
         /// The square of the amplitude.
@@ -371,6 +378,12 @@ impl fmt::Display for Note {
                     formatter,
                     "{name}, Omega : omega0 near {p} : {q}; as small as {as_power}: {}",
                     listed(small)
+                )
+            }
+            Self::LeastForce { force, least } => {
+                write!(
+                    formatter,
+                    "a steady motion only where {force} > {least}: dry friction holds it below"
                 )
             }
             Self::BarriersApart { positive } => barriers_apart(formatter, positive),

@@ -30,8 +30,21 @@ pub struct Response {
     /// The discriminant of the relation in the square of the amplitude: zero where two branches meet, which is where the
     /// amplitude jumps.
     pub jumps: Option<Polynomial>,
-    /// The slow equations in coordinates without a singular origin.
-    pub plane: Plane,
+    /// What stands for the relation and its branches where they are no polynomials.
+    pub closed: Option<ClosedRelation>,
+    /// The slow equations in coordinates without a singular origin, where they are polynomials in them.
+    pub plane: Option<Plane>,
+}
+
+/// A frequency-response equation of a force that is no polynomial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedRelation {
+    /// Zero at every steady motion.
+    pub relation: Expr,
+    /// The backbone: the detuning in the middle of both branches.
+    pub centre: Expr,
+    /// The square of their distance from it.
+    pub width_squared: Expr,
 }
 
 /// `detuning = centre + and - sqrt(width_squared)`; the centre is the backbone.
@@ -91,9 +104,12 @@ impl Solution {
 
     fn found_steady_states(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Vec<SteadyState>> {
         let response = self.response.as_ref()?;
-        let resonance = self.modulation.as_ref()?.resonance.as_ref()?;
-        let times = f64::from(resonance.times_linear);
-        let plane = Field::new(self, &response.plane, value_of)?;
+        let modulation = self.modulation.as_ref()?;
+        let times = f64::from(modulation.resonance.as_ref()?.times_linear);
+        let Some(plane) = &response.plane else {
+            return super::polar::steady_states(self, modulation, times, value_of);
+        };
+        let plane = Field::new(self, plane, value_of)?;
         let relation = coefficients(self, response.relation.as_ref()?, self.amplitude.symbol(), value_of)?;
         let mut states: Vec<SteadyState> = Vec::new();
         let state = |[u, v]: [f64; 2]| SteadyState {
@@ -115,8 +131,11 @@ impl Solution {
 }
 
 /// An angle from -pi to pi.
-fn wrapped(angle: f64) -> f64 {
-    angle.sin().atan2(angle.cos())
+pub(super) fn wrapped(angle: f64) -> f64 {
+    /// What rounding leaves of an angle that is zero.
+    const ROUNDING: f64 = 1e-14;
+    let angle = angle.sin().atan2(angle.cos());
+    if angle.abs() < ROUNDING { 0.0 } else { angle }
 }
 
 /// The coefficients of a polynomial in one symbol, lowest power first.

@@ -163,8 +163,8 @@ pub fn compare(
     }
     let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
     for options in variants(oscillator, small) {
-        let options = with_resonance_at(oscillator, &options, at);
-        match (solve(oscillator, &options), options.method) {
+        let found = with_resonance_at(oscillator, &options, at).and_then(|options| solve(oscillator, &options));
+        match (found, options.method) {
             // Slow equations are compared where their motion settles, as the others are.
             (Ok(solution), _) if solution.slow().is_some() => match solution.on_cycle() {
                 Some(settled) => solutions.push(settled),

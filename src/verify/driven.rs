@@ -104,6 +104,48 @@ impl<'a> Question<'a> {
     fn states(&self) -> Vec<SteadyState> {
         self.solution.steady_states(&|name| self.numbers.get(&name).copied())
     }
+
+    /// Every steady motion beside a true one; of two that lead to the same one, that which is nearer to it has it.
+    fn judged_states(&self) -> Vec<JudgedState> {
+        let beside = |state: SteadyState| {
+            if state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium) {
+                return (held(state), None);
+            }
+            let found = self.truth.near(&self.motion, state);
+            let start = found.as_ref().map(|found| found.at(0.0));
+            (self.truth.beside(&self.motion, state, found.as_ref()), start)
+        };
+        let (found, starts): (Vec<JudgedState>, Vec<Option<(f64, f64)>>) =
+            self.states().into_iter().map(beside).unzip();
+        let same = |one: usize, other: usize| {
+            let size = self.motion.size(self.truth.period, found[one].state);
+            let (Some((x, v)), Some((y, w))) = (starts[one], starts[other]) else {
+                return false;
+            };
+            (x - y).abs() < 1e-6 * size && (v - w).abs() < 1e-6 * size * self.frequency
+        };
+        let nearer = |one: usize, other: usize| {
+            let [own, rival] = [one, other].map(|k| found[k].max_deviation);
+            rival < own || rival == own && other < one
+        };
+        let lost = |k: usize| (0..found.len()).any(|other| other != k && same(k, other) && nearer(k, other));
+        let none = |state| JudgedState {
+            state,
+            true_amplitude: None,
+            true_stable: None,
+            relative_error: None,
+            max_deviation: None,
+        };
+        (0..found.len())
+            .map(|k| {
+                if lost(k) {
+                    none(found[k].state)
+                } else {
+                    found[k].clone()
+                }
+            })
+            .collect()
+    }
 }
 
 /// Judges the steady motions of a driven oscillator: the verdict is that on the largest stable one.
@@ -115,17 +157,13 @@ pub(super) fn judge(
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
     let question = Question::new(oscillator, solution, response, at)?;
-    let states = question.states().into_iter();
-    let states: Vec<JudgedState> = states
-        .map(|state| question.truth.beside(&question.motion, state))
-        .collect();
+    let states = question.judged_states();
     let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
     let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
         let agrees = judged.true_stable == Some(judged.state.is_stable());
-        agrees
-            && judged
-                .relative_error
-                .map_or(judged.state.amplitude == 0.0, |error| error.abs() <= tolerance)
+        // A motion without a part of its own has the drive's alone.
+        let error = judged.relative_error.or(judged.max_deviation);
+        agrees && error.is_some_and(|error| error.abs() <= tolerance)
     });
     let symbols = symbol_values(oscillator, solution, &question.numbers, None);
     Ok(Verification {
@@ -148,6 +186,17 @@ pub(super) fn judge(
         followed: None,
         verdict: Verdict::of(passed),
     })
+}
+
+/// A motion that dry friction holds where it is.
+fn held(state: SteadyState) -> JudgedState {
+    JudgedState {
+        state,
+        true_amplitude: Some(0.0),
+        true_stable: Some(true),
+        relative_error: None,
+        max_deviation: Some(0.0),
+    }
 }
 
 /// The equation as it was typed, with numbers for its parameters.
@@ -177,6 +226,18 @@ impl Truth {
         })
     }
 
+    /// Whether what is at rest at a place stays there at all times, since it is driven back whichever way it begins to move.
+    fn is_held(&self, place: f64) -> bool {
+        const TIMES: usize = 64;
+        const SPEED: f64 = 1e-12;
+        let mut times = (0..TIMES).map(|k| self.period * k as f64 / TIMES as f64);
+        let jumps = |t: f64| {
+            let [ahead, back] = [SPEED, -SPEED].map(|speed| -self.force.call(&[t, place, speed]));
+            ahead < 0.0 && back > 0.0 && ahead.abs().min(back.abs()) > 1e3 * SPEED
+        };
+        times.all(jumps)
+    }
+
     /// The true periodic motion near one by the formula.
     fn near(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicMotion> {
         /// For how long a motion is left to settle.
@@ -197,20 +258,21 @@ impl Truth {
         };
         match found {
             Ok(found) => Some(found),
-            Err(_) if state.is_stable() => settled(),
+            // A motion that dry friction holds has no start to settle from.
+            Err(_) if state.is_stable() && state.amplitude > 0.0 => settled(),
             Err(_) => None,
         }
     }
 
-    fn beside(&self, motion: &Formula, state: SteadyState) -> JudgedState {
-        let found = self.near(motion, state);
-        let own = found.as_ref().map(|found| found.harmonic(self.own));
+    fn beside(&self, motion: &Formula, state: SteadyState, found: Option<&PeriodicMotion>) -> JudgedState {
+        let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);
-        let deviation = found.as_ref().map(|found| {
+        let deviation = found.map(|found| {
             let times = (0..=SAMPLES).map(|k| self.period * k as f64 / SAMPLES as f64);
             let pairs = times.map(|t| (found.at(t).0, motion.position(t, state)));
             let (largest, size) = pairs.fold((0.0_f64, 0.0_f64), |(largest, size), (truth, formula)| {
-                (largest.max((truth - formula).abs()), size.max(truth.abs()))
+                let distance = (truth - motion.equilibrium).abs();
+                (largest.max((truth - formula).abs()), size.max(distance))
             });
             if size > 0.0 { largest / size } else { 0.0 }
         });
@@ -228,6 +290,7 @@ impl Truth {
 struct Formula {
     position: CompiledFunction,
     velocity: CompiledFunction,
+    equilibrium: f64,
 }
 
 impl Formula {
@@ -247,6 +310,7 @@ impl Formula {
         Ok(Self {
             position: CompiledFunction::new(&motion, &arguments)?,
             velocity: CompiledFunction::new(&motion.differentiate(t)?, &arguments)?,
+            equilibrium: solution.equilibrium.evaluate(numbers)?,
         })
     }
 
@@ -260,7 +324,7 @@ impl Formula {
 
     fn size(&self, period: f64, state: SteadyState) -> f64 {
         const SAMPLES: usize = 64;
-        let place = |k: usize| self.position(period * k as f64 / SAMPLES as f64, state).abs();
+        let place = |k: usize| (self.position(period * k as f64 / SAMPLES as f64, state) - self.equilibrium).abs();
         (0..SAMPLES).map(place).fold(0.0, f64::max)
     }
 }

@@ -370,7 +370,7 @@ fn steady_motions_are_the_true_ones() {
     ] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let at: Values = at.parse().expect("values");
-        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at);
+        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at).expect(equation);
         let solution = solve(&oscillator, &asked).expect(equation);
         let judged = judge(&oscillator, &solution, &at, error).expect(equation);
         let states = &judged.steady_states;
@@ -669,4 +669,113 @@ fn slopes_of_motions_from_a_start() {
             judged.residual
         );
     }
+}
+
+/// The phase of a drive, and two waves of one frequency, are folded in: amplitudes do not know where time begins, motions do.
+#[test]
+fn phases_of_a_drive() {
+    for (equation, at, error, deviation) in [
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t + phi)",
+            "zeta = 1/50, eps = 1/20, F = 1/50, Omega = 101/100, phi = 1/2",
+            2e-2,
+            2e-2,
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*sin(Omega*t - 2)",
+            "zeta = 1/50, eps = 1/20, F = 1/50, Omega = 101/100",
+            2e-2,
+            2e-2,
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t + phi) + F*sin(Omega*t)",
+            "zeta = 1/50, eps = 1/20, F = 1/100, Omega = 101/100, phi = 1/2",
+            2e-2,
+            2e-2,
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t + phi) + G*sin(Omega*t + phi)",
+            "zeta = 1/1000, eps = 1/100, F = 3/5, G = 4/5, Omega = 67/200, phi = 2/5",
+            1e-2,
+            1e-2,
+        ),
+        (
+            "x'' + 2*zeta*x' + (1 + h*cos(Omega*t + phi))*x + eps*x^3 = 0",
+            "zeta = 1/200, h = 1/20, eps = 1/100, Omega = 2, phi = 1",
+            2e-2,
+            2e-2,
+        ),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let at: Values = at.parse().expect("values");
+        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect(equation);
+        let judged = judge(&oscillator, &solve(&oscillator, &asked).expect(equation), &at, error).expect(equation);
+        assert_eq!(
+            judged.verdict,
+            lindstedt::Verdict::Pass,
+            "{equation}: {:?}",
+            judged.steady_states
+        );
+        assert!(
+            judged.max_deviation.is_some_and(|size| size < deviation),
+            "{equation}: {:?}",
+            judged.max_deviation
+        );
+    }
+}
+
+/// A drive about an equilibrium that is not zero: a fraction, a letter's root, one that a drive in a coefficient shakes directly.
+#[test]
+fn drives_about_an_equilibrium() {
+    for (equation, about, at, tolerance) in [
+        (
+            "x'' + 2*zeta*x' - x + x^3 = F*cos(Omega*t)",
+            Some("1"),
+            "zeta = 1/50, F = 1/100, Omega = 7/5",
+            1e-2,
+        ),
+        (
+            "x'' + 2*zeta*x' + x + x^2/10 - 1 = F*cos(Omega*t)",
+            None,
+            "zeta = 1/50, F = 1/100, Omega = 11/10",
+            1e-2,
+        ),
+        (
+            "x'' + 2*zeta*x' + x - 1 + h*x*cos(Omega*t) = 0",
+            None,
+            "zeta = 1/50, h = 1/500, Omega = 101/100",
+            2e-2,
+        ),
+    ] {
+        let mut oscillator = Oscillator::parse(equation).expect(equation);
+        if let Some(place) = about {
+            oscillator = oscillator.about(parse_expression(place).expect(place));
+        }
+        let at: Values = at.parse().expect("values");
+        let asked = lindstedt::Options {
+            resonance: Some((1, 1)),
+            ..lindstedt::Options::default()
+        };
+        let solution = solve(&oscillator, &asked).expect(equation);
+        let judged = judge(&oscillator, &solution, &at, tolerance).expect(equation);
+        assert_eq!(
+            judged.verdict,
+            lindstedt::Verdict::Pass,
+            "{equation}: {:?}",
+            judged.steady_states
+        );
+    }
+}
+
+/// A frequency far from every resonance has no formula of one.
+#[test]
+fn a_drive_far_from_resonance_is_refused() {
+    let oscillator = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)").expect("an oscillator");
+    let at: Values = "zeta = 1/100, eps = 1/20, F = 1, Omega = 7".parse().expect("values");
+    let refusal = lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect_err("far");
+    assert!(
+        refusal.to_string().contains("Omega : omega0 = 7 is far from 3:1"),
+        "{refusal}"
+    );
+    assert!(refusal.help().is_some_and(|help| help.to_string().contains("response")));
 }

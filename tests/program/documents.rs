@@ -268,7 +268,7 @@ fn unpinned(value: &mut Value) {
         Value::Array(list) => list.iter_mut().for_each(unpinned),
         Value::Object(map) => {
             for (key, entry) in map.iter_mut() {
-                let slope = entry.as_str().filter(|_| key == "slope");
+                let slope = entry.as_str().filter(|_| key.ends_with("slope"));
                 match slope.and_then(|slope| slope.parse::<f64>().ok()) {
                     Some(slope) => *entry = json!(slope),
                     None => unpinned(entry),

@@ -67,10 +67,12 @@ fn rounded(value: &mut Value) {
             if map.contains_key("energy_drift") {
                 map.insert("energy_drift".into(), "noise".into());
             }
-            if let Some(slope) = map.get_mut("slope")
-                && let Some(number) = slope.as_f64()
-            {
-                *slope = format!("{number:.2}").into();
+            for key in ["slope", "amplitude_slope"] {
+                if let Some(slope) = map.get_mut(key)
+                    && let Some(number) = slope.as_f64()
+                {
+                    *slope = format!("{number:.2}").into();
+                }
             }
             for (key, entry) in map.iter_mut() {
                 let noise = entry.as_f64().map(f64::abs).is_some_and(|size| match key.as_str() {

@@ -201,10 +201,25 @@ pub struct Response {
     pub folds: Vec<String>,
     /// The discriminant of the relation in the square of the amplitude, zero where two branches meet; null where it is not given.
     pub jumps: Option<Polynomial>,
-    /// The names of u = a cos(phase/m) and v = -a sin(phase/m), with m = times_linear.
-    pub coordinates: [String; 2],
-    /// The rates of u and v, polynomials: the slow equations without a singular origin.
-    pub rates: [Polynomial; 2],
+    /// The same where they are no polynomials; null where they are.
+    #[serde(default)]
+    pub closed: Option<ClosedRelation>,
+    /// The names of u = a cos(phase/m) and v = -a sin(phase/m), with m = times_linear; null where `rates` is.
+    pub coordinates: Option<[String; 2]>,
+    /// The rates of u and v, polynomials: the slow equations without a singular origin; null where they are no polynomials.
+    pub rates: Option<[Polynomial; 2]>,
+}
+
+/// The frequency-response equation of a force that is no polynomial, expressions in the amplitude and the detuning.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct ClosedRelation {
+    /// Zero at every steady motion.
+    pub relation: String,
+    /// The middle of both branches of the detuning, the backbone.
+    pub centre: String,
+    /// The square of their distance from it.
+    pub width_squared: String,
 }
 
 /// detuning = centre + sqrt(width_squared) and centre - sqrt(width_squared).
@@ -490,8 +505,19 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
         peak: response.peak.as_ref().map(ToString::to_string),
         folds: response.folds.iter().map(ToString::to_string).collect(),
         jumps: response.jumps.as_ref().map(polynomial),
-        coordinates: response.plane.coordinates.map(|name| name.to_string()),
-        rates: response.plane.rates.each_ref().map(polynomial),
+        closed: response.closed.as_ref().map(|closed| ClosedRelation {
+            relation: closed.relation.to_string(),
+            centre: closed.centre.to_string(),
+            width_squared: closed.width_squared.to_string(),
+        }),
+        coordinates: response
+            .plane
+            .as_ref()
+            .map(|plane| plane.coordinates.map(|name| name.to_string())),
+        rates: response
+            .plane
+            .as_ref()
+            .map(|plane| plane.rates.each_ref().map(polynomial)),
     }
 }
 
@@ -723,7 +749,19 @@ impl Response {
                 width_squared: branches.width_squared.exact("width_squared")?,
             })
         };
-        let [u, v] = &self.rates;
+        let closed = |closed: &ClosedRelation| -> Result<_, JsonError> {
+            Ok(solution::response::ClosedRelation {
+                relation: expression(&closed.relation, "relation")?,
+                centre: expression(&closed.centre, "centre")?,
+                width_squared: expression(&closed.width_squared, "width_squared")?,
+            })
+        };
+        let plane = |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
+            Ok(solution::response::Plane {
+                coordinates: coordinates.each_ref().map(|name| Symbol::new(name)),
+                rates: [u.exact("rates")?, v.exact("rates")?],
+            })
+        };
         Ok(solution::Response {
             motion: expression(&self.motion, "motion")?,
             relation: polynomial(&self.relation, "relation")?,
@@ -735,10 +773,13 @@ impl Response {
                 .map(|fold| expression(fold, "folds"))
                 .collect::<Result<_, _>>()?,
             jumps: polynomial(&self.jumps, "jumps")?,
-            plane: solution::response::Plane {
-                coordinates: self.coordinates.each_ref().map(|name| Symbol::new(name)),
-                rates: [u.exact("rates")?, v.exact("rates")?],
-            },
+            closed: self.closed.as_ref().map(closed).transpose()?,
+            plane: self
+                .coordinates
+                .as_ref()
+                .zip(self.rates.as_ref())
+                .map(plane)
+                .transpose()?,
         })
     }
 }

@@ -33,8 +33,7 @@ mod release;
 mod scaling;
 mod slow_equations;
 mod slow_times;
-
-pub use self::driven::with_resonance_at;
+mod slow_waves;
 
 use self::slow_times::DrivenTerm;
 use super::{Options, Refusal, Unsuited};

@@ -21,6 +21,7 @@ use num_traits::{One, Zero};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational};
+use crate::method::drive::Quadrature;
 use crate::symbol::Symbol;
 
 /// A complex number whose parts are polynomials in the real symbols, in `B` and in its conjugate.
@@ -57,15 +58,6 @@ pub(super) struct DrivenTerm {
     pub coefficient: Polynomial,
     /// The wave `cos(m phi)` or `sin(m phi)` of the drive; `None` for a force that does not know the time.
     pub drive: Option<(i32, Quadrature)>,
-}
-
-/// Which wave a drive is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quadrature {
-    /// `cos`.
-    Cosine,
-    /// `sin`.
-    Sine,
 }
 
 /// What is expanded.

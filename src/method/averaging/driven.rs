@@ -1,0 +1,406 @@
+//! Averaging of driven motions to first order, for every force whose projections have a closed form.
+//!
+//! References: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1 and 5.7; J. P. Den Hartog, *Forced
+//! vibrations with combined Coulomb and viscous friction*, Trans. ASME 53 (1931) 107-115, for the least force that moves a mass held
+//! by dry friction.
+//!
+//! ```text
+//! x = a cos(theta), x' = -a omega0 sin(theta), theta = (Omega t - psi)/p,   Omega = p omega0 + sigma,   all else small
+//! 2 omega0 a' = S[g],   psi' = sigma - p C[g]/(2 omega0 a)       g the small terms, the drive among them
+//! F cos(Omega t) near 1:1      a' gains F sin(psi)/(2 omega0), psi' gains F cos(psi)/(2 omega0 a)
+//! ```
+//!
+//! A drive reaches the motion where its wave has a first harmonic beside the powers of `x` and `x'` that stand before it.
+
+use num_traits::{ToPrimitive as _, Zero as _};
+
+use super::small_terms::SmallTerms;
+use super::{Letters, Projected, Series, small_in_words};
+use crate::derivation::{Formula, Line};
+use crate::exact::{POLYNOMIALS, Polynomial, Rational};
+use crate::expr::{Expr, ExprError};
+use crate::method::drive::{Drive, Driven, Quadrature};
+use crate::method::frequency_response::FrequencyResponse;
+use crate::method::resonance::{RESONANCES, by_distance, is_near, ratio_of};
+use crate::method::{Options, Refusal, Unsuited};
+use crate::oscillator::{Oscillator, Parts};
+use crate::solution::modulation::Resonance;
+use crate::solution::response::{ClosedRelation, Response};
+use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Solution};
+use crate::symbol::{Symbol, fresh};
+
+/// The highest power of the coordinate or the velocity before a wave.
+const HIGHEST_POWER: u32 = 24;
+
+/// The slow equations of a driven motion and its steady amplitudes.
+///
+/// # Errors
+/// A drive that is no single wave, a resonance that the equation does not have at this order, a term without a closed projection.
+pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+    let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
+    match options.order.unwrap_or(1) {
+        1 => {}
+        0 => return refuse(Unsuited::LowestOrder { lowest: 1 }),
+        _ => return refuse(Unsuited::HighestOrder { highest: 1 }),
+    }
+    if options.amplitude == Some(AmplitudeConvention::Initial) {
+        return refuse(Unsuited::ConventionOfFirstHarmonic);
+    }
+    let drive = Drive::of(parts, &oscillator.names(), Method::Averaging)?;
+    let mut free = oscillator.clone();
+    free.force = (&oscillator.force - &parts.forcing).expand()?;
+    let small = SmallTerms::of(&free, options)?;
+    let a = AmplitudeConvention::FirstHarmonic.symbol();
+    let projected = Projected::of(&free, &small, &Expr::from(a))?;
+    let near = match options.resonance {
+        Some(_) => None,
+        None => ratio_of(&drive.frequency, &small.linear_part()?.linear_in_full()),
+    };
+    let forces = drive.terms.iter().any(|driven| driven.is_force(oscillator.coordinate));
+    let candidates = match (options.resonance, near) {
+        (Some(asked), _) => vec![asked],
+        (None, Some(ratio)) => by_distance(ratio),
+        (None, None) if forces => vec![(1, 1)],
+        (None, None) => vec![(2, 1), (1, 1)],
+    };
+    let waves_at = |(p, q): (u32, u32)| match q {
+        1 => waves(&drive, oscillator, &projected.omega0, p).map(Some),
+        _ => Ok(None),
+    };
+    for resonance in candidates.iter().copied() {
+        let Some(waves) = waves_at(resonance)?.filter(Waves::reach) else {
+            continue;
+        };
+        if let Some(ratio) = near {
+            is_near(resonance, ratio, Method::Averaging)?;
+        }
+        let undamped = projected.terms.is_zero() && drive.frequency == projected.omega0;
+        if let (true, Some(driven)) = (undamped, drive.terms.first()) {
+            let term = driven.term.clone().into();
+            return refuse(Unsuited::ResonanceWithoutDamping { term });
+        }
+        return Question::new(oscillator, &small, &drive, projected, resonance.0).answer(&waves);
+    }
+    let mut others = vec![];
+    for resonance in RESONANCES {
+        if waves_at(resonance)?.is_some_and(|waves| waves.reach()) {
+            others.push(resonance);
+        }
+    }
+    let asked = candidates.first().copied().unwrap_or((1, 1));
+    refuse(Unsuited::NoResonance { asked, others })
+}
+
+/// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of cos(psi) and sin(psi).
+struct Waves {
+    sine: [Expr; 2],
+    cosine: [Expr; 2],
+}
+
+impl Waves {
+    /// Whether anything reaches the motion.
+    fn reach(&self) -> bool {
+        self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
+    }
+}
+
+/// The first harmonics of a drive with `Omega t = p theta + psi`.
+///
+/// # Errors
+/// A drive beside what is no power of the coordinate and its velocity.
+fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Result<Waves, Refusal> {
+    let a = Expr::from(AmplitudeConvention::FirstHarmonic.symbol());
+    let mut sums = [[vec![], vec![]], [vec![], vec![]]];
+    for driven in &drive.terms {
+        let no_projection = || {
+            let term = driven.term.clone().into();
+            Unsuited::NoProjection { term }.to(Method::Averaging)
+        };
+        let (size, powers) = powers(driven, oscillator.coordinate).ok_or_else(no_projection)?;
+        let size =
+            &size * &(a.integer_power((powers[0] + powers[1]).into())? * omega0.integer_power(powers[1].into())?);
+        let along = Series::cos(POLYNOMIALS, 1)
+            .power(powers[0])
+            .product(&Series::sin(POLYNOMIALS, 1).times(-1).power(powers[1]));
+        // cos(p theta + psi) = cos(p theta) cos(psi) - sin(p theta) sin(psi), and the sine likewise.
+        let [in_phase, across] = [
+            Series::cos(POLYNOMIALS, p as usize),
+            Series::sin(POLYNOMIALS, p as usize),
+        ];
+        let by_psi = match driven.quadrature {
+            Quadrature::Cosine => [in_phase, across.times(-1)],
+            Quadrature::Sine => [across, in_phase],
+        };
+        for (k, wave) in by_psi.iter().enumerate() {
+            let product = along.product(wave);
+            for (sum, part) in sums.iter_mut().zip([product.sine(1), product.cosine(1)]) {
+                sum[k].push(&size * &Expr::from(&part.constant_term()));
+            }
+        }
+    }
+    let [sine, cosine] = sums.map(|parts| parts.map(|terms| Expr::sum(terms).expand()));
+    let both = |[cos, sin]: [Result<Expr, ExprError>; 2]| -> Result<[Expr; 2], ExprError> { Ok([cos?, sin?]) };
+    Ok(Waves {
+        sine: both(sine)?,
+        cosine: both(cosine)?,
+    })
+}
+
+/// What stands before a wave as a constant and whole powers of coordinate and velocity; `None` where it is something else.
+fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
+    let own = [coordinate, coordinate.derivative()];
+    let (number, factors) = driven.factor.factors();
+    let (mut size, mut powers) = (Expr::number(number), [0, 0]);
+    for factor in factors {
+        let (base, exponent) = factor.base_and_exponent();
+        match own.iter().position(|&name| base.as_symbol() == Some(name)) {
+            Some(place) => {
+                let exponent = exponent.as_number().filter(|exponent| exponent.is_integer())?;
+                let exponent = exponent.to_integer().to_u32()?;
+                powers[place] += Some(exponent).filter(|exponent| *exponent <= HIGHEST_POWER)?;
+            }
+            None if own.iter().any(|&name| factor.contains(name)) => return None,
+            None => size = &size * factor,
+        }
+    }
+    Some((size, powers))
+}
+
+/// A driven equation at a resonance.
+struct Question<'a> {
+    oscillator: &'a Oscillator,
+    small: &'a SmallTerms,
+    drive: &'a Drive,
+    projected: Projected,
+    /// Omega : omega0 near `p`.
+    p: u32,
+    a: Symbol,
+    sigma: Symbol,
+    phase: Symbol,
+}
+
+impl<'a> Question<'a> {
+    fn new(oscillator: &'a Oscillator, small: &'a SmallTerms, drive: &'a Drive, projected: Projected, p: u32) -> Self {
+        let defined = projected.definitions.iter().chain(&drive.definitions);
+        let defined = defined.map(|definition| definition.symbol);
+        let taken: Vec<Symbol> = oscillator.names().into_iter().chain(defined).collect();
+        Self {
+            oscillator,
+            small,
+            drive,
+            projected,
+            p,
+            a: AmplitudeConvention::FirstHarmonic.symbol(),
+            sigma: fresh("sigma", &taken),
+            phase: fresh("psi", &taken),
+        }
+    }
+
+    /// Over `2 omega0`.
+    fn halved(&self, expression: &Expr) -> Result<Expr, ExprError> {
+        Expr::divide(expression, &(Expr::from(2) * &self.projected.omega0))?.expand()
+    }
+
+    fn answer(self, waves: &Waves) -> Result<Solution, Refusal> {
+        let (a, p) = (Expr::from(self.a), Expr::from(i64::from(self.p)));
+        let rate = self.halved(&self.projected.sine)?;
+        let bend = self.halved(&self.projected.cosine)?;
+        // a psi'/p
+        let phase = (Expr::divide(&(Expr::from(self.sigma) * &a), &p)? - &bend).expand()?;
+        let halves = |waves: &[Expr; 2], sign: i64| -> Result<[Expr; 2], ExprError> {
+            let of = |wave: &Expr| (Expr::from(sign) * self.halved(wave)?).expand();
+            Ok([of(&waves[0])?, of(&waves[1])?])
+        };
+        let turning = [halves(&waves.sine, 1)?, halves(&waves.cosine, -1)?];
+        let angle = Expr::from(self.phase);
+        let [cos, sin] = [angle.cos()?, angle.sin()?];
+        let moving = turning.each_ref().map(|[by_cos, by_sin]| by_cos * &cos + by_sin * &sin);
+        let amplitude_rate = &rate + &moving[0];
+        let over = Expr::divide(&p, &a)?;
+        let each = |sum: &Expr| (sum * &over).expand();
+        let phase_rate = each(&phase)? + each(&(&turning[1][0] * &cos))? + each(&(&turning[1][1] * &sin))?;
+        let backbone = (&self.projected.omega0 + &Expr::divide(&bend, &a)?).expand()?;
+        let response = self.response([&rate, &phase], &turning, &bend)?;
+        let derivation = self.derivation([&amplitude_rate, &phase_rate], &response)?;
+        let mut notes = self.notes();
+        notes.extend(self.least_force(&rate, &turning[0])?);
+        let (first, small_with, cut) = small_in_words(self.small, 1);
+        let detuning = (&self.drive.frequency - &(&p * &self.projected.omega0)).expand()?;
+        let sigma = Definition {
+            symbol: self.sigma,
+            meaning: detuning,
+        };
+        let mut definitions = self.projected.definitions.clone();
+        definitions.extend(self.drive.definitions.iter().cloned());
+        definitions.push(sigma.clone());
+        Ok(Solution {
+            equation: self.oscillator.equation(),
+            method: Method::Averaging,
+            order: 1,
+            degrees: None,
+            small_parameter: first,
+            amplitude: AmplitudeConvention::FirstHarmonic,
+            parameters: self.oscillator.parameters.clone(),
+            definitions,
+            equilibrium: Expr::zero(),
+            law: match backbone.to_polynomial(&mut |_| None)? {
+                Some(frequency) => Law::Frequency(frequency),
+                None => Law::Closed(ClosedForm {
+                    squared: false,
+                    value: backbone,
+                }),
+            },
+            displacement: Series::cos(POLYNOMIALS, 1)
+                .product(&Series::constant(POLYNOMIALS, Polynomial::symbol(self.a))),
+            limit_cycle: None,
+            modulation: Some(Modulation {
+                amplitude: self.a,
+                phase: self.phase,
+                amplitude_rate,
+                phase_rate,
+                small_with,
+                resonance: Some(Resonance {
+                    driving_frequency: self.drive.frequency.clone(),
+                    times_driving: 1,
+                    times_linear: self.p,
+                    detuning: sigma,
+                }),
+                release: None,
+                transient: None,
+                steady: vec![],
+                motion: None,
+            }),
+            response: Some(response),
+            numerical: false,
+            validity: std::iter::once(cut).chain(notes).collect(),
+            steps: vec![],
+            derivation,
+        })
+    }
+
+    /// The steady motions of `P`, `Q` and the waves beside them.
+    fn response(
+        &self,
+        [rate, phase]: [&Expr; 2],
+        turning: &[[Expr; 2]; 2],
+        bend: &Expr,
+    ) -> Result<Response, ExprError> {
+        let p = Expr::from(i64::from(self.p));
+        let angle = Expr::divide(&(&self.drive.angle() - &Expr::from(self.phase)), &p)?.expand()?;
+        let mut response = Response {
+            motion: Expr::from(self.a) * angle.cos()?,
+            relation: None,
+            branches: None,
+            peak: None,
+            folds: vec![],
+            jumps: None,
+            closed: None,
+            plane: None,
+        };
+        let polynomial = |expression: &Expr| expression.to_polynomial(&mut |_| None).ok().flatten();
+        let polynomials = |parts: &[Expr; 2]| Some([polynomial(&parts[0])?, polynomial(&parts[1])?]);
+        let whole = || {
+            let still = [polynomial(rate)?, polynomial(phase)?];
+            Some((still, [polynomials(&turning[0])?, polynomials(&turning[1])?]))
+        };
+        if let Some(([rate, phase], waves)) = whole() {
+            let found = FrequencyResponse::of([&rate, &phase], &waves, self.sigma, self.a);
+            response.relation = found.relation;
+            response.branches = found.branches;
+            response.peak = found.peak;
+            response.folds = found.folds;
+            response.jumps = found.jumps;
+            return Ok(response);
+        }
+        // Of one wave its size is all that matters.
+        let [[rate_cos, rate_sin], [phase_cos, phase_sin]] = turning;
+        let one_wave =
+            phase_sin == rate_cos && *phase_cos == -rate_sin || *phase_sin == -rate_cos && phase_cos == rate_sin;
+        if one_wave {
+            let square = |of: &Expr| of * of;
+            let drive = square(rate_cos) + square(rate_sin);
+            let over = Expr::divide(&p, &Expr::from(self.a))?;
+            response.closed = Some(ClosedRelation {
+                relation: square(rate) + square(phase) - &drive,
+                centre: (bend * &over).expand()?,
+                width_squared: (drive - square(rate)) * square(&over),
+            });
+        }
+        Ok(response)
+    }
+
+    /// How the slow equations came about.
+    fn derivation(
+        &self,
+        [amplitude_rate, phase_rate]: [&Expr; 2],
+        response: &Response,
+    ) -> Result<Vec<Line>, ExprError> {
+        let letters = Letters::beside(&self.oscillator.names());
+        let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
+        let theta = Expr::symbol("theta");
+        let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
+        lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
+        lines.push(
+            Line::equation(self.a.derivative(), amplitude_rate.clone())
+                .because("what sin(theta) asks for, with the drive"),
+        );
+        lines.push(Line::equation(self.phase.derivative(), phase_rate.clone()).because("what cos(theta) asks for"));
+        let closed = response.closed.as_ref().map(|closed| closed.relation.clone());
+        if let Some(relation) = response.relation.as_ref().map(Expr::from).or(closed) {
+            let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
+            lines.push(Line::equal([Formula::from(Expr::zero()), Formula::from(relation)]).because(steady));
+        }
+        Ok(lines)
+    }
+
+    fn notes(&self) -> Vec<Note> {
+        let letters = self.small.letters();
+        let written = |driven: &&Driven| !letters.iter().any(|&name| driven.factor.contains(name));
+        let factors = self
+            .drive
+            .terms
+            .iter()
+            .filter(written)
+            .map(|driven| match driven.factor.has_leading_minus() {
+                true => -&driven.factor,
+                false => driven.factor.clone(),
+            });
+        let forces = self
+            .drive
+            .terms
+            .iter()
+            .any(|driven| driven.is_force(self.oscillator.coordinate));
+        let driven = Note::Driven {
+            resonance: (self.p, 1),
+            parametric: !forces && self.p != 1,
+            small: std::iter::once(Expr::from(self.sigma)).chain(factors).collect(),
+            power: 1,
+        };
+        let root = self.projected.root.clone().map(Note::Positive);
+        std::iter::once(driven).chain(root).collect()
+    }
+
+    /// The least force that moves what dry friction holds: `S > -P` at the amplitude zero.
+    fn least_force(&self, rate: &Expr, [by_cos, by_sin]: &[Expr; 2]) -> Result<Option<Note>, ExprError> {
+        let Ok(held) = rate.substitute(self.a, &Expr::zero()).and_then(|held| held.expand()) else {
+            return Ok(None);
+        };
+        if !held.has_leading_minus() || held.terms().len() != 1 {
+            return Ok(None);
+        }
+        let twice = Expr::from(2) * &self.projected.omega0;
+        let squares = (by_cos * by_cos + by_sin * by_sin).expand()?;
+        let size = squares
+            .to_polynomial(&mut |_| None)?
+            .and_then(|squares| squares.single_term_root());
+        let free =
+            |size: &Polynomial| !size.symbols().contains(&self.a) && *size != Polynomial::constant(Rational::zero());
+        Ok(match size.filter(free) {
+            Some(size) => Some(Note::LeastForce {
+                force: (&Expr::from(&size) * &twice).expand()?,
+                least: (-&held * &twice).expand()?,
+            }),
+            None => None,
+        })
+    }
+}

@@ -1,0 +1,176 @@
+//! What drives a motion: waves of one frequency in time, alone or beside powers of the coordinate and its velocity.
+//!
+//! ```text
+//! F cos(Omega t + phi), F sin(Omega t), h x cos(Omega t), and sums of them
+//! ```
+//!
+//! Time begins where the first wave does: of the others the phase beside that of the first counts,
+//! `cos(theta + delta) = cos(delta) cos(theta) - sin(delta) sin(theta)`.
+
+use super::{Refusal, Unsuited};
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::oscillator::Parts;
+use crate::solution::{Definition, Method};
+use crate::symbol::{Symbol, fresh_stem};
+
+/// The waves of a drive.
+pub(super) struct Drive {
+    /// The driving frequency.
+    pub(super) frequency: Expr,
+    /// The phase of the first wave.
+    pub(super) phase: Expr,
+    /// What they drive.
+    pub(super) terms: Vec<Driven>,
+    /// Sines and cosines of phases that are no fractions.
+    pub(super) definitions: Vec<Definition>,
+}
+
+/// A term of the force that a wave multiplies.
+pub(super) struct Driven {
+    /// What stands before the wave.
+    pub(super) factor: Expr,
+    pub(super) quadrature: Quadrature,
+    /// The whole term, for messages.
+    pub(super) term: Expr,
+}
+
+/// Which wave a drive is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quadrature {
+    /// `cos`.
+    Cosine,
+    /// `sin`.
+    Sine,
+}
+
+impl Driven {
+    /// Whether it is a force, free of the motion.
+    pub(super) fn is_force(&self, coordinate: Symbol) -> bool {
+        let own = [coordinate, coordinate.derivative()];
+        own.iter().all(|&name| !self.factor.contains(name))
+    }
+}
+
+impl Drive {
+    /// The one driving frequency, and the terms that it drives.
+    ///
+    /// # Errors
+    /// A term that is no wave of it, by name.
+    pub(super) fn of(parts: &Parts, taken: &[Symbol], method: Method) -> Result<Self, Refusal> {
+        let mut drive = Self {
+            frequency: Expr::one(),
+            phase: Expr::zero(),
+            terms: vec![],
+            definitions: vec![],
+        };
+        for (number, term) in parts.forcing.terms().iter().enumerate() {
+            let wave = Wave::of(term, method)?;
+            if number == 0 {
+                drive.frequency = wave.rate.clone();
+                drive.phase = wave.phase.clone();
+            } else if drive.frequency != wave.rate {
+                let term = term.clone().into();
+                return Err(Unsuited::SecondDrive { term }.to(method));
+            }
+            drive.add(wave, term, taken)?;
+        }
+        Ok(drive)
+    }
+
+    /// The argument of the waves: `Omega t + phi`.
+    pub(super) fn angle(&self) -> Expr {
+        &(&self.frequency * &Expr::symbol("t")) + &self.phase
+    }
+
+    fn add(&mut self, wave: Wave, term: &Expr, taken: &[Symbol]) -> Result<(), ExprError> {
+        let mut push = |factor: Expr, quadrature| {
+            if !factor.is_zero() {
+                self.terms.push(Driven {
+                    factor,
+                    quadrature,
+                    term: term.clone(),
+                });
+            }
+        };
+        let apart = (&wave.phase - &self.phase).expand()?;
+        if apart.is_zero() {
+            push(wave.factor, wave.quadrature);
+            return Ok(());
+        }
+        let (other, sign) = match wave.quadrature {
+            Quadrature::Cosine => (Quadrature::Sine, -Expr::one()),
+            Quadrature::Sine => (Quadrature::Cosine, Expr::one()),
+        };
+        let own = named(apart.cos()?, "C", &mut self.definitions, taken);
+        let across = named(apart.sin()?, "S", &mut self.definitions, taken);
+        push(&wave.factor * &own, wave.quadrature);
+        push(&(&sign * &wave.factor) * &across, other);
+        Ok(())
+    }
+}
+
+/// A constant, by a name where it is no number.
+fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[Symbol]) -> Expr {
+    if value.as_number().is_some() {
+        return value;
+    }
+    if let Some(known) = definitions.iter().find(|known| known.meaning == value) {
+        return Expr::from(known.symbol);
+    }
+    let stem = fresh_stem(letter, taken);
+    let symbol = Symbol::new(&format!("{stem}{}", definitions.len() / 2 + 1));
+    definitions.push(Definition { symbol, meaning: value });
+    Expr::from(symbol)
+}
+
+/// One term: `factor cos(rate t + phase)` or the sine of that, the rate without a minus.
+struct Wave {
+    factor: Expr,
+    rate: Expr,
+    phase: Expr,
+    quadrature: Quadrature,
+}
+
+impl Wave {
+    fn of(term: &Expr, method: Method) -> Result<Self, Refusal> {
+        let t = Symbol::new("t");
+        let not_periodic = || {
+            let term = term.clone().into();
+            Unsuited::NoWave { term }.to(method)
+        };
+        let (number, factors) = term.factors();
+        let (moving, still): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| factor.contains(t));
+        let [wave] = moving.as_slice() else {
+            return Err(not_periodic());
+        };
+        let (quadrature, argument) = match wave.node() {
+            Node::Function(Function::Cos, arguments) => (Quadrature::Cosine, &arguments[0]),
+            Node::Function(Function::Sin, arguments) => (Quadrature::Sine, &arguments[0]),
+            _ => return Err(not_periodic()),
+        };
+        let argument = argument.expand()?;
+        let (turning, rest): (Vec<Expr>, Vec<Expr>) =
+            argument.terms().iter().cloned().partition(|term| term.contains(t));
+        let (mut rate, mut phase) = (
+            Expr::divide(&Expr::sum(turning), &Expr::from(t))?.expand()?,
+            Expr::sum(rest),
+        );
+        let moves = |part: &Expr| part.contains(t) || part.symbols().iter().any(|name| name.primes() > 0);
+        if moves(&rate) || moves(&phase) {
+            return Err(not_periodic());
+        }
+        let mut factor = Expr::product(std::iter::once(Expr::number(number)).chain(still.into_iter().cloned()));
+        if rate.has_leading_minus() {
+            (rate, phase) = (-&rate, -&phase);
+            if quadrature == Quadrature::Sine {
+                factor = -&factor;
+            }
+        }
+        Ok(Self {
+            factor,
+            rate,
+            phase,
+            quadrature,
+        })
+    }
+}

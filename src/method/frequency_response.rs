@@ -1,0 +1,198 @@
+//! The steady motions of slow equations that are waves of the phase: the frequency-response equation and what follows from it.
+//!
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 4.1.1.
+//!
+//! ```text
+//! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/p = Q + Q_c cos(psi) + Q_s sin(psi)
+//! both zero, and cos^2 + sin^2 = 1:   P^2 + Q^2 = S^2 for one wave of size S
+//! ```
+
+use num_traits::{Signed as _, Zero as _};
+
+use crate::exact::Polynomial;
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::ratio;
+use crate::expr::Expr;
+use crate::solution::response::Branches;
+use crate::symbol::Symbol;
+
+/// What is known of steady motions, as `solution::Response` has it.
+pub(super) struct FrequencyResponse {
+    pub(super) relation: Option<Polynomial>,
+    pub(super) branches: Option<Branches>,
+    pub(super) peak: Option<Expr>,
+    pub(super) folds: Vec<Expr>,
+    pub(super) jumps: Option<Polynomial>,
+}
+
+impl FrequencyResponse {
+    /// From `P` and `Q`, and the cosine and sine of each; the detuning stands in `Q`.
+    pub(super) fn of(
+        [rate, phase]: [&Polynomial; 2],
+        [[rate_cos, rate_sin], [phase_cos, phase_sin]]: &[[Polynomial; 2]; 2],
+        sigma: Symbol,
+        a: Symbol,
+    ) -> Self {
+        let minus = |polynomial: &Polynomial| polynomial.map(|number| -number);
+        let square = |polynomial: &Polynomial| polynomial.product(polynomial);
+        // One wave of the phase alone: its size is all that matters.
+        let one_wave = phase_sin == rate_cos && *phase_cos == minus(rate_sin)
+            || *phase_sin == minus(rate_cos) && phase_cos == rate_sin;
+        let (drive, relation) = match one_wave {
+            true => {
+                let drive = square(rate_cos) + square(rate_sin);
+                let relation = square(rate) + square(phase) + minus(&drive);
+                (Some(drive), relation)
+            }
+            false => {
+                let determinant = rate_cos.product(phase_sin) + minus(&rate_sin.product(phase_cos));
+                let cosine = rate_sin.product(phase) + minus(&rate.product(phase_sin));
+                let sine = phase_cos.product(rate) + minus(&rate_cos.product(phase));
+                (None, square(&cosine) + square(&sine) + minus(&square(&determinant)))
+            }
+        };
+        let relation = without_common_powers(&relation);
+        // sigma = centre + and - the root of the square of a width, where the wave is free of it and the rest linear in it.
+        let by_sigma = Monomial::power_of(sigma, 1).product(&Monomial::power_of(a, 1));
+        let weight = phase.coefficient(&by_sigma);
+        let mut centre = phase.clone();
+        centre.add_term(by_sigma, -weight.clone());
+        let free = |polynomial: &Polynomial| !polynomial.symbols().contains(&sigma);
+        let mut branches = None;
+        let mut peak = None;
+        if let Some(drive) = drive
+            .as_ref()
+            .filter(|drive| !weight.is_zero() && free(drive) && free(&centre) && free(rate))
+        {
+            let over = Polynomial::term(Monomial::power_of(a, -1), weight.recip());
+            let width = (drive.clone() + minus(&square(rate))).product(&square(&over));
+            branches = Some(Branches {
+                centre: minus(&centre.product(&over)),
+                width_squared: width,
+            });
+            peak = peak_of(rate, drive, a);
+        }
+        let (folds, jumps) = folds(&relation, a);
+        Self {
+            relation: Some(relation),
+            branches,
+            peak,
+            folds,
+            jumps,
+        }
+    }
+
+    /// Without what holds only where no multiple of the phase stands in the equations.
+    pub(super) fn without_relation(self) -> Self {
+        Self {
+            relation: None,
+            folds: vec![],
+            jumps: None,
+            ..self
+        }
+    }
+}
+
+/// A relation with the powers that all terms have in common taken out.
+fn without_common_powers(relation: &Polynomial) -> Polynomial {
+    relation.symbols().into_iter().fold(relation.clone(), |rest, name| {
+        let lowest = rest.exponent_range(name).map_or(0, |range| range.0);
+        rest.times_monomial(&Monomial::power_of(name, -lowest))
+    })
+}
+
+/// The largest amplitude, where `P^2 = S^2` with `P` in one power of the amplitude, or in that itself and a constant that drain
+/// both, and `S` in none. Symbols count as positive.
+fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
+    if drive.symbols().contains(&a) {
+        return None;
+    }
+    let size = drive.single_term_root()?;
+    if let Some((monomial, number)) = rate.single_term() {
+        let power = monomial.exponent(a);
+        if power < 1 {
+            return None;
+        }
+        let pace = Polynomial::term(monomial.without(a), number.abs());
+        let quotient = size.product(&pace.power(-1)?);
+        return Expr::power(&Expr::from(&quotient), &Expr::number(ratio(1, power.into()))).ok();
+    }
+    let [(by, pace), (held, friction)] = [1, 0].map(|power| {
+        let mut terms = rate.terms().filter(|(monomial, _)| monomial.exponent(a) == power);
+        let found = terms.next().filter(|(_, number)| number.is_negative());
+        let only = found.filter(|_| terms.next().is_none());
+        only.map_or((None, None), |(monomial, number)| {
+            (Some(monomial.without(a)), Some(-number.clone()))
+        })
+    });
+    let pace = Polynomial::term(by?, pace?);
+    let friction = Polynomial::term(held?, friction?);
+    if rate.terms().len() != 2 {
+        return None;
+    }
+    let left = &Expr::from(&size) - &Expr::from(&friction);
+    Expr::divide(&left, &Expr::from(&pace)).ok()?.expand().ok()
+}
+
+/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` where it has odd powers.
+fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
+    let mut coefficients: Vec<Polynomial> = vec![];
+    for (monomial, number) in relation.terms() {
+        let exponent = usize::try_from(monomial.exponent(a)).ok()?;
+        if exponent % 2 == 1 {
+            return None;
+        }
+        if coefficients.len() <= exponent / 2 {
+            coefficients.resize(exponent / 2 + 1, Polynomial::zero());
+        }
+        coefficients[exponent / 2].add_term(monomial.without(a), number.clone());
+    }
+    Some(coefficients)
+}
+
+/// Where two steady motions meet: their squared amplitudes by the detuning, and the discriminant that vanishes there.
+fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
+    let Some(coefficients) = in_square(relation, a) else {
+        return (vec![], None);
+    };
+    let product = |factors: &[&Polynomial], number: i64| {
+        let start = Polynomial::constant(ratio(number, 1));
+        factors.iter().fold(start, |product, factor| product.product(factor))
+    };
+    match coefficients.as_slice() {
+        [c, b, a] => (
+            vec![],
+            Some(without_common_powers(&(product(&[b, b], 1) + product(&[a, c], -4)))),
+        ),
+        [d, c, b, a] => {
+            let discriminant = product(&[a, b, c, d], 18)
+                + product(&[b, b, b, d], -4)
+                + product(&[b, b, c, c], 1)
+                + product(&[a, c, c, c], -4)
+                + product(&[a, a, d, d], -27);
+            // 3 a z^2 + 2 b z + c = 0
+            let under = product(&[b, b], 1) + product(&[a, c], -3);
+            let places = || {
+                let over = product(&[a], 3).power(-1)?;
+                let (outside, inside) = squares_apart(&under)?;
+                let root = Expr::from(&inside).sqrt().ok()?;
+                let middle = Expr::from(&product(&[b, &over], -1));
+                let width = &Expr::from(&outside.product(&over)) * &root;
+                Some(vec![&middle - &width, &middle + &width])
+            };
+            (places().unwrap_or_default(), Some(without_common_powers(&discriminant)))
+        }
+        _ => (vec![], None),
+    }
+}
+
+/// A polynomial as the square of a single term and what stays under the root.
+fn squares_apart(polynomial: &Polynomial) -> Option<(Polynomial, Polynomial)> {
+    let mut outside = Monomial::one();
+    for name in polynomial.symbols() {
+        let (lowest, _) = polynomial.exponent_range(name)?;
+        outside = outside.product(&Monomial::power_of(name, lowest.div_euclid(2)));
+    }
+    let inside = polynomial.times_monomial(&outside.power(-2));
+    Some((Polynomial::term(outside, ratio(1, 1)), inside))
+}

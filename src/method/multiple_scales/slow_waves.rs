@@ -1,0 +1,234 @@
+//! The slow equations of a driven motion as waves of the slow phase, and the steady motions that they have.
+
+use std::collections::BTreeMap;
+
+use num_traits::Zero;
+
+use super::driven::Question;
+use super::slow_times::{Complex, Expansion};
+use crate::exact::polynomial::Monomial;
+use crate::exact::rational::ratio;
+use crate::exact::{Polynomial, Rational};
+use crate::expr::Expr;
+use crate::method::Refusal;
+use crate::method::frequency_response::FrequencyResponse;
+use crate::solution::Response;
+use crate::solution::response::Plane;
+use crate::symbol::{Symbol, fresh};
+
+/// `a'` and `a psi'/p` as waves of the slow phase, by its multiple: cosines and sines.
+pub(super) struct Slow {
+    pub(super) amplitude: BTreeMap<u32, [Polynomial; 2]>,
+    pub(super) phase: BTreeMap<u32, [Polynomial; 2]>,
+}
+
+impl Slow {
+    pub(super) fn new(expansion: &Expansion, question: &Question) -> Self {
+        let zero = || [Polynomial::zero(), Polynomial::zero()];
+        let (mut amplitude, mut phase) = (BTreeMap::new(), BTreeMap::new());
+        let names = &question.names;
+        let p = i64::from(question.resonance.0);
+        for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
+            let mark = names.mark(k);
+            for (part, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
+                for (monomial, number) in part.terms() {
+                    let turns = monomial.exponent(names.complex.own) - monomial.exponent(names.complex.conjugate) - 1;
+                    let term = Polynomial::term(monomial.clone(), number * Rational::from_integer(2.into()));
+                    let term = names.polar(&term).times_monomial(&mark);
+                    let multiple = i64::from(turns).unsigned_abs() / p.unsigned_abs();
+                    let multiple = u32::try_from(multiple).unwrap_or(u32::MAX);
+                    // C e^(-i n psi): the real part is a', minus the imaginary part a psi'/p.
+                    let sign = Polynomial::constant(ratio(if turns < 0 { -1 } else { 1 }, 1));
+                    let minus = Polynomial::constant(ratio(-1, 1));
+                    let rates = amplitude.entry(multiple).or_insert_with(zero);
+                    let phases = phase.entry(multiple).or_insert_with(zero);
+                    match imaginary {
+                        false => {
+                            rates[0].accumulate(&term);
+                            phases[1].accumulate(&term.product(&sign));
+                        }
+                        true => {
+                            rates[1].accumulate(&term.product(&sign));
+                            phases[0].accumulate(&term.product(&minus));
+                        }
+                    }
+                }
+            }
+        }
+        // A wave that does not turn has no sine.
+        for waves in [&mut amplitude, &mut phase] {
+            if let Some([_, sine]) = waves.get_mut(&0) {
+                *sine = Polynomial::zero();
+            }
+        }
+        Self { amplitude, phase }
+    }
+
+    pub(super) fn is_resonant(&self) -> bool {
+        let moving = self.amplitude.iter().chain(&self.phase).filter(|entry| *entry.0 > 0);
+        moving
+            .into_iter()
+            .any(|(_, waves)| waves.iter().any(|wave| !wave.is_zero()))
+    }
+
+    /// What does not turn with the phase: `P` or `Q`.
+    pub(super) fn still(waves: &BTreeMap<u32, [Polynomial; 2]>) -> Polynomial {
+        waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
+    }
+
+    pub(super) fn turning(waves: &BTreeMap<u32, [Polynomial; 2]>) -> [Polynomial; 2] {
+        let zero = || [Polynomial::zero(), Polynomial::zero()];
+        waves.get(&1).cloned().unwrap_or_else(zero)
+    }
+
+    /// Whether no multiple of the phase stands in them.
+    pub(super) fn is_simple(&self) -> bool {
+        let moving = self.amplitude.iter().chain(&self.phase).filter(|entry| *entry.0 > 1);
+        moving.into_iter().all(|(_, waves)| waves.iter().all(Zero::is_zero))
+    }
+
+    pub(super) fn expression(
+        waves: &BTreeMap<u32, [Polynomial; 2]>,
+        phase: Symbol,
+        change: &dyn Fn(&Polynomial) -> Polynomial,
+    ) -> Result<Expr, Refusal> {
+        let mut terms = Vec::new();
+        for (multiple, [cosine, sine]) in waves {
+            let angle = &Expr::from(i64::from(*multiple)) * &Expr::from(phase);
+            terms.push(&Expr::from(&change(cosine)) * &angle.cos()?);
+            if *multiple > 0 {
+                terms.push(&Expr::from(&change(sine)) * &angle.sin()?);
+            }
+        }
+        Ok(Expr::sum(terms))
+    }
+}
+
+/// The frequency of the motion itself where `Q = 0` without damping and drive, in powers of the marker: `omega0 + sigma/p`.
+pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
+    let names = &question.names;
+    let order = question.scaling.order as i32;
+    let (sigma, a) = (question.sigma, names.amplitude);
+    let own = Monomial::power_of(sigma, 1)
+        .product(&Monomial::power_of(a, 1))
+        .product(&names.mark(question.small_order()));
+    // Q = (sigma/p) a + rest: sigma = -p rest/a, put in until nothing changes.
+    let mut rest = still.clone();
+    let slope = rest.coefficient(&own);
+    rest.add_term(own, -slope.clone());
+    let over = Polynomial::term(
+        Monomial::power_of(a, -1).product(&Monomial::power_of(names.marker, -(question.small_order() as i32))),
+        if slope.is_zero() {
+            Rational::zero()
+        } else {
+            -slope.recip()
+        },
+    );
+    let mut detuning = Polynomial::zero();
+    for _ in 0..=order {
+        let next = rest
+            .substitute(sigma, &detuning)
+            .unwrap_or_else(Polynomial::zero)
+            .product(&over);
+        detuning = next.truncated(names.marker, order - question.small_order() as i32);
+    }
+    let p = Polynomial::constant(ratio(1, question.resonance.0.into()));
+    let mut frequency = detuning.product(&p).times_monomial(&names.mark(question.small_order()));
+    frequency.accumulate(&question.linear_frequency);
+    frequency
+}
+
+/// Everything that follows from the slow equations of a steady motion.
+pub(super) fn response(question: &Question, expansion: &Expansion, slow: &Slow) -> Result<Response, Refusal> {
+    let a = question.names.amplitude;
+    let unmarked = |polynomial: Polynomial| question.unmarked(&polynomial);
+    let (rate, phase) = (
+        unmarked(Slow::still(&slow.amplitude)),
+        unmarked(Slow::still(&slow.phase)),
+    );
+    let turning = [Slow::turning(&slow.amplitude), Slow::turning(&slow.phase)];
+    let waves = turning.map(|waves| waves.map(unmarked));
+    let found = FrequencyResponse::of([&rate, &phase], &waves, question.sigma, a);
+    let found = if slow.is_simple() {
+        found
+    } else {
+        found.without_relation()
+    };
+    let [u, v] = ["u", "v"].map(|name| fresh(name, &question.taken));
+    Ok(Response {
+        motion: motion(question, expansion)?,
+        relation: found.relation,
+        branches: found.branches,
+        peak: found.peak,
+        folds: found.folds,
+        jumps: found.jumps,
+        closed: None,
+        plane: Some(Plane {
+            coordinates: [u, v],
+            rates: plane(question, expansion, [u, v]),
+        }),
+    })
+}
+
+/// `x(t)` in `t`, the amplitude and the phase.
+fn motion(question: &Question, expansion: &Expansion) -> Result<Expr, Refusal> {
+    let names = &question.names;
+    let p = i64::from(question.resonance.0);
+    let omega_t = question.drive.angle();
+    let psi = Expr::from(names.phase);
+    let mut waves: BTreeMap<(i64, i64), [Polynomial; 2]> = BTreeMap::new();
+    for (k, wave) in expansion.displacement.iter().enumerate() {
+        for (m, value) in wave.iter().filter(|entry| *entry.0 >= 0) {
+            for (part, imaginary) in [(&value.real, false), (&value.imaginary, true)] {
+                for (monomial, number) in part.terms() {
+                    let turns =
+                        i64::from(monomial.exponent(names.complex.own) - monomial.exponent(names.complex.conjugate));
+                    let factor = if *m == 0 { ratio(1, 1) } else { ratio(2, 1) };
+                    let term = names.polar(&Polynomial::term(monomial.clone(), number * factor));
+                    let term = question.unmarked(&term.times_monomial(&names.mark(k)));
+                    let zero = || [Polynomial::zero(), Polynomial::zero()];
+                    let entry = waves.entry((i64::from(*m), turns)).or_insert_with(zero);
+                    entry[usize::from(imaginary)].accumulate(&term);
+                }
+            }
+        }
+    }
+    // e^(i m phi) B^j Bc^l with phi = Omega t/p and B = (a/2) e^(-i psi/p).
+    let mut terms = Vec::new();
+    for ((m, turns), [real, imaginary]) in &waves {
+        let angle = &(&Expr::number(ratio(*m, p)) * &omega_t) - &(&Expr::number(ratio(*turns, p)) * &psi);
+        terms.push(&Expr::from(real) * &angle.cos()?);
+        if !imaginary.is_zero() {
+            terms.push(&(-&Expr::from(imaginary)) * &angle.sin()?);
+        }
+    }
+    Ok(Expr::sum(terms))
+}
+
+/// The slow equations in `u = a cos(psi/p)` and `v = -a sin(psi/p)`, that is `2 B = u + i v`: without a singular origin.
+fn plane(question: &Question, expansion: &Expansion, [u, v]: [Symbol; 2]) -> [Polynomial; 2] {
+    let names = &question.names;
+    let half = Polynomial::constant(ratio(1, 2));
+    let of = |sign: i64| Complex {
+        real: Polynomial::symbol(u).product(&half),
+        imaginary: Polynomial::symbol(v).product(&Polynomial::constant(ratio(sign, 2))),
+    };
+    let (own, conjugate) = (of(1), of(-1));
+    let mut sum = Complex::zero();
+    for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
+        for (part, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
+            for (monomial, number) in part.terms() {
+                let rest = monomial.without(names.complex.own).without(names.complex.conjugate);
+                let rest = rest.product(&names.mark(k));
+                let mut term = Complex::real(Polynomial::term(rest, number * Rational::from_integer(2.into())));
+                for (name, value) in [(names.complex.own, &own), (names.complex.conjugate, &conjugate)] {
+                    for _ in 0..monomial.exponent(name) {
+                        term = term.product(value);
+                    }
+                }
+                sum.accumulate(&if imaginary { term.times_i() } else { term });
+            }
+        }
+    }
+    [question.unmarked(&sum.real), question.unmarked(&sum.imaginary)]
+}

@@ -1,0 +1,97 @@
+//! Resonances of a driven motion: which are known, and which is nearest to frequencies in numbers.
+
+use std::collections::BTreeMap;
+
+use super::drive::Drive;
+use super::{Options, Refusal, Unsuited};
+use crate::expr::Expr;
+use crate::oscillator::Oscillator;
+use crate::solution::Method;
+use crate::values::Values;
+
+/// Those that are looked for, Omega : omega0.
+pub(super) const RESONANCES: [(u32, u32); 5] = [(1, 1), (2, 1), (1, 2), (3, 1), (1, 3)];
+
+/// The ratio of the driving frequency to the linear one, where both are numbers.
+pub(super) fn ratio_of(frequency: &Expr, stiffness: &Expr) -> Option<f64> {
+    let driving = frequency.evaluate(&BTreeMap::new()).ok()?;
+    let squared = stiffness.evaluate(&BTreeMap::new()).ok()?;
+    Some(driving / squared.sqrt()).filter(|ratio| ratio.is_normal())
+}
+
+/// The resonances, the nearest to a ratio of the driving frequency to the linear one first.
+pub(super) fn by_distance(ratio: f64) -> Vec<(u32, u32)> {
+    let distance = |(p, q): &(u32, u32)| (ratio * f64::from(*q) / f64::from(*p)).ln().abs();
+    let mut sorted = RESONANCES.to_vec();
+    sorted.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    sorted
+}
+
+/// An error where a ratio of frequencies is far from the resonance that is nearest to it: the detuning, which is to be small, is more
+/// than half of the linear frequency beside.
+pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<(), Refusal> {
+    const FAR: f64 = 0.5;
+    let nearest = (p, q);
+    match (ratio * f64::from(q) / f64::from(p) - 1.0).abs() > FAR {
+        true => Err(Unsuited::FarFromResonance { ratio, nearest }.to(method)),
+        false => Ok(()),
+    }
+}
+
+/// The options with the resonance that is nearest to the frequencies at these values, of those that the equation has; as they
+/// are where one is asked for, nothing drives the motion, or a value is missing.
+///
+/// # Errors
+/// The drive is far from all of them.
+///
+/// ```
+/// use lindstedt::{Method, Options, Oscillator, method::with_resonance_at};
+///
+/// let duffing = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)")?;
+/// let at = "zeta = 1/100, eps = 1/10, F = 1, Omega = 1/3".parse()?;
+/// assert_eq!(with_resonance_at(&duffing, &Options::default(), &at)?.resonance, Some((1, 3)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn with_resonance_at(oscillator: &Oscillator, options: &Options, at: &Values) -> Result<Options, Refusal> {
+    let method = options.method.unwrap_or(Method::MultipleScales);
+    let mut chosen = options.clone();
+    if options.resonance.is_some() || !matches!(method, Method::MultipleScales | Method::Averaging) {
+        return Ok(chosen);
+    }
+    let Some(ratio) = ratio_at(oscillator, at, method) else {
+        return Ok(chosen);
+    };
+    let found = by_distance(ratio).into_iter().find(|candidate| {
+        let asked = Options {
+            resonance: Some(*candidate),
+            ..options.clone()
+        };
+        super::solve(oscillator, &asked).is_ok()
+    });
+    if let Some(nearest) = found {
+        is_near(nearest, ratio, method)?;
+        chosen.resonance = found;
+    }
+    Ok(chosen)
+}
+
+/// The ratio of the frequencies at these values; `None` where nothing drives, or one is missing.
+fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<f64> {
+    let centred = crate::equilibrium::centred(oscillator, None).ok()?;
+    let oscillator = &centred.oscillator;
+    let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
+    let drive = Drive::of(&parts, &oscillator.names(), method).ok()?;
+    let mut numbers = at.numbers();
+    if let Some(definition) = &centred.definition {
+        numbers.insert(definition.symbol, definition.meaning.evaluate(&numbers).ok()?);
+    }
+    let x = oscillator.coordinate;
+    let stiffness = parts
+        .restoring
+        .differentiate(x)
+        .ok()?
+        .substitute(x, &Expr::zero())
+        .ok()?;
+    let ratio = drive.frequency.evaluate(&numbers).ok()? / stiffness.evaluate(&numbers).ok()?.sqrt();
+    Some(ratio).filter(|ratio| ratio.is_normal())
+}

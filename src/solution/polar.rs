@@ -1,0 +1,170 @@
+//! Steady motions by slow equations in amplitude and phase that are no polynomials.
+//!
+//! ```text
+//! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/m = Q + Q_c cos(psi) + Q_s sin(psi),   the coefficients functions of a
+//! both zero:   D cos(psi) = P_s Q - P Q_s,   D sin(psi) = P Q_c - P_c Q,   D = P_c Q_s - P_s Q_c,   cos^2 + sin^2 = 1
+//! ```
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use nalgebra::Matrix2;
+
+use super::response::{SteadyState, wrapped};
+use super::{Modulation, Solution};
+use crate::exact::rational::from_f64;
+use crate::expr::{CompiledFunction, Expr};
+use crate::numeric::ode::root::find_root;
+use crate::symbol::Symbol;
+
+/// Every steady motion at given values, largest amplitude first; `None` where a value is missing.
+pub(super) fn steady_states(
+    solution: &Solution,
+    modulation: &Modulation,
+    times: f64,
+    value_of: &dyn Fn(Symbol) -> Option<f64>,
+) -> Option<Vec<SteadyState>> {
+    let rates = Rates::new(solution, modulation, times, value_of)?;
+    let mut states: Vec<SteadyState> = rates
+        .amplitudes()
+        .into_iter()
+        .filter_map(|amplitude| rates.state(amplitude))
+        .collect();
+    states.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+    states.extend(rates.rest());
+    Some(states)
+}
+
+/// The rates of amplitude and phase at numbers, and their slopes by both.
+struct Rates {
+    times: f64,
+    amplitude: CompiledFunction,
+    phase: CompiledFunction,
+    slopes: [[CompiledFunction; 2]; 2],
+}
+
+/// The coefficients of the waves at an amplitude.
+struct Waves {
+    rate: [f64; 3],
+    turn: [f64; 3],
+}
+
+impl Waves {
+    /// `D`, `D cos(psi)` and `D sin(psi)`.
+    fn solved(&self) -> [f64; 3] {
+        let ([rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]) = (self.rate, self.turn);
+        [
+            rate_cos * turn_sin - rate_sin * turn_cos,
+            rate_sin * turn - rate * turn_sin,
+            turn_cos * rate - rate_cos * turn,
+        ]
+    }
+}
+
+impl Rates {
+    fn new(
+        solution: &Solution,
+        modulation: &Modulation,
+        times: f64,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Option<Self> {
+        let parameters = solution.parameters.iter();
+        let mut known: BTreeMap<Symbol, f64> = parameters.filter_map(|&name| Some((name, value_of(name)?))).collect();
+        known.extend(solution.defined_values(value_of).ok()?);
+        let exact = known
+            .iter()
+            .filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
+        let exact = exact.collect();
+        let unknown = [modulation.amplitude, modulation.phase];
+        let rates = [&modulation.amplitude_rate, &modulation.phase_rate];
+        let [amplitude, phase] = rates.map(|rate| rate.substitute_all(&exact).ok());
+        let (amplitude, phase) = (amplitude?, phase?);
+        let compiled = |expression: &Expr| CompiledFunction::new(expression, &unknown).ok();
+        let slope = |of: &Expr, by: Symbol| compiled(&of.differentiate(by).ok()?);
+        let slopes = |of: &Expr| Some([slope(of, unknown[0])?, slope(of, unknown[1])?]);
+        Some(Self {
+            times,
+            slopes: [slopes(&amplitude)?, slopes(&phase)?],
+            amplitude: compiled(&amplitude)?,
+            phase: compiled(&phase)?,
+        })
+    }
+
+    /// Three phases tell a wave.
+    fn waves(&self, amplitude: f64) -> Waves {
+        let wave = |of: &dyn Fn(f64) -> f64| {
+            let [ahead, across, behind] = [0.0, 0.5, 1.0].map(|part| of(part * PI));
+            let mean = (ahead + behind) / 2.0;
+            [mean, (ahead - behind) / 2.0, across - mean]
+        };
+        Waves {
+            rate: wave(&|phase| self.amplitude.call(&[amplitude, phase])),
+            turn: wave(&|phase| amplitude * self.phase.call(&[amplitude, phase]) / self.times),
+        }
+    }
+
+    /// What vanishes at the amplitude of a steady motion, as a part of what it is made of.
+    fn excess(&self, amplitude: f64) -> f64 {
+        let [determinant, cosine, sine] = self.waves(amplitude).solved();
+        let (drive, rest) = (determinant * determinant, cosine * cosine + sine * sine);
+        (rest - drive) / (rest + drive)
+    }
+
+    /// The amplitudes, looked for from far below to far above any that is meant.
+    fn amplitudes(&self) -> Vec<f64> {
+        const DECADES: f64 = 16.0;
+        const PER_DECADE: usize = 500;
+        let count = (DECADES as usize) * PER_DECADE;
+        let place = |k: usize| 10.0_f64.powf(DECADES * (k as f64 / count as f64 - 0.5));
+        let mut found = vec![];
+        let mut before = (place(0), self.excess(place(0)));
+        for k in 1..=count {
+            let now = (place(k), self.excess(place(k)));
+            if before.1 * now.1 < 0.0
+                && let Ok(root) = find_root(|a| self.excess(a), before.0, now.0)
+            {
+                found.push(root);
+            }
+            before = now;
+        }
+        found
+    }
+
+    fn state(&self, amplitude: f64) -> Option<SteadyState> {
+        let [determinant, cosine, sine] = self.waves(amplitude).solved();
+        let phase = (sine / determinant).atan2(cosine / determinant);
+        let at = |of: &CompiledFunction| of.call(&[amplitude, phase]);
+        let [[aa, ap], [pa, pp]] = self.slopes.each_ref().map(|row| row.each_ref().map(at));
+        let found = Matrix2::new(aa, ap, pa, pp).complex_eigenvalues();
+        let eigenvalues = [(found[0].re, found[0].im), (found[1].re, found[1].im)];
+        let known = phase.is_finite() && eigenvalues.iter().all(|value| value.0.is_finite());
+        known.then_some(SteadyState {
+            amplitude,
+            phase: wrapped(phase),
+            eigenvalues,
+        })
+    }
+
+    /// The motion without a part of its own, where no force drives it: about it `B' = lambda B + mu B*`.
+    fn rest(&self) -> Option<SteadyState> {
+        /// Near enough, and not so near that rounding counts.
+        const NEAR: f64 = 1e-7;
+        let size = |waves: &Waves| waves.rate[1].hypot(waves.rate[2]);
+        let [near, far] = [NEAR, 100.0 * NEAR].map(|amplitude| self.waves(amplitude));
+        if size(&near) > 0.1 * size(&far) && size(&near) > 0.0 {
+            return None;
+        }
+        let [rate, turn, wave] = [near.rate[0], near.turn[0], size(&near)].map(|value| value / NEAR);
+        let under = wave * wave - turn * turn;
+        let eigenvalues = match under >= 0.0 {
+            true => [(rate + under.sqrt(), 0.0), (rate - under.sqrt(), 0.0)],
+            false => [(rate, (-under).sqrt()), (rate, -(-under).sqrt())],
+        };
+        // What feeds or drains at rest as well is no rest.
+        (rate.is_finite() && rate < 1e3).then_some(SteadyState {
+            amplitude: 0.0,
+            phase: 0.0,
+            eigenvalues,
+        })
+    }
+}

@@ -87,11 +87,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let small = SmallTerms::of(oscillator, options)?;
     let mut averaged = match small.expand(order) {
         Ok(force) => of_polynomial(oscillator, &small, &force, order)?,
-        // A series in what marks the terms is no polynomial in the coordinate and its velocity.
-        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_)) if order == 1 => {
+        // A series in what marks the terms is no polynomial in the coordinate and its velocity; steps at a letter are none either, whose
+        // force at rest is known not to act.
+        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_))
+            if order == 1 =>
+        {
             by_projections(oscillator, &small)?
         }
-        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_)) => {
+        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_)) => {
             // That it restores is said first.
             small.linear_part()?;
             return refuse(not_polynomial(&small.without_linear()?, oscillator.coordinate));

@@ -231,6 +231,16 @@ pub enum Unsuited {
         /// Those that there are.
         others: Vec<(u32, u32)>,
     },
+    /// No linear restoring force, and what the methods that need none do not take.
+    #[error(
+        "needs a linear restoring force omega0^2*x with omega0^2 > 0, but it is `{force}`; methods that need none do not take the term `{term}`"
+    )]
+    NoLinearForce {
+        /// The linear force.
+        force: Expr,
+        /// A term that drives or damps.
+        term: Quotation,
+    },
     /// A driving frequency far from every resonance that is known.
     #[error(
         "needs a drive near a resonance, but Omega : omega0 = {} is far from {}:{}, the nearest that it finds",
@@ -367,6 +377,10 @@ impl Unsuited {
                 Some(&(driving, linear)) => Advice::words("try ").choose(Setting::Resonance(driving, linear)),
                 None => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
             },
+            Self::NoLinearForce { .. } => Advice::words(
+                "in numbers `lindstedt simulate` follows the motion from any start; without the term try ",
+            )
+            .choose(Setting::Method(Method::Exact)),
             Self::FarFromResonance { nearest, .. } => Advice::words(
                 "in numbers `lindstedt response` finds the steady states at any frequency; the formulas of a resonance are those of ",
             )
@@ -419,6 +433,7 @@ impl Refusal {
                     | Unsuited::NotOdd { term }
                     | Unsuited::NotOddAbout { term, .. }
                     | Unsuited::NoProjection { term }
+                    | Unsuited::NoLinearForce { term, .. }
                     | Unsuited::PolynomialOnly { term },
                 ..
             }
@@ -479,6 +494,39 @@ impl Refusal {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    solve_as_asked(oscillator, options).map_err(|refusal| without_linear_force(refusal, oscillator, options))
+}
+
+/// Methods that need no linear force take no damping and no drive: where there is one the way leads on to numbers.
+fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Refusal {
+    let Refusal::Oscillator(OscillatorError::NoRestoringForce(force)) = &refusal else {
+        return refusal;
+    };
+    let Ok(parts) = oscillator.parts() else {
+        return refusal;
+    };
+    let Some(other) = [&parts.forcing, &parts.damping]
+        .into_iter()
+        .find(|part| !part.is_zero())
+    else {
+        return refusal;
+    };
+    let otherwise = match parts.forcing.is_zero() {
+        true => Method::Averaging,
+        false => Method::MultipleScales,
+    };
+    let refusal = Unsuited::NoLinearForce {
+        force: force.clone(),
+        term: first_term(other),
+    }
+    .to(options.method.unwrap_or(otherwise));
+    match centred(oscillator, None) {
+        Ok(centred) => quotation::as_typed(refusal, oscillator, &centred),
+        Err(_) => refusal,
+    }
+}
+
+fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     if let Some(asked) = options.order.filter(|&order| order > HIGHEST_ORDER) {
         return Err(Refusal::Order { asked });
     }
@@ -502,7 +550,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let expanded = solve_by(Method::MultipleScales, oscillator, options);
         return match expanded {
             Err(Refusal::Oscillator(
-                OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NotSmall { .. },
+                OscillatorError::NotPolynomial(_)
+                | OscillatorError::Taylor(_)
+                | OscillatorError::NotSmall { .. }
+                | OscillatorError::NoEquilibrium(_),
             )) => solve_by(Method::Averaging, oscillator, options).or(expanded),
             _ => expanded,
         };
@@ -533,7 +584,10 @@ fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool {
         | Refusal::AmplitudeNotFree { .. }
         | Refusal::NoLimitCycle { .. } => damped(),
         Refusal::Oscillator(
-            OscillatorError::NotSmall { .. } | OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_),
+            OscillatorError::NotSmall { .. }
+            | OscillatorError::NotPolynomial(_)
+            | OscillatorError::Taylor(_)
+            | OscillatorError::NoEquilibrium(_),
         ) => damped(),
         _ => false,
     }

@@ -63,6 +63,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         | Unsuited::SecondDrive { term }
         | Unsuited::ResonanceWithoutDamping { term }
         | Unsuited::NoProjection { term }
+        | Unsuited::NoLinearForce { term, .. }
         | Unsuited::PolynomialOnly { term } => {
             replace(term, typed(term, oscillator, centred));
         }

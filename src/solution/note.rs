@@ -323,16 +323,7 @@ impl fmt::Display for Note {
                 formatter,
                 "{amplitude}^2 is a root {square} of {polynomial} = 0; the value of {amplitude} is rounded to 15 digits"
             ),
-            Self::Action { rate, pendulum } => {
-                write!(
-                    formatter,
-                    "for any amplitude the action J, 1/(2*pi) of the area of the orbit, decays as J(A)*exp(-({rate})*t)"
-                )?;
-                match pendulum {
-                    true => formatter.write_str("; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin(a/2)^2"),
-                    false => Ok(()),
-                }
-            }
+            Self::Action { rate, pendulum } => action(formatter, rate, *pendulum),
             Self::HalfSwings { lost, size } => write!(
                 formatter,
                 "exact from one turning point a_n to the next, a_m: {lost} = {size}*(a_n + a_m)"
@@ -359,27 +350,11 @@ impl fmt::Display for Note {
                 )
             }
             Self::Driven {
-                resonance: (p, q),
+                resonance,
                 parametric,
                 small,
                 power,
-            } => {
-                let name = match (p, q) {
-                    (2, 1) if *parametric => "principal parametric resonance".to_owned(),
-                    (1, 1) => "primary resonance".to_owned(),
-                    (1, q) => format!("superharmonic resonance 1:{q}"),
-                    (p, q) => format!("subharmonic resonance {p}:{q}"),
-                };
-                let as_power = match power {
-                    1 => "the small parameter",
-                    _ => "the square of the small parameter",
-                };
-                write!(
-                    formatter,
-                    "{name}, Omega : omega0 near {p} : {q}; as small as {as_power}: {}",
-                    listed(small)
-                )
-            }
+            } => driven(formatter, *resonance, *parametric, small, *power),
             Self::LeastForce { force, least } => {
                 write!(
                     formatter,
@@ -404,6 +379,43 @@ impl fmt::Display for Note {
             Self::Stated(words) => formatter.write_str(words),
         }
     }
+}
+
+fn action(formatter: &mut fmt::Formatter<'_>, rate: &Expr, pendulum: bool) -> fmt::Result {
+    write!(
+        formatter,
+        "for any amplitude the action J, 1/(2*pi) of the area of the orbit, decays as J(A)*exp(-({rate})*t)"
+    )?;
+    match pendulum {
+        true => formatter.write_str("; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin(a/2)^2"),
+        false => Ok(()),
+    }
+}
+
+fn driven(
+    formatter: &mut fmt::Formatter<'_>,
+    resonance: (u32, u32),
+    parametric: bool,
+    small: &[Expr],
+    power: usize,
+) -> fmt::Result {
+    let (p, q) = resonance;
+    let name = match resonance {
+        (2, 1) if parametric => "principal parametric resonance".to_owned(),
+        (1, 1) => "primary resonance".to_owned(),
+        (p, 1) if parametric => format!("parametric resonance {p}:1"),
+        (1, q) => format!("superharmonic resonance 1:{q}"),
+        (p, q) => format!("subharmonic resonance {p}:{q}"),
+    };
+    let as_power = match power {
+        1 => "the small parameter",
+        _ => "the square of the small parameter",
+    };
+    write!(
+        formatter,
+        "{name}, Omega : omega0 near {p} : {q}; as small as {as_power}: {}",
+        listed(small)
+    )
 }
 
 impl fmt::Display for Instant {

@@ -263,10 +263,7 @@ fn errors_vanish_as_the_order_says() {
 #[test]
 fn slopes_of_motions_from_a_start() {
     for (equation, order, at) in [
-        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "zeta = 1/20, eps = 1/10, A = 1"),
-        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2, "zeta = 1/20, eps = 1/10, A = 1"),
         ("x'' + x'/10 + x + x^3/10 = 0", 2, "A = 1"),
-        ("x'' + alpha*sgn(x') + x = 0", 1, "alpha = 1/50, A = 1"),
         ("x'' + c*abs(x')*x' + x = 0", 1, "c = 1/10, A = 1"),
         ("x'' + sgn(x')/50 + x + x*abs(x)/10 = 0", 1, "A = 1"),
     ] {
@@ -492,6 +489,7 @@ fn the_table_of_the_documentation_is_what_comes_out() {
         .lines()
         .filter(|line| line.starts_with("| `x''"))
         .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+        .filter(|row: &Vec<&str>| row.len() == 6)
         .collect();
     assert!(rows.len() >= 8, "{rows:?}");
     for row in rows {
@@ -677,6 +675,51 @@ fn steady_motions_without_a_series_are_the_true_ones() {
     }
 }
 
+/// A barrier at a letter does not act at rest; free and driven it is averaged like one at a number.
+#[test]
+fn a_barrier_at_a_letter() {
+    for (equation, at) in [
+        (
+            "x'' + 2*zeta*x' + x + k*(x - xc)*H(x - xc) = 0",
+            "zeta = 1/100, k = 1/10, xc = 1, A = 3/2",
+        ),
+        (
+            "x'' + 2*zeta*x' + x + k*(x - xc)*H(x - xc) = F*cos(Omega*t)",
+            "zeta = 1/50, k = 1/20, xc = 1, F = 1/20, Omega = 1",
+        ),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let solution = solve(&oscillator, &Options::default()).expect(equation);
+        assert_eq!(solution.method, Method::Averaging, "{equation}");
+        let judged = judge(&oscillator, &solution, &at.parse().expect(at), 0.01).expect(equation);
+        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {judged:?}");
+    }
+}
+
+/// Where nothing linear restores and something damps no method is named that refuses as well.
+#[test]
+fn no_help_leads_in_a_circle() {
+    for method in [None, Some(Method::Averaging), Some(Method::MultipleScales)] {
+        let options = Options {
+            method,
+            ..Options::default()
+        };
+        let refusal = solve(
+            &Oscillator::parse("x'' + 0.1*x' + x^3 = 0").expect("an equation"),
+            &options,
+        );
+        let refusal = refusal.expect_err("refused");
+        assert_eq!(refusal.term(), Some("0.1*x'"), "{refusal}");
+        let help = refusal.help().expect("help").to_string();
+        assert!(help.contains("lindstedt simulate") && help.contains("exact"), "{help}");
+    }
+    let undamped = Options {
+        method: Some(Method::Exact),
+        ..Options::default()
+    };
+    assert!(solve(&Oscillator::parse("x'' + x^3 = 0").expect("an equation"), &undamped).is_ok());
+}
+
 #[test]
 fn drives_that_averaging_refuses_by_name() {
     for (equation, resonance, words) in [
@@ -703,5 +746,46 @@ fn drives_that_averaging_refuses_by_name() {
         let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert!(refusal.to_string().contains(words), "{equation}: {refusal}");
         assert!(refusal.help().is_some(), "{equation}");
+    }
+}
+
+/// The tables of `docs/averaging.md` and `docs/multiple-scales.md` on motions from a start are what comes out.
+#[test]
+fn deviations_residuals_and_slopes_of_the_documentation() {
+    for (method, page) in [
+        (Method::Averaging, include_str!("../../docs/averaging.md")),
+        (Method::MultipleScales, include_str!("../../docs/multiple-scales.md")),
+    ] {
+        let lines = page.lines().filter(|line| line.starts_with("| `x''"));
+        let rows: Vec<Vec<&str>> = lines
+            .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+            .filter(|row: &Vec<&str>| row.len() == 8)
+            .collect();
+        assert_eq!(rows.len(), 3, "{rows:?}");
+        for row in rows {
+            let equation = format!("{} = 0", row[1]);
+            let oscillator = Oscillator::parse(&equation).expect(row[1]);
+            let options = Options {
+                method: Some(method),
+                order: Some(row[3].parse().expect("an order")),
+                ..Options::default()
+            };
+            let solution = solve(&oscillator, &options).expect(row[1]);
+            let judged = judge(&oscillator, &solution, &row[2].parse().expect(row[2]), 0.01).expect(row[1]);
+            let percent = |value: Option<f64>| 100.0 * value.expect(row[1]);
+            for (cell, found) in [
+                (row[4], percent(judged.max_deviation)),
+                (row[5], percent(judged.residual)),
+            ] {
+                let printed: f64 = cell.trim_end_matches(" %").parse().expect(cell);
+                assert!((found / printed - 1.0).abs() < 5e-3, "{row:?}: {found}");
+            }
+            let slope: f64 = row[6].parse().expect(row[6]);
+            assert!(
+                (judged.slope.expect(row[1]) - slope).abs() < 0.02,
+                "{row:?}: {:?}",
+                judged.slope
+            );
+        }
     }
 }

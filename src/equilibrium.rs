@@ -68,8 +68,11 @@ impl Centred {
 /// has no closed form in the parameters.
 pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let t = Symbol::new("t");
-    let Some(expanded) = oscillator.force.expand().ok().filter(|force| force.contains(t)) else {
+    if !oscillator.force.contains(t) {
         return centred_still(oscillator, degree);
+    }
+    let Ok(expanded) = oscillator.force.expand() else {
+        return Ok(Centred::at_origin(oscillator));
     };
     // What drives the motion does not decide where it swings.
     let (driving, quiet): (Vec<Expr>, Vec<Expr>) = expanded.terms().iter().cloned().partition(|term| term.contains(t));

@@ -19,7 +19,7 @@ pub struct Arguments {
     /// The parameter that varies, and from where to where: Omega=0.5:1.5
     #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
     vary: Option<String>,
-    /// harmonic-balance; or multiple-scales, its steady motions beside the branches of harmonic balance, which judge them
+    /// harmonic-balance; or multiple-scales or averaging, their steady motions beside the branches of harmonic balance, which judge them
     #[arg(long)]
     method: Option<String>,
     /// The highest harmonic kept; without it as many as bring the error below a tenth of the tolerance, 64 at most; of multiple-scales its order
@@ -103,15 +103,12 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
     let (balance, scales) = (Method::HarmonicBalance, Method::MultipleScales);
     let Some(name) = name else { return Ok(balance) };
     match Method::from_name(name) {
-        Some(method) if [balance, scales].contains(&method) => Ok(method),
-        Some(Method::Averaging) => Err(Failure::Usage(format!(
-            "--method {name}: it is for free motions; to first order {} gives the same for driven ones",
-            scales.name()
-        ))),
+        Some(method) if [balance, scales, Method::Averaging].contains(&method) => Ok(method),
         _ => Err(Failure::Usage(format!(
-            "--method {name}: steady states are found by {} or {}",
+            "--method {name}: steady states are found by {}, {} or {}",
             balance.name(),
-            scales.name()
+            scales.name(),
+            Method::Averaging.name()
         ))),
     }
 }

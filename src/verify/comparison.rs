@@ -102,10 +102,12 @@ pub enum ComparisonError {
     Verification(#[from] VerificationError),
 }
 
-/// The variants of each method that are compared: the defaults, both orders of averaging and, for homotopy perturbation, the first
-/// order as well.
+/// The variants of each method that are compared: the defaults, both orders of averaging and of driven multiple scales and, for homotopy
+/// perturbation, the first order as well.
 fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
-    let conserves = oscillator.parts().is_ok_and(|parts| parts.damping.is_zero());
+    let parts = oscillator.parts().ok();
+    let driven = parts.as_ref().is_some_and(|parts| !parts.forcing.is_zero());
+    let conserves = !driven && parts.is_some_and(|parts| parts.damping.is_zero());
     let default = |method| Options {
         method: Some(method),
         small: small.map(str::to_owned),
@@ -122,7 +124,7 @@ fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
                 ..default(method)
             });
         }
-        if method == Method::Averaging {
+        if method == Method::Averaging || driven && method == Method::MultipleScales {
             variants.push(Options {
                 order: Some(2),
                 ..default(method)
@@ -171,10 +173,12 @@ pub fn compare(
                 None => slow.push(solution),
             },
             // What nothing tells the start of is no motion to compare.
-            (Ok(solution), Some(method)) if super::periodic(&solution).is_err() => refused.push(Refused {
-                method,
-                reason: Unsuited::NoSteadyAmplitude.to(method),
-            }),
+            (Ok(solution), Some(method)) if solution.response.is_none() && super::periodic(&solution).is_err() => {
+                refused.push(Refused {
+                    method,
+                    reason: Unsuited::NoSteadyAmplitude.to(method),
+                })
+            }
             (Ok(solution), _) => solutions.push(solution),
             (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
                 refused.push(Refused { method, reason });

@@ -779,3 +779,38 @@ fn a_drive_far_from_resonance_is_refused() {
     );
     assert!(refusal.help().is_some_and(|help| help.to_string().contains("response")));
 }
+
+/// Driven motions are compared by the amplitude of their largest stable steady motion: both methods, both orders.
+#[test]
+fn driven_motions_are_compared() {
+    let compared = |equation: &str, at: &str| {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let at: Values = at.parse().expect("values");
+        let table = lindstedt::verify::comparison::compare(&oscillator, &at, None, 0.01).expect(equation);
+        let rows = table.rows.iter();
+        rows.map(|row| {
+            (
+                row.solution.method,
+                row.solution.order,
+                row.relative_error.expect("an error").abs(),
+            )
+        })
+        .collect::<Vec<_>>()
+    };
+    let duffing = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
+    let rows = compared(duffing, "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 21/20");
+    let kinds: Vec<_> = rows.iter().map(|row| (row.0, row.1)).collect();
+    let expected = [
+        (Method::Averaging, 1),
+        (Method::MultipleScales, 1),
+        (Method::MultipleScales, 2),
+    ];
+    assert_eq!(kinds, expected);
+    assert!(rows[0].2 < 6e-3 && rows[2].2 < rows[1].2, "{rows:?}");
+    let friction = "x'' + 2*zeta*x' + alpha*sgn(x') + x = F*cos(Omega*t)";
+    let rows = compared(friction, "zeta = 1/200, alpha = 1/200, F = 1/40, Omega = 201/200");
+    assert!(
+        matches!(rows.as_slice(), [(Method::Averaging, 1, error)] if *error < 5e-3),
+        "{rows:?}"
+    );
+}

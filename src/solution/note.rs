@@ -276,15 +276,17 @@ pub enum Position {
     WhereReal(Expr),
 }
 
+const SLOPE_AT_HALF: &str = "one line: exact for linear forces, and to first order for cubic ones alone";
+const MOTION_OF_SERIES: &str = "the motion is that of Lindstedt-Poincare to its first correction";
+const CORNERS: &str = "the force has corners: the expansion holds for motions that stay before the nearest";
+const ROUNDED_COEFFICIENTS: &str = "numerical coefficients, rounded to 15 digits: the equilibrium is no fraction";
+
 impl fmt::Display for Note {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FirstStep(step) => step.fmt(formatter),
             Self::Collocated(instant) => instant.fmt(formatter),
-            Self::EvenPartLeftOut(even) => write!(
-                formatter,
-                "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
-            ),
+            Self::EvenPartLeftOut(even) => even_part(formatter, even),
             Self::Cut(cut) => cut.fmt(formatter),
             Self::MotionAtLeadingOrder { small } => write!(
                 formatter,
@@ -324,10 +326,7 @@ impl fmt::Display for Note {
                 "{amplitude}^2 is a root {square} of {polynomial} = 0; the value of {amplitude} is rounded to 15 digits"
             ),
             Self::Action { rate, pendulum } => action(formatter, rate, *pendulum),
-            Self::HalfSwings { lost, size } => write!(
-                formatter,
-                "exact from one turning point a_n to the next, a_m: {lost} = {size}*(a_n + a_m)"
-            ),
+            Self::HalfSwings { lost, size } => half_swings(formatter, lost, size),
             Self::Grows => formatter.write_str("the amplitude grows: energy is fed and nothing drains it"),
             Self::HighestOrderHere { asked, given } => write!(
                 formatter,
@@ -341,14 +340,7 @@ impl fmt::Display for Note {
                 formatter,
                 "the amplitudes that stay follow from {polynomial} = 0, {square} = a^2, {reason}"
             ),
-            Self::Positive(definition) => {
-                write!(
-                    formatter,
-                    "{} = {} > 0",
-                    definition.symbol,
-                    definition.meaning_in_words()
-                )
-            }
+            Self::Positive(definition) => positive(formatter, definition),
             Self::Driven {
                 resonance,
                 parametric,
@@ -365,20 +357,32 @@ impl fmt::Display for Note {
             Self::Equilibrium { coordinate, position } => {
                 write!(formatter, "swings about the equilibrium {coordinate} = {position}")
             }
-            Self::SlopeAtHalf => {
-                formatter.write_str("one line: exact for linear forces, and to first order for cubic ones alone")
-            }
-            Self::MotionOfSeries => {
-                formatter.write_str("the motion is that of Lindstedt-Poincare to its first correction")
-            }
-            Self::Corners => formatter
-                .write_str("the force has corners: the expansion holds for motions that stay before the nearest"),
-            Self::RoundedCoefficients => {
-                formatter.write_str("numerical coefficients, rounded to 15 digits: the equilibrium is no fraction")
-            }
+            Self::SlopeAtHalf => formatter.write_str(SLOPE_AT_HALF),
+            Self::MotionOfSeries => formatter.write_str(MOTION_OF_SERIES),
+            Self::Corners => formatter.write_str(CORNERS),
+            Self::RoundedCoefficients => formatter.write_str(ROUNDED_COEFFICIENTS),
             Self::Stated(words) => formatter.write_str(words),
         }
     }
+}
+
+fn even_part(formatter: &mut fmt::Formatter<'_>, even: &Expr) -> fmt::Result {
+    write!(
+        formatter,
+        "the even part of the force, {even}, contributes nothing to a motion of one term: its drift is left out"
+    )
+}
+
+fn positive(formatter: &mut fmt::Formatter<'_>, definition: &Definition) -> fmt::Result {
+    let meaning = definition.meaning_in_words();
+    write!(formatter, "{} = {meaning} > 0", definition.symbol)
+}
+
+fn half_swings(formatter: &mut fmt::Formatter<'_>, lost: &Expr, size: &Expr) -> fmt::Result {
+    write!(
+        formatter,
+        "exact from one turning point a_n to the next, a_m: {lost} = {size}*(a_n + a_m)"
+    )
 }
 
 fn action(formatter: &mut fmt::Formatter<'_>, rate: &Expr, pendulum: bool) -> fmt::Result {

@@ -145,13 +145,15 @@ impl Rates {
         })
     }
 
-    /// The motion without a part of its own, where no force drives it: about it `B' = lambda B + mu B*`.
+    /// The motion without a part of its own, where no force drives it, or dry friction drains more than a force feeds: about it
+    /// `B' = lambda B + mu B*`.
     fn rest(&self) -> Option<SteadyState> {
         /// Near enough, and not so near that rounding counts.
         const NEAR: f64 = 1e-7;
         let size = |waves: &Waves| waves.rate[1].hypot(waves.rate[2]);
         let [near, far] = [NEAR, 100.0 * NEAR].map(|amplitude| self.waves(amplitude));
-        if size(&near) > 0.1 * size(&far) && size(&near) > 0.0 {
+        let forced = size(&near) > 0.1 * size(&far) && size(&near) > 0.0;
+        if forced && near.rate[0] + size(&near) >= 0.0 {
             return None;
         }
         let [rate, turn, wave] = [near.rate[0], near.turn[0], size(&near)].map(|value| value / NEAR);

@@ -599,12 +599,23 @@ fn dry_friction_under_a_drive() {
     );
     let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
     assert!(notes.iter().any(|note| note.contains("F > 4*alpha/pi")), "{notes:?}");
-    let count = |force: f64| {
+    let states = |force: f64| {
         let values = [("zeta", 0.01), ("alpha", 0.1), ("F", force), ("Omega", 1.0)];
         let value_of = |name: Symbol| values.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
-        solution.steady_states(&value_of).len()
+        let states = solution.steady_states(&value_of).into_iter();
+        states.map(|state| state.amplitude > 0.0).collect::<Vec<bool>>()
     };
-    assert_eq!([0.99, 1.01].map(|part| count(part * 0.4 / PI)), [0, 1]);
+    // Below it there is rest alone, which is the truth where friction holds against the whole force.
+    assert_eq!(
+        [0.99, 1.01].map(|part| states(part * 0.4 / PI)),
+        [vec![false], vec![true]]
+    );
+    let oscillator = Oscillator::parse(equation).expect(equation);
+    let at = "zeta = 1/100, alpha = 1/10, F = 9/100, Omega = 1"
+        .parse()
+        .expect("values");
+    let held = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
+    assert_eq!(held.verdict, Verdict::Pass, "{:?}", held.steady_states);
 }
 
 /// J. P. Den Hartog, Trans. ASME 53 (1931): with r = Omega the motion that never stops has the amplitude F sqrt(V^2 - (alpha/F)^2 H^2),

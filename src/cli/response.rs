@@ -164,7 +164,7 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::NotPeriodic(_) => {
             Some("time may stand inside sin, cos and tan alone, as cos(Omega*t + phi)".to_owned())
         }
-        ResponseError::Jump(_) => Some(
+        ResponseError::Jump(_) | ResponseError::FreeJump => Some(
             "put (2/pi)*atan(100*x') in place of sgn(x'), or look at the motion itself: `lindstedt simulate` with --every".to_owned(),
         ),
         ResponseError::TwoFrequencies(_) => {
@@ -179,6 +179,9 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::Frequency { parameter, .. } => {
             Some(format!("--vary {parameter} over positive frequencies alone"))
         }
+        ResponseError::NotFollowed { parameter, .. } => Some(format!(
+            "the steps are parts of the range: try a shorter one, or one that does not begin at zero, --vary {parameter}=FROM:TO"
+        )),
         ResponseError::NoMotion { undamped: true, .. } => Some("add damping, such as 2*zeta*x'".to_owned()),
         ResponseError::NoMotion { .. } => {
             Some("the motion escapes or never repeats itself there: try another range".to_owned())

@@ -54,8 +54,33 @@ pub enum WavesOfMotion {
 /// The curves of tongue n.
 pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<TransitionCurve>, HillError> {
     let matrix = effective_matrix(hill, tongue, order);
-    let power = Powers { hill, order };
-    let named = |letter: &str, middle: Polynomial| TransitionCurve {
+    let [[cosine, upper_right], [lower_left, _]] = &matrix;
+    if tongue == 0 {
+        let middle = Powers { hill, order }.solved(cosine, tongue);
+        let mut curve = of_waves("a", tongue, middle);
+        if !is_even(hill) {
+            curve.motion = WavesOfMotion::Both;
+        }
+        return Ok(vec![curve]);
+    }
+    Ok(match upper_right.is_zero() && lower_left.is_zero() {
+        true => separate(hill, tongue, order, &matrix),
+        false => mixed(hill, tongue, order),
+    })
+}
+
+/// Whether no order mixes cosines and sines.
+fn is_even(hill: &Hill) -> bool {
+    hill.graded.iter().all(|[stiffness, damping]| {
+        let waves = |series: &FourierSeries<Polynomials>| series.harmonics();
+        waves(stiffness).iter().all(|(_, _, sine)| sine.is_zero())
+            && waves(damping).iter().all(|(_, cosine, _)| cosine.is_zero())
+    })
+}
+
+/// The curve of motions of cosines, a, or of sines, b.
+fn of_waves(letter: &str, tongue: usize, middle: Polynomial) -> TransitionCurve {
+    TransitionCurve {
         name: format!("{letter}{tongue}"),
         tongue,
         middle,
@@ -65,98 +90,92 @@ pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<Tr
             "a" => WavesOfMotion::Cosines,
             _ => WavesOfMotion::Sines,
         },
+    }
+}
+
+/// Both curves where H has nothing beside its diagonal: each of its entries has its own.
+fn separate(hill: &Hill, tongue: usize, order: u32, matrix: &[[Polynomial; 2]; 2]) -> Vec<TransitionCurve> {
+    let power = Powers { hill, order };
+    let [[cosine, _], [_, sine]] = matrix;
+    let mut pair = vec![
+        of_waves("a", tongue, power.solved(cosine, tongue)),
+        of_waves("b", tongue, power.solved(sine, tongue)),
+    ];
+    // Which is the upper one may show beyond the order only.
+    let further = match pair[0].middle == pair[1].middle {
+        false => None,
+        true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
     };
-    let [[cosine, upper_right], [lower_left, sine]] = &matrix;
-    // Only then no order mixes cosines and sines.
-    let is_even = hill.graded.iter().all(|[stiffness, damping]| {
-        let waves = |series: &FourierSeries<Polynomials>| series.harmonics();
-        waves(stiffness).iter().all(|(_, _, sine)| sine.is_zero())
-            && waves(damping).iter().all(|(_, cosine, _)| cosine.is_zero())
-    });
-    if tongue == 0 {
-        let mut curve = named("a", power.solved(cosine, tongue));
-        if !is_even {
+    let [[cosine, _], [_, sine]] = further.as_ref().unwrap_or(matrix);
+    if power.is_above(cosine, sine) != power.falls() {
+        pair.swap(0, 1);
+    }
+    pair[1].upper = true;
+    if !is_even(hill) {
+        for (curve, side) in pair.iter_mut().zip(["lower", "upper"]) {
+            curve.name = format!("{side}{tongue}");
             curve.motion = WavesOfMotion::Both;
         }
-        return Ok(vec![curve]);
     }
-    if upper_right.is_zero() && lower_left.is_zero() {
-        let mut pair = vec![
-            named("a", power.solved(cosine, tongue)),
-            named("b", power.solved(sine, tongue)),
-        ];
-        // Which is the upper one may show beyond the order only.
-        let further = match pair[0].middle == pair[1].middle {
-            false => None,
-            true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
-        };
-        let [[cosine, _], [_, sine]] = further.as_ref().unwrap_or(&matrix);
-        if power.is_above(cosine, sine) != power.falls() {
-            pair.swap(0, 1);
-        }
-        pair[1].upper = true;
-        if !is_even {
-            for (curve, side) in pair.iter_mut().zip(["lower", "upper"]) {
-                curve.name = format!("{side}{tongue}");
-                curve.motion = WavesOfMotion::Both;
-            }
-        }
-        return Ok(pair);
-    }
+    pair
+}
+
+/// Both curves where H mixes cosines and sines: the mean of its diagonal, and a root beside it.
+fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     // What opens the tongue enters Q squared: with the power 2 n.
     let beyond = order.max(2 * tongue as u32);
     let further = effective_matrix(hill, tongue, beyond);
-    let [[cosine, upper_right], [lower_left, sine]] = &further;
     let power = Powers { hill, order: beyond };
+    let (middle, root) = middle_and_square(&power, tongue, &further);
+    let middle = power.cut(&middle, order.into());
+    let shown = i64::from(order.max(beyond - 1)) + 1;
+    let exact_root = power.square_root(&root);
+    let curve = |upper: bool| {
+        let (middle, under_root) = match &exact_root {
+            Some(root) => {
+                let curve = if upper {
+                    middle.sum_with(root)
+                } else {
+                    middle.less(root)
+                };
+                (power.cut(&curve, order.into()), None)
+            }
+            None => (middle.clone(), Some(power.cut(&root, shown))),
+        };
+        TransitionCurve {
+            name: format!("{}{tongue}", if upper { "upper" } else { "lower" }),
+            tongue,
+            middle,
+            under_root,
+            upper,
+            motion: WavesOfMotion::Both,
+        }
+    };
+    vec![curve(false), curve(true)]
+}
+
+/// The mean of the diagonal of H, and the square of what the curves lie beside it, for the unknown that is solved for.
+fn middle_and_square(power: &Powers, tongue: usize, matrix: &[[Polynomial; 2]; 2]) -> (Polynomial, Polynomial) {
+    let hill = power.hill;
+    let [[cosine, upper_right], [lower_left, sine]] = matrix;
     let middle = cosine.sum_with(sine).scaled(&ratio(1, 2));
     let difference = cosine.less(sine).scaled(&ratio(1, 2));
     let least = [&difference, upper_right, lower_left]
         .into_iter()
         .filter_map(|entry| power.least_degree(entry));
-    let known = i64::from(beyond) + least.min().unwrap_or(0);
+    let known = i64::from(power.order) + least.min().unwrap_or(0);
     let root = difference
         .product(&difference)
         .sum_with(&upper_right.product(lower_left));
     let root = power.cut(&root, known);
-    let (middle, root) = match hill.unknown {
+    match hill.unknown {
         Unknown::Stiffness(_) => {
             let factor = hill.factor.recip();
             let middle = middle.less(&hill.constant).scaled(&factor);
             (middle, root.scaled(&(&factor * &factor)))
         }
         Unknown::Frequency(name) => power.frequency_squared(&middle, &root, tongue, name),
-    };
-    let middle = power.cut(&middle, order.into());
-    let shown = i64::from(order.max(beyond - 1)) + 1;
-    let pair = |upper: bool| {
-        let name = format!("{}{tongue}", if upper { "upper" } else { "lower" });
-        match power.square_root(&root) {
-            Some(root) => TransitionCurve {
-                name,
-                tongue,
-                middle: power.cut(
-                    &if upper {
-                        middle.sum_with(&root)
-                    } else {
-                        middle.less(&root)
-                    },
-                    order.into(),
-                ),
-                under_root: None,
-                upper,
-                motion: WavesOfMotion::Both,
-            },
-            None => TransitionCurve {
-                name,
-                tongue,
-                middle: middle.clone(),
-                under_root: Some(power.cut(&root, shown)),
-                upper,
-                motion: WavesOfMotion::Both,
-            },
-        }
-    };
-    Ok(vec![pair(false), pair(true)])
+    }
 }
 
 /// H, to the order in what is small; for tongue 0 its first entry alone.

@@ -209,6 +209,9 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
                  motion has more waves than are kept.",
                 significant(std::f64::consts::TAU / point.frequency, 4)
             ),
+            BranchEnd::Lost if response.jumps => format!(
+                "It could not be followed beyond {place}: the motion begins to stick there, or the force has no value."
+            ),
             BranchEnd::Lost => {
                 format!("It could not be followed beyond {place}: the force has a jump or no value there.")
             }

@@ -11,12 +11,17 @@
 //! derivatives of the force at the same samples. In: coefficients and a parameter. Out: residual and derivatives, in the units of the
 //! equation.
 //!
+//! At a jump of the force with the velocity, such as dry friction, samples would not tell where it is: the phases at which the velocity
+//! passes it are located, and what is more above it is integrated between them.
+//!
 //! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it begins where the first sine is zero,
 //! and the frequency takes the place of b_1 among the unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::driven::Driven;
+use crate::numeric::ode::quadrature::nodes_and_weights;
+use crate::numeric::ode::root::find_root;
 
 /// Samples for each harmonic, and of all of them: forces of the seventh power are exact.
 const SMOOTH: [usize; 2] = [8, 32];
@@ -54,7 +59,31 @@ struct Harmonics {
     sines: Vec<f64>,
 }
 
+/// A part of the force and of its derivatives by position, velocity, parameter and frequency, at a phase.
+struct Part {
+    phase: f64,
+    values: [f64; 5],
+}
+
 impl Harmonics {
+    /// Adds what stands at one phase.
+    fn add(&mut self, phase: f64, value: f64) {
+        if value == 0.0 {
+            return;
+        }
+        let value = value / std::f64::consts::PI;
+        let (step_sine, step_cosine) = phase.sin_cos();
+        let (mut cosine, mut sine) = (1.0, 0.0);
+        for (cosines, sines) in self.cosines.iter_mut().zip(&mut self.sines) {
+            *cosines += value * cosine;
+            *sines += value * sine;
+            (cosine, sine) = (
+                cosine * step_cosine - sine * step_sine,
+                sine * step_cosine + cosine * step_sine,
+            );
+        }
+    }
+
     /// The cosine of an index of either sign.
     fn cosine(&self, index: isize) -> f64 {
         self.cosines[index.unsigned_abs()]
@@ -177,11 +206,6 @@ impl<'a> Balance<'a> {
         Harmonics { cosines, sines }
     }
 
-    /// The coefficients of samples at the phases of the balance.
-    fn coefficients(&self, values: &[f64]) -> DVector<f64> {
-        self.in_order(&self.harmonics_of(values, self.harmonics))
-    }
-
     /// The coefficients of a motion that is known at any number of equal steps of a period, twice as many as harmonics at least.
     pub fn coefficients_of(&self, positions: &[f64]) -> DVector<f64> {
         let count = positions.len().max(1) as f64;
@@ -221,12 +245,15 @@ impl<'a> Balance<'a> {
         let count = motion.len();
         let (mut inertia, mut force) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut slopes: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(count));
+        // What a jump adds above it is counted where the velocity is.
+        let above = self.above(coefficients, parameter, omega, &motion);
+        const BELOW: f64 = -1.0;
         for (sample, [position, by_phase, curvature]) in motion.iter().enumerate() {
             let velocity = omega * by_phase;
             let at = [*position, velocity, step * sample as f64, parameter];
-            let [by_position, by_velocity, by_parameter] = driven.slopes(&at);
+            let [by_position, by_velocity, by_parameter] = driven.slopes_on(&at, BELOW);
             inertia.push(omega * omega * curvature);
-            force.push(driven.force(&at));
+            force.push(driven.force_on(&at, BELOW));
             slopes[0].push(by_position);
             slopes[1].push(by_velocity);
             let by_frequency = 2.0 * omega * curvature + by_velocity * by_phase;
@@ -234,26 +261,122 @@ impl<'a> Balance<'a> {
             slopes[3].push(by_frequency);
         }
         let sum: Vec<f64> = inertia.iter().zip(&force).map(|(one, other)| one + other).collect();
-        if !sum.iter().chain(slopes.iter().flatten()).all(|value| value.is_finite()) {
+        let added = above.iter().flat_map(|part| part.values.iter());
+        if !sum
+            .iter()
+            .chain(slopes.iter().flatten())
+            .chain(added)
+            .all(|value| value.is_finite())
+        {
             return None;
         }
         let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let mut jacobian = self.jacobian([&slopes[0], &slopes[1]], omega);
+        let all = |values: &[f64], which: usize, count: usize| {
+            let mut harmonics = self.harmonics_of(values, count);
+            for part in &above {
+                harmonics.add(part.phase, part.values[which]);
+            }
+            harmonics
+        };
+        let [stiffness, damping] = [0, 1].map(|index| all(&slopes[index], index + 1, 2 * self.harmonics));
+        let mut jacobian = self.jacobian(&stiffness, &damping, omega);
+        let vector = |values: &[f64], which: usize| self.in_order(&all(values, which, self.harmonics));
         if let Some(place) = self.frequency_place() {
-            jacobian.set_column(place, &self.coefficients(&slopes[3]));
+            jacobian.set_column(place, &vector(&slopes[3], 4));
         }
         Some(Linearised {
-            residual: self.coefficients(&sum),
+            residual: vector(&sum, 0),
             jacobian,
-            by_parameter: self.coefficients(&slopes[2]),
+            by_parameter: vector(&slopes[2], 3),
             scale: size(&inertia).max(size(&force)),
         })
     }
 
+    /// What the force and its derivatives have more above a jump than below it, as parts at phases of the motion: an integral by Gauss
+    /// and Legendre between the phases at which the velocity passes the jump, and these phases themselves, at which the derivatives by
+    /// the velocity and by what moves the jump are Dirac's.
+    fn above(&self, coefficients: &DVector<f64>, parameter: f64, omega: f64, motion: &[[f64; 3]]) -> Vec<Part> {
+        let driven = self.driven;
+        let Some(speed) = driven.jump_speed(parameter) else {
+            return vec![];
+        };
+        let at = |phase: f64| {
+            let [position, velocity] = self.at(coefficients, parameter, phase);
+            [position, velocity, phase, parameter]
+        };
+        let omega_slope = driven.frequency_slope(parameter);
+        let step = std::f64::consts::TAU / motion.len() as f64;
+        let is_above = |sample: usize| omega * motion[sample % motion.len()][1] >= speed;
+        let passes = (0..motion.len()).filter(|sample| is_above(*sample) != is_above(sample + 1));
+        let passed = |sample: usize| {
+            let [from, to] = [sample, sample + 1].map(|sample| step * sample as f64);
+            find_root(|phase| at(phase)[1] - speed, from, to).unwrap_or(from)
+        };
+        let mut phases: Vec<f64> = passes.map(passed).collect();
+        let mut parts: Vec<Part> = Vec::new();
+        for phase in &phases {
+            let here = at(*phase);
+            let [above, below] = [1.0, -1.0].map(|side| driven.force_on(&here, side));
+            let turn = omega * self.curvature(coefficients, *phase);
+            let by_velocity = (above - below) / turn.abs();
+            let by_frequency = by_velocity * here[1] / omega;
+            let by_parameter = omega_slope * by_frequency - by_velocity * driven.jump_speed_slope(parameter);
+            parts.push(Part {
+                phase: *phase,
+                values: [0.0, 0.0, by_velocity, by_parameter, by_frequency],
+            });
+        }
+        // Each span begins where it rises above the jump, and ends where it falls below.
+        match (phases.is_empty(), is_above(0)) {
+            (true, true) => phases = vec![0.0, std::f64::consts::TAU],
+            (false, true) => phases.rotate_right(1),
+            (_, false) => {}
+        }
+        for span in phases.chunks_exact(2) {
+            let (from, to) = (
+                span[0],
+                span[1] + if span[1] < span[0] { std::f64::consts::TAU } else { 0.0 },
+            );
+            let panels = ((to - from) / std::f64::consts::TAU * (self.harmonics + 1) as f64).ceil();
+            let width = (to - from) / panels;
+            for panel in 0..panels as usize {
+                let begin = from + width * panel as f64;
+                for (phase, weight) in nodes_and_weights(begin, begin + width) {
+                    let here = at(phase);
+                    let [above, below] = [1.0, -1.0].map(|side| driven.slopes_on(&here, side));
+                    let [by_position, by_velocity, by_parameter] =
+                        std::array::from_fn(|index| weight * (above[index] - below[index]));
+                    let by_frequency = by_velocity * here[1] / omega;
+                    let force = weight * (driven.force_on(&here, 1.0) - driven.force_on(&here, -1.0));
+                    parts.push(Part {
+                        phase,
+                        values: [
+                            force,
+                            by_position,
+                            by_velocity,
+                            by_parameter + omega_slope * by_frequency,
+                            by_frequency,
+                        ],
+                    });
+                }
+            }
+        }
+        parts
+    }
+
+    /// X'' by the phase.
+    fn curvature(&self, coefficients: &DVector<f64>, phase: f64) -> f64 {
+        let term = |harmonic: usize| {
+            let [a, b] = self.harmonic(coefficients, harmonic);
+            let k = harmonic as f64;
+            let (sine, cosine) = (k * phase).sin_cos();
+            -k * k * (a * cosine + b * sine)
+        };
+        (1..=self.harmonics).map(term).sum()
+    }
+
     /// dR/du from the derivatives of the force at the samples.
-    fn jacobian(&self, [by_position, by_velocity]: [&[f64]; 2], omega: f64) -> DMatrix<f64> {
-        let stiffness = self.harmonics_of(by_position, 2 * self.harmonics);
-        let damping = self.harmonics_of(by_velocity, 2 * self.harmonics);
+    fn jacobian(&self, stiffness: &Harmonics, damping: &Harmonics, omega: f64) -> DMatrix<f64> {
         // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these harmonics.
         let coupled = |s: &Harmonics, (k, k_sine): (isize, bool), (l, l_sine): (isize, bool)| {
             0.5 * match (k_sine, l_sine) {
@@ -269,7 +392,7 @@ impl<'a> Balance<'a> {
             // A cosine turns into minus a sine, a sine into a cosine.
             let turned = if l_sine { 1.0 } else { -1.0 } * omega * l as f64;
             let mut value =
-                coupled(&stiffness, (k, k_sine), (l, l_sine)) + turned * coupled(&damping, (k, k_sine), (l, !l_sine));
+                coupled(stiffness, (k, k_sine), (l, l_sine)) + turned * coupled(damping, (k, k_sine), (l, !l_sine));
             if k == 0 {
                 value *= 0.5;
             }

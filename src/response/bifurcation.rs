@@ -32,7 +32,7 @@ pub enum BifurcationKind {
     NeimarkSacker,
     /// A self-excited motion is born from rest.
     Hopf,
-    /// Motions of every amplitude, though nothing drives them.
+    /// Motions of every amplitude: what swings freely repeats itself with the others.
     Centre,
 }
 

@@ -165,14 +165,14 @@ impl Asked<'_> {
         is_centre
     }
 
-    /// Whether these are motions without drive at one value of the parameter.
+    /// Whether these are motions at one value of the parameter, which need neither drive nor damping.
     fn is_centre(&self, path: &Path) -> bool {
         /// Of the range.
         const NOTHING: f64 = 1e-9;
         let [low, high] = self.question.range;
         let first = path.nodes.first().map_or(low, |node| node.parameter);
         let moves = |node: &Node| (node.parameter - first).abs() > NOTHING * (high - low);
-        self.driven.self_excited && !path.nodes.iter().any(moves)
+        (self.driven.self_excited || self.driven.undamped) && !path.nodes.iter().any(moves)
     }
 }
 

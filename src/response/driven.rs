@@ -29,8 +29,10 @@ pub struct Driven {
     pub periods: usize,
     /// Whether nothing drives it: the frequency of a motion is then an unknown, for which `frequency` is a name.
     pub self_excited: bool,
-    /// f(x, x', theta; p).
+    /// f(x, x', theta; p) with the side of the jump that the velocity is on, where there is one.
     force: CompiledFunction,
+    /// The velocity at which the force jumps, and its derivative by p.
+    jump: Option<[CompiledFunction; 2]>,
     /// Its derivatives by x, x' and p.
     slopes: [CompiledFunction; 3],
     /// f(x, x', t; p), as it was given.
@@ -52,45 +54,84 @@ const CORNERS: [Function; 5] = [
     Function::Minimum,
 ];
 
-/// A term that jumps where the velocity, or something with it, changes its sign, such as dry friction: the variation of a motion jumps
-/// there as well.
-fn jump_of_velocity(oscillator: &Oscillator) -> Result<Option<Expr>, ResponseError> {
-    let velocity = oscillator.velocity();
-    let jumps = |part: &Expr| match part.node() {
+/// Whether a part of a force jumps where its argument, in which the velocity stands, changes its sign.
+fn jumps(part: &Expr, velocity: Symbol) -> bool {
+    match part.node() {
         Node::Function(Function::Sign | Function::Step, arguments) => {
             arguments.iter().any(|argument| argument.contains(velocity))
         }
         _ => false,
-    };
-    let on_side = |term: &Expr, side: i64| -> Result<Expr, ResponseError> {
-        let toward = |argument: &Expr| argument.substitute(velocity, &Expr::from(side));
+    }
+}
+
+/// Whether a term has a jump of its own size at the velocity zero alone, and none there: it is multiplied by a power of the velocity.
+fn is_continuous(term: &Expr, velocity: Symbol) -> Result<bool, ResponseError> {
+    let elsewhere = |part: &Expr| jumps(part, velocity) && part.children().any(|it| it.as_symbol() != Some(velocity));
+    if term.unique_nodes().any(elsewhere) {
+        return Ok(false);
+    }
+    let on_side = |side: i64| -> Result<Expr, ResponseError> {
         let chosen = term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
             (Node::Function(function @ (Function::Sign | Function::Step), _), [argument])
                 if argument.as_symbol() == Some(velocity) =>
             {
-                Expr::function(*function, vec![toward(argument)?])
+                Expr::function(*function, vec![argument.substitute(velocity, &Expr::from(side))?])
             }
             _ => part.with_children(parts),
         })?;
         Ok(chosen.substitute(velocity, &Expr::zero())?)
     };
+    Ok((&on_side(1)? - &on_side(-1)?).is_zero())
+}
+
+/// The velocity at which the argument of a jump is zero, and whether it grows with the velocity; nothing where that is no velocity of its
+/// own, the same at every place and time.
+fn speed_of(argument: &Expr, oscillator: &Oscillator) -> Result<Option<(Expr, bool)>, ResponseError> {
+    let velocity = oscillator.velocity();
+    let factor = argument.differentiate(velocity)?.expand()?;
+    let Some(number) = factor.as_number().filter(|number| !number.is_zero()) else {
+        return Ok(None);
+    };
+    let grows = number.is_positive();
+    let rest = argument.substitute(velocity, &Expr::zero())?;
+    let speed = Expr::divide(&-rest, &factor)?.expand()?;
+    let own = [oscillator.coordinate, Symbol::new("t")];
+    Ok((!own.iter().any(|name| speed.contains(*name))).then_some((speed, grows)))
+}
+
+/// The force with a name for the side of the velocity, 1 or -1, in place of what jumps with it, and the velocity at which it does; the
+/// force as it is where nothing jumps.
+fn with_side(oscillator: &Oscillator, side: Symbol) -> Result<(Expr, Option<Expr>), ResponseError> {
+    let velocity = oscillator.velocity();
+    let mut speed: Option<Expr> = None;
+    let mut replaced = Vec::new();
     for term in oscillator.force.expand()?.terms() {
-        if !term.unique_nodes().any(jumps) {
+        if !term.unique_nodes().any(|part| jumps(part, velocity)) || is_continuous(term, velocity)? {
+            replaced.push(term.clone());
             continue;
         }
-        // Another argument than the velocity itself is zero somewhere else.
-        let elsewhere =
-            |part: &&Expr| jumps(part) && part.children().any(|argument| argument.as_symbol() != Some(velocity));
-        if term.unique_nodes().any(|part| elsewhere(&part)) {
-            return Ok(Some(term.clone()));
-        }
-        // What is multiplied by a power of the velocity has no jump where the velocity is zero.
-        let difference = &on_side(term, 1)? - &on_side(term, -1)?;
-        if !difference.is_zero() {
-            return Ok(Some(term.clone()));
-        }
+        let refused = || ResponseError::Jump(term.to_string());
+        replaced.push(term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
+            (Node::Function(function @ (Function::Sign | Function::Step), _), [argument])
+                if argument.contains(velocity) =>
+            {
+                let (own, grows) = speed_of(argument, oscillator)?.ok_or_else(refused)?;
+                if speed.get_or_insert_with(|| own.clone()) != &own {
+                    return Err(refused());
+                }
+                let sign = if grows { Expr::from(side) } else { -Expr::from(side) };
+                match function {
+                    Function::Sign => Ok(sign),
+                    _ => Ok(Expr::divide(&(Expr::from(1) + sign), &Expr::from(2))?),
+                }
+            }
+            _ => Ok(part.with_children(parts)?),
+        })?);
     }
-    Ok(None)
+    Ok(match speed {
+        Some(speed) => (Expr::sum(replaced), Some(speed)),
+        None => (oscillator.force.clone(), None),
+    })
 }
 
 impl Driven {
@@ -99,16 +140,17 @@ impl Driven {
     /// # Errors
     /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative that cannot be written.
     pub fn new(oscillator: &Oscillator, parameter: Symbol, periods: usize) -> Result<Self, ResponseError> {
-        if let Some(term) = jump_of_velocity(oscillator)? {
-            return Err(ResponseError::Jump(term.to_string()));
-        }
         if !oscillator.force.contains(Symbol::new("t")) {
             let names: Vec<Symbol> = oscillator.names().into_iter().chain([parameter]).collect();
-            return Ok(Self {
+            let found = Self {
                 frequency: Expr::from(fresh("omega", &names)),
                 self_excited: true,
                 ..Self::of_frequency(oscillator, Expr::from(1), parameter, 1)?
-            });
+            };
+            return match found.jump {
+                Some(_) => Err(ResponseError::FreeJump),
+                None => Ok(found),
+            };
         }
         let frequency = drive_frequency(oscillator)?;
         Self::of_frequency(oscillator, frequency, parameter, periods)
@@ -125,10 +167,12 @@ impl Driven {
         let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
         let names: Vec<Symbol> = oscillator.names().into_iter().chain([velocity, parameter]).collect();
         let phase = fresh("theta", &names);
+        let side = fresh("side", &names);
+        let (force, speed) = with_side(oscillator, side)?;
         let base = Expr::divide(&frequency, &Expr::from(i64::try_from(periods).unwrap_or(1)))?;
         let moment = Expr::divide(&Expr::from(phase), &base)?;
-        let force = in_phase(&oscillator.force, time, &moment)?;
-        let arguments = [position, velocity, phase, parameter];
+        let force = in_phase(&force, time, &moment)?;
+        let arguments = [position, velocity, phase, parameter, side];
         let compiled = |expression: &Expr| CompiledFunction::new(expression, &arguments).map_err(ResponseError::from);
         let slope = |by: Symbol| compiled(&force.differentiate(by)?);
         let undamped = oscillator
@@ -137,6 +181,13 @@ impl Driven {
         Ok(Self {
             slopes: [slope(position)?, slope(velocity)?, slope(parameter)?],
             force: compiled(&force)?,
+            jump: match speed {
+                Some(speed) => Some([
+                    CompiledFunction::new(&speed, &[parameter])?,
+                    CompiledFunction::new(&speed.differentiate(parameter)?, &[parameter])?,
+                ]),
+                None => None,
+            },
             in_time: CompiledFunction::new(&oscillator.force, &[position, velocity, time, parameter])?,
             base: [
                 CompiledFunction::new(&base, &[parameter])?,
@@ -161,14 +212,44 @@ impl Driven {
         self.base[1].call(&[parameter])
     }
 
+    /// The velocity at which the force jumps, if it does, as that of dry friction at zero.
+    pub fn jump_speed(&self, parameter: f64) -> Option<f64> {
+        self.jump.as_ref().map(|jump| jump[0].call(&[parameter]))
+    }
+
+    /// The derivative of that velocity by the parameter.
+    pub fn jump_speed_slope(&self, parameter: f64) -> f64 {
+        self.jump.as_ref().map_or(0.0, |jump| jump[1].call(&[parameter]))
+    }
+
     /// f at a position, a velocity and a phase of the motion.
     pub fn force(&self, at: &[f64; 4]) -> f64 {
-        self.force.call(at)
+        self.force_on(at, self.side(at))
     }
 
     /// Its derivatives by position, velocity and parameter, the phase being fixed.
     pub fn slopes(&self, at: &[f64; 4]) -> [f64; 3] {
-        self.slopes.each_ref().map(|slope| slope.call(at))
+        self.slopes_on(at, self.side(at))
+    }
+
+    /// f as it is on this side of its jump, 1 above it and -1 below.
+    pub fn force_on(&self, [x, v, phase, p]: &[f64; 4], side: f64) -> f64 {
+        self.force.call(&[*x, *v, *phase, *p, side])
+    }
+
+    /// Its derivatives on this side.
+    pub fn slopes_on(&self, [x, v, phase, p]: &[f64; 4], side: f64) -> [f64; 3] {
+        self.slopes
+            .each_ref()
+            .map(|slope| slope.call(&[*x, *v, *phase, *p, side]))
+    }
+
+    /// The side of its jump that a velocity is on; zero at the jump itself.
+    fn side(&self, at: &[f64; 4]) -> f64 {
+        match self.jump_speed(at[3]) {
+            Some(speed) if at[1] != speed => (at[1] - speed).signum(),
+            _ => 0.0,
+        }
     }
 
     /// f as it was given, in time.

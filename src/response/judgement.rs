@@ -14,6 +14,14 @@ use super::{Asked, Branch, MOST_EVALUATIONS, Point, Simulated};
 pub(super) type Judged = (Option<Floquet>, Option<TrueMotion>);
 
 impl Asked<'_> {
+    /// The same, or nothing once somebody has asked for an end.
+    pub(super) fn judged_in_time(&self, balance: &Balance, node: &Node) -> Judged {
+        match self.question.interrupt.is_requested() {
+            true => (None, None),
+            false => self.judged(balance, node),
+        }
+    }
+
     /// The multipliers at a point of a branch, and the true motion beside it.
     pub(super) fn judged(&self, balance: &Balance, node: &Node) -> Judged {
         /// Parts of its size by which the true motion may differ: beyond it is another one.
@@ -29,6 +37,10 @@ impl Asked<'_> {
         });
         let floquet = truth.map(|truth| truth.floquet);
         let along = || {
+            // Across a jump only the true motion tells.
+            if self.driven.jump_speed(node.parameter).is_some() {
+                return None;
+            }
             let frequency = self.driven.frequency_at(node.parameter);
             multipliers_along(&self.driven, node.parameter, frequency, |phase| {
                 balance.at(&node.coefficients, node.parameter, phase)

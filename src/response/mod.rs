@@ -14,6 +14,7 @@
 //! - [`balance`]: its equations for Fourier coefficients.
 //! - [`continuation`]: the branches.
 //! - [`stability`]: the true motion by shooting, its multipliers; simulations that settle.
+//! - [`jump`]: motions across dry friction, sticking included.
 //! - [`bifurcation`]: where a branch changes.
 //! - [`backbone`]: the free motion without damping.
 //! - [`slow`]: the same motions by slow equations of amplitude and phase.
@@ -33,6 +34,7 @@ pub mod cycle;
 pub mod driven;
 pub mod hopf;
 mod judgement;
+pub mod jump;
 mod seeds;
 mod self_excited;
 pub mod slow;
@@ -103,11 +105,14 @@ pub enum ResponseError {
     /// Time enters in a way that does not repeat.
     #[error("the term `{0}` is not periodic in time")]
     NotPeriodic(String),
-    /// A force that jumps with the velocity.
-    #[error(
-        "the term `{0}` jumps with the velocity, and the multipliers of motions across such a jump are not computed"
-    )]
+    /// A force that jumps with the velocity, but at no velocity of its own.
+    #[error("the term `{0}` jumps with the velocity, and not at one velocity that is the same at every place and time")]
     Jump(String),
+    /// A force that jumps with the velocity, and no drive.
+    #[error(
+        "the force jumps with the velocity, and there is no drive: limit cycles across such a jump are not followed"
+    )]
+    FreeJump,
     /// Two frequencies without a common period for every value of the parameter.
     #[error("the frequencies `{}` and `{}` are no whole multiples of one frequency", .0[0], .0[1])]
     TwoFrequencies([String; 2]),
@@ -152,6 +157,14 @@ pub enum ResponseError {
         given: usize,
         /// The most.
         most: usize,
+    },
+    /// Motions to begin with, and no branch of them.
+    #[error("motions were found, but none of them could be followed for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
+    NotFollowed {
+        /// The parameter.
+        parameter: Symbol,
+        /// Its range.
+        range: [f64; 2],
     },
     /// No periodic motion was found to begin with.
     #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), if *undamped { ": without damping the amplitude is unbounded at resonance" } else { "" })]
@@ -287,6 +300,8 @@ pub struct Response {
     pub self_excited: bool,
     /// Whether nothing damps the motion.
     pub undamped: bool,
+    /// Whether the force jumps with the velocity, as dry friction does.
+    pub jumps: bool,
     /// How many harmonics were kept.
     pub harmonics: usize,
     /// The branches, in the order in which they were found.
@@ -352,8 +367,19 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     let (seeds, elsewhere) = asked.seeds(first)?;
     let mut harmonics = first;
     let mut before = (f64::INFINITY, usize::MAX);
+    let mut fewer: Option<Response> = None;
     loop {
-        let mut response = asked.attempt(harmonics, &seeds)?;
+        let attempt = asked.attempt(harmonics, &seeds);
+        // What was stopped on the way to more harmonics has the answer by fewer of them.
+        let mut response = match (attempt, fewer.take()) {
+            (Ok(response), None) => response,
+            (Ok(response), Some(_)) if response.complete => response,
+            (_, Some(response)) => Response {
+                complete: false,
+                ..response
+            },
+            (Err(error), None) => return Err(error),
+        };
         let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
         let judged = 100 * response.unjudged <= points;
         let good = judged && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
@@ -371,6 +397,7 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
             };
         }
         harmonics *= 2;
+        fewer = Some(response);
     }
 }
 
@@ -538,7 +565,13 @@ impl<'a> Asked<'a> {
             })
             .collect();
         if branches.is_empty() {
-            return Err(self.nothing());
+            return Err(match question.interrupt.is_requested() || self.driven.undamped {
+                true => self.nothing(),
+                false => ResponseError::NotFollowed {
+                    parameter: question.parameter,
+                    range: question.range,
+                },
+            });
         }
         let simulated = self.simulated(&branches);
         let points = || branches.iter().flat_map(|branch| &branch.points);
@@ -549,6 +582,7 @@ impl<'a> Asked<'a> {
             frequency: self.driven.frequency.clone(),
             self_excited: self.driven.self_excited,
             undamped: self.driven.undamped,
+            jumps: self.driven.jump_speed(question.range[0]).is_some(),
             harmonics: balance.harmonics,
             backbone: backbones(
                 &self.oscillator,
@@ -631,11 +665,18 @@ impl<'a> Asked<'a> {
         let mut changes = Vec::new();
         while let Some(path) = paths.get(all_judged.len()).cloned() {
             let branch = all_judged.len();
-            let judged: Vec<Judged> = path.nodes.iter().map(|node| self.judged(balance, node)).collect();
+            let judged: Vec<Judged> = path
+                .nodes
+                .iter()
+                .map(|node| self.judged_in_time(balance, node))
+                .collect();
             for (pair, known) in path.nodes.windows(2).zip(judged.windows(2)) {
                 let ([from, to], [before, after]) = (pair, known) else {
                     continue;
                 };
+                if self.question.interrupt.is_requested() {
+                    break;
+                }
                 let found = bifurcation::between(balance, &walk, [(from, before.0), (to, after.0)], &floquet);
                 for (mut kind, node) in found {
                     let crossed = kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES;

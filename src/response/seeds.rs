@@ -30,9 +30,13 @@ impl Asked<'_> {
         }
         let [low, high] = self.question.range;
         let balance = Balance::new(&self.driven, harmonics);
-        let values: Vec<f64> = (0..VALUES)
-            .map(|index| low + (high - low) * f64::from(index) / f64::from(VALUES - 1))
-            .collect();
+        /// Without damping the ends and the middle are where somebody would put a resonance, at which there is no motion.
+        const OFF: f64 = 0.382;
+        let part = |index: u32| match self.driven.undamped {
+            true => (f64::from(index) + OFF) / f64::from(VALUES),
+            false => f64::from(index) / f64::from(VALUES - 1),
+        };
+        let values: Vec<f64> = (0..VALUES).map(|index| low + (high - low) * part(index)).collect();
         let mut seeds = Vec::new();
         let mut elsewhere = Vec::new();
         let mut budget = MOST_EVALUATIONS;

@@ -13,6 +13,7 @@ use nalgebra::{Matrix2, Vector2};
 use num_complex::Complex;
 
 use super::driven::Driven;
+use super::jump::{Course, follow};
 use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
@@ -81,28 +82,16 @@ pub(super) fn options(size: f64, tolerance: f64) -> Options {
 }
 
 /// The motion over a period with its variations; nothing where it cannot be followed.
-fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<Trajectory<Point<[f64; 6]>>> {
+fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<Course> {
     let omega = driven.frequency_at(parameter);
-    let period = std::f64::consts::TAU / omega;
-    let rates = |t: f64, y: &[f64; 6], rates: &mut [f64; 6]| {
-        let at = [y[0], y[1], omega * t, parameter];
-        let [by_position, by_velocity, _] = driven.slopes(&at);
-        *rates = [
-            y[1],
-            -driven.force(&at),
-            y[3],
-            -by_position * y[2] - by_velocity * y[3],
-            y[5],
-            -by_position * y[4] - by_velocity * y[5],
-        ];
-    };
-    let begin = Point {
-        t: 0.0,
-        y: [start[0], start[1], 1.0, 0.0, 0.0, 1.0],
-    };
     let size = start[0].abs().max(start[1].abs() / omega);
-    let path = integrate_first_order(rates, begin, period, &[], &options(size, TOLERANCE)).ok()?;
-    path.is_complete().then_some(path)
+    follow(
+        driven,
+        start,
+        parameter,
+        std::f64::consts::TAU / omega,
+        &options(size, TOLERANCE),
+    )
 }
 
 fn monodromy(end: &[f64; 6]) -> Floquet {
@@ -123,7 +112,7 @@ pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f
     let mut before = f64::INFINITY;
     for _ in 0..MOST {
         let path = with_variations(driven, start, parameter)?;
-        let end = path.end().y;
+        let end = path.end;
         let floquet = monodromy(&end);
         let missed = Vector2::new(end[0] - start[0], end[1] - start[1]);
         let step = (Matrix2::identity() - floquet.monodromy).lu().solve(&missed)?;
@@ -179,12 +168,8 @@ pub fn multipliers_along(
     })
 }
 
-fn described(path: &Trajectory<Point<[f64; 6]>>, start: [f64; 2], (frequency, floquet): (f64, Floquet)) -> TrueMotion {
-    let positions: Vec<f64> = path
-        .samples(SAMPLES + 1)
-        .take(SAMPLES)
-        .map(|point| point.y[0])
-        .collect();
+fn described(path: &Course, start: [f64; 2], (frequency, floquet): (f64, Floquet)) -> TrueMotion {
+    let positions = path.positions(SAMPLES);
     TrueMotion {
         start,
         frequency,
@@ -236,6 +221,36 @@ pub struct Settled {
     pub positions: Vec<f64>,
 }
 
+/// A period of a simulation: in one, or by legs between the jumps of the force.
+enum Period {
+    One(Trajectory<Point<[f64; 2]>>),
+    Legs(Course),
+}
+
+impl Period {
+    /// Position and velocity at the end; nothing where it was not reached.
+    fn end(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::One(path) => path.is_complete().then(|| path.end().y),
+            Self::Legs(course) => Some([course.end[0], course.end[1]]),
+        }
+    }
+
+    fn positions(&self, count: usize) -> Vec<f64> {
+        match self {
+            Self::One(path) => path.samples(count + 1).take(count).map(|point| point.y[0]).collect(),
+            Self::Legs(course) => course.positions(count),
+        }
+    }
+
+    fn evaluations(&self) -> usize {
+        match self {
+            Self::One(path) => path.evaluations(),
+            Self::Legs(course) => course.evaluations(),
+        }
+    }
+}
+
 /// Follows the equation as it was given from a start, period by period, until it repeats itself to `closely` (of its size), or
 /// `most` periods are over; the tolerance of a step is a thousandth of that. Nothing where it cannot be followed: it escapes, or there
 /// are no evaluations of the force left in the `budget` that several simulations share.
@@ -261,16 +276,21 @@ pub fn settle(
     for _ in 0..most {
         let begin = states.last().copied()?;
         let size = begin[0].abs().max(begin[1].abs() / omega);
-        let path = integrate_first_order(rates, Point { t: 0.0, y: begin }, period, &[], &settings(size)).ok()?;
-        let end = path.end().y;
+        let path = match driven.jump_speed(parameter) {
+            Some(_) => Period::Legs(follow(driven, begin, parameter, period, &settings(size))?),
+            None => {
+                let begin = Point { t: 0.0, y: begin };
+                Period::One(integrate_first_order(rates, begin, period, &[], &settings(size)).ok()?)
+            }
+        };
+        let end = path.end()?;
         *budget = budget.saturating_sub(path.evaluations());
-        if !path.is_complete() || size > BOUND || *budget == 0 {
+        if size > BOUND || *budget == 0 {
             return None;
         }
         let moved = (end[0] - begin[0]).hypot((end[1] - begin[1]) / omega);
-        let extent = path
-            .samples(33)
-            .fold(0.0_f64, |most, point| most.max((point.y[0] - begin[0]).abs()));
+        let away = path.positions(32).into_iter().chain([end[0]]);
+        let extent = away.fold(0.0_f64, |most, position| most.max((position - begin[0]).abs()));
         states.push(end);
         last = Some(path);
         // A motion that stands still is one that repeats itself.
@@ -283,12 +303,7 @@ pub fn settle(
             break;
         }
     }
-    let path = last?;
-    let positions: Vec<f64> = path
-        .samples(SAMPLES + 1)
-        .take(SAMPLES)
-        .map(|point| point.y[0])
-        .collect();
+    let positions = last?.positions(SAMPLES);
     let state = states.last().copied()?;
     let extent = half_of_peak_to_peak(&positions).max(1e-12);
     let repeats = |count: &usize| {

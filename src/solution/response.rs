@@ -72,7 +72,8 @@ pub struct SteadyState {
     pub amplitude: f64,
     /// The phase of the slow equations, from -pi to pi.
     pub phase: f64,
-    /// Real and imaginary part of the eigenvalues of the slow equations about it, per unit of time.
+    /// Real and imaginary part of the eigenvalues of the slow equations about it, per unit of time: the larger first, of a pair that
+    /// with the positive imaginary part.
     pub eigenvalues: [(f64, f64); 2],
 }
 
@@ -252,9 +253,17 @@ impl<'a> Field<'a> {
         Matrix2::new(a, b, c, d)
     }
 
+    /// The larger first; of a pair that with the positive imaginary part.
     fn eigenvalues(&self, place: [f64; 2]) -> [(f64, f64); 2] {
         let found = self.jacobian(place).complex_eigenvalues();
-        [(found[0].re, found[0].im), (found[1].re, found[1].im)]
+        let mut both = [(found[0].re, found[0].im), (found[1].re, found[1].im)];
+        let size = |(real, imaginary): (f64, f64)| real.hypot(imaginary);
+        let angle = |(real, imaginary): (f64, f64)| imaginary.atan2(real).rem_euclid(std::f64::consts::TAU);
+        both.sort_by(|one, other| {
+            let sizes = size(*other).total_cmp(&size(*one));
+            sizes.then(angle(*one).total_cmp(&angle(*other)))
+        });
+        both
     }
 
     /// Where on the circle of this radius both rates vanish: they are waves `P + P_c cos(psi) + P_s sin(psi)` of the phase, so

@@ -7,6 +7,7 @@ mod equilibria;
 mod exact_numbers;
 mod expr_properties;
 mod friction;
+mod friction_response;
 mod fuzz;
 mod hill;
 mod homotopy;

@@ -423,6 +423,15 @@ fn without_damping_a_linear_resonance_is_unbounded() {
         let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
         assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
     }
+    // With its resonance in the middle, and where twice the frequency is that of the free motion.
+    for range in [[0.5, 1.5], [0.4, 1.6]] {
+        let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", range, "F = 1/10");
+        assert_eq!(found.branches.len(), 2, "{range:?}");
+        for point in found.branches.iter().flat_map(|branch| &branch.points) {
+            let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
+            assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
+        }
+    }
     let refused = respond(&question("x'' + x - F*cos(Omega*t) = 0", "F", [0.1, 1.0], "Omega = 1"));
     let message = refused.expect_err("no motion").to_string();
     assert!(message.contains("unbounded at resonance"), "{message}");
@@ -432,6 +441,13 @@ fn without_damping_a_linear_resonance_is_unbounded() {
 fn what_cannot_be_answered_is_refused_by_name() {
     for (equation, parameter, range, values, words) in [
         ("x'' + c*x' + x = 0", "c", [0.1, 1.0], "", "no drive"),
+        (
+            "x'' + c*sgn(x') - x' + x = 0",
+            "c",
+            [0.1, 1.0],
+            "",
+            "no drive: limit cycles across",
+        ),
         (
             "x'' + c*x' + x - exp(-t) = 0",
             "c",
@@ -545,14 +561,19 @@ fn slow_equations_come_nearer_with_their_order() {
     }
 }
 
-/// The variation of a motion jumps with its velocity at dry friction: that is refused by name, and what has no jump is not.
+/// What jumps at a velocity that is not one and the same is refused by name, and what has no jump is not.
 #[test]
-fn forces_that_jump_with_the_velocity_are_refused() {
+fn forces_that_jump_at_several_velocities_are_refused() {
     let ask = |force: &str| {
         let equation = format!("x'' + x'/10 + x + {force} = F*cos(Omega*t)");
         respond(&question(&equation, "Omega", [1.4, 1.5], "F = 1/5"))
     };
-    for force in ["sgn(x')/20", "H(x')*x", "sgn(x' - 1)/20"] {
+    for force in [
+        "sgn(x' + x)/20",
+        "H(x'^2 - 1)*x",
+        "(sgn(x') + sgn(x' - 1))/20",
+        "sgn(x' - cos(Omega*t))",
+    ] {
         let error = ask(force).expect_err(force).to_string();
         assert!(error.contains("jumps with the velocity"), "{force}: {error}");
     }

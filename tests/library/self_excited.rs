@@ -164,7 +164,11 @@ fn without_damping_there_is_a_centre_and_no_branch_of_it() {
 /// The cycle swells until it touches the saddle at x = 1: its period has no bound, and what is not judged is not shown.
 #[test]
 fn a_branch_ends_where_its_period_grows_without_bound() {
-    let found = response("x'' - mu*x' + x*x' + x - x^2 = 0", "mu", [-0.5, 0.5]);
+    let found = respond(&Question {
+        harmonics: Some(64),
+        ..question("x'' - mu*x' + x*x' + x - x^2 = 0", "mu", [-0.5, 0.5], "")
+    })
+    .expect("a response");
     let branch = &found.branches[0];
     assert!(branch.ends.contains(&BranchEnd::Slow) && found.verdict == Verdict::Pass);
     let slowest = points(&found).map(|point| point.frequency).fold(1.0, f64::min);

@@ -49,6 +49,9 @@ pub struct Arguments {
     /// Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the one nearest to the values, or 1:1
     #[arg(long, value_name = "P:Q", value_parser = ratio)]
     resonance: Option<(u32, u32)>,
+    /// The frequency without the motion, of lindstedt-poincare: orders up to 2000, in less time
+    #[arg(long)]
+    omega_only: bool,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -303,6 +306,12 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
     if arguments.resonance.is_some() && !entry.takes(Choice::Resonance) {
         return without("--resonance", &that_take(Choice::Resonance));
     }
+    if arguments.omega_only && arguments.steps {
+        return usage("--steps shows the motion order by order, which --omega-only leaves out".to_owned());
+    }
+    if arguments.omega_only && !entry.takes(Choice::FrequencyAlone) {
+        return without("--omega-only", &that_take(Choice::FrequencyAlone));
+    }
     let (order, pade) = match arguments.order.or(formula.order.map(Order::from)) {
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
             return without("--order, or `order` in the file,", "the methods that approximate");
@@ -342,6 +351,7 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
         hbar,
         cycle: arguments.cycle,
         resonance: arguments.resonance,
+        frequency_alone: arguments.omega_only,
     })
 }
 

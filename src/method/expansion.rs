@@ -55,7 +55,8 @@ impl ExactSeries {
 }
 
 /// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
-/// term of the result, `inverse_slope` is as for [`expand_from_root`], and no name in `taken` is used for anything new.
+/// term of the result, `inverse_slope` is as for [`expand_from_root`], and no name in `taken` is used for anything new. Of the
+/// frequency alone, motion and steps are empty.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -65,7 +66,7 @@ pub fn expand_exactly(
     scheme: &Scheme,
     delta: Option<Symbol>,
     inverse_slope: Option<&Polynomial>,
-    taken: &[Symbol],
+    (taken, extent): (&[Symbol], Extent),
 ) -> Result<ExactSeries, SecularError> {
     let scales = scales(terms);
     let reduced: Vec<Term> = terms
@@ -92,7 +93,7 @@ pub fn expand_exactly(
             let constant =
                 |number: Rational| FourierSeries::constant(Integers, number.numer().clone()).over(number.denom());
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
-            let expansion = expand_numbers(&force, order as usize, scheme, Extent::Motion)?;
+            let expansion = expand_numbers(&force, order as usize, scheme, extent)?;
             let polynomial = |numerator: &Integer, denominator: &Integer| {
                 Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
             };
@@ -101,7 +102,11 @@ pub fn expand_exactly(
         _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
             let inverse_slope = inverse_slope.map(|inverse| over_integers(&without(inverse, &scales)));
-            let expansion = expand_from_root(&Polynomials(Integers), &force, order as usize, scheme, inverse_slope)?;
+            let ring = Polynomials(Integers);
+            let mut expansion = expand_from_root(&ring, &force, order as usize, scheme, inverse_slope)?;
+            if extent == Extent::Frequency {
+                expansion.forget_motion();
+            }
             let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
                 numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
             };

@@ -27,7 +27,7 @@ use num_traits::{One, Zero};
 use super::expansion::expand_exactly;
 use super::inertia::VariableMass;
 use super::one_term::conservative_force;
-use super::secular::{Amplitude, Detuning, Scheme};
+use super::secular::{Amplitude, Detuning, Extent, Scheme};
 use super::{Options, Refusal, Unsuited};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
@@ -77,7 +77,14 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         amplitude: Amplitude::Free,
         detuning: Detuning::Displacement,
     };
-    let series = expand_exactly(&terms, order, &scheme, None, None, &oscillator.names())?;
+    let series = expand_exactly(
+        &terms,
+        order,
+        &scheme,
+        None,
+        None,
+        (&oscillator.names(), Extent::Motion),
+    )?;
 
     let explicit = explicit_terms(&series.frequency_squared, &force.linear, omega);
     let relation = relation(&explicit, omega);

@@ -32,7 +32,7 @@ use num_traits::{One, Zero};
 use super::expansion::{ExactSeries, expand_exactly};
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
-use super::secular::{Amplitude, Detuning, Scheme, SecularError, bounded};
+use super::secular::{Amplitude, Detuning, Extent, Scheme, SecularError, bounded};
 use super::{Options, Refusal, Refuser, Unsuited, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
@@ -78,7 +78,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let of_cycle = cycle.and_then(|cycle| cycle.definition.clone());
     definitions.extend(of_cycle.clone());
     definitions.extend(perturbation.bookkeeping.clone());
-    let series = expanded(&perturbation, excited.as_ref(), &units, &parts, convention, &taken)?;
+    let extent = match options.frequency_alone {
+        true => Extent::Frequency,
+        false => Extent::Motion,
+    };
+    let names = (taken.as_slice(), extent);
+    let series = expanded(&perturbation, excited.as_ref(), &units, &parts, convention, names)?;
 
     let in_numbers = |polynomial: Polynomial| match (&root, force.linear.as_number()) {
         (Some(root), Some(square)) => with_square(&polynomial, root.symbol, &square),
@@ -100,6 +105,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         validity.push(Note::Stability(own.clone()));
         validity.extend(excited.cycle().remark.clone());
     }
+    // Its amplitude belongs to the motion.
+    let limit_cycle = limit_cycle.filter(|_| extent == Extent::Motion);
     validity.extend(root.iter().cloned().chain(of_cycle).map(Note::Positive));
     let squared = series
         .frequency_squared
@@ -265,7 +272,7 @@ fn expanded(
     units: &Units,
     parts: &Parts,
     convention: AmplitudeConvention,
-    taken: &[Symbol],
+    names: (&[Symbol], Extent),
 ) -> Result<ExactSeries, Refusal> {
     let cycle = excited.map(SelfExcitation::cycle);
     let scheme = Scheme {
@@ -286,7 +293,7 @@ fn expanded(
         .collect();
     let delta = perturbation.delta(convention);
     let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
-    let series = expand_exactly(&terms, perturbation.order, &scheme, Some(delta), inverse_slope, taken);
+    let series = expand_exactly(&terms, perturbation.order, &scheme, Some(delta), inverse_slope, names);
     let mut series = series.map_err(|error| match error {
         SecularError::Growth { .. } | SecularError::Degenerate { .. } if !parts.damping.is_zero() => {
             damping_or_excitation(parts)
@@ -304,7 +311,9 @@ fn expanded(
         series.change_coefficients(&unmarked);
         if let Some(start) = series.steps.first_mut() {
             let marked = is_parameter.then_some(delta);
-            let condition = excited.equation.condition(excited.cycle(), fresh("a0", taken), marked);
+            let condition = excited
+                .equation
+                .condition(excited.cycle(), fresh("a0", names.0), marked);
             start.amplitude = Some(condition);
         }
     }

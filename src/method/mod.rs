@@ -66,6 +66,9 @@ use crate::symbol::{Symbol, fresh};
 /// The highest order any method accepts.
 pub const HIGHEST_ORDER: u32 = 400;
 
+/// The highest order of the [frequency alone](Options::frequency_alone), whose coefficients are fewer.
+pub const HIGHEST_ORDER_OF_FREQUENCY: u32 = 2000;
+
 /// What a user may choose; `None` leaves the choice to the method.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
@@ -88,6 +91,8 @@ pub struct Options {
     /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in numbers, or the primary one,
     /// 2:1 where the drive is in a coefficient.
     pub resonance: Option<(u32, u32)>,
+    /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less time.
+    pub frequency_alone: bool,
 }
 
 /// Why a method does not answer, and what to do instead.
@@ -165,10 +170,12 @@ pub enum Refusal {
         reason: &'static str,
     },
     /// The order asked for is too high.
-    #[error("order {asked} is above the limit of {HIGHEST_ORDER}")]
+    #[error("order {asked} is above the limit of {limit}")]
     Order {
         /// The order asked for.
         asked: u32,
+        /// The highest order of what was asked for.
+        limit: u32,
     },
     /// A step of algebra failed.
     #[error("{0}")]
@@ -475,6 +482,9 @@ impl Refusal {
                     .choose(Setting::Values)
                     .then("`")
             }
+            Self::Order { limit, .. } if *limit == HIGHEST_ORDER => {
+                Advice::words("try a lower order, or `--omega-only`, whose limit is higher")
+            }
             Self::TooLong { .. } | Self::Order { .. } | Self::Secular(_) => Advice::words("try a lower order"),
             Self::LimitCycle { .. } | Self::Expression(_) => return None,
         })
@@ -527,8 +537,12 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
 }
 
 fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    if let Some(asked) = options.order.filter(|&order| order > HIGHEST_ORDER) {
-        return Err(Refusal::Order { asked });
+    let limit = match options.frequency_alone {
+        true => HIGHEST_ORDER_OF_FREQUENCY,
+        false => HIGHEST_ORDER,
+    };
+    if let Some(asked) = options.order.filter(|&order| order > limit) {
+        return Err(Refusal::Order { asked, limit });
     }
     // A drive has a method of its own.
     let driven = Some(default_method(oscillator)).filter(|method| *method == Method::MultipleScales);
@@ -688,6 +702,7 @@ fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), 
         (Choice::Hbar, options.hbar.is_some()),
         (Choice::Cycle, options.cycle.is_some()),
         (Choice::Resonance, options.resonance.is_some()),
+        (Choice::FrequencyAlone, options.frequency_alone),
     ];
     match given.iter().find(|(choice, given)| *given && !entry.takes(*choice)) {
         Some(&(choice, _)) => Err(Unsuited::NoSuchChoice { choice }.to(entry.method)),

@@ -77,6 +77,8 @@ pub enum Choice {
     Cycle,
     /// A resonance of a driven motion.
     Resonance,
+    /// The frequency without the motion.
+    FrequencyAlone,
 }
 
 impl Choice {
@@ -89,6 +91,7 @@ impl Choice {
             Self::Hbar => "convergence-control parameter",
             Self::Cycle => "choice among limit cycles",
             Self::Resonance => "choice among resonances",
+            Self::FrequencyAlone => "frequency without the motion",
         }
     }
 }
@@ -109,7 +112,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
     Entry {
         method: Method::LindstedtPoincare,
         solve: lindstedt_poincare::solve,
-        takes: &[Choice::Order, Choice::Cycle],
+        takes: &[Choice::Order, Choice::Cycle, Choice::FrequencyAlone],
         sees: Sees::Derivatives,
         rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
         signed: true,

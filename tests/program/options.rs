@@ -387,3 +387,37 @@ fn a_number_of_an_impact_wins_over_the_file() {
         assert_eq!(parameters[key].as_f64(), Some(value), "{key}");
     }
 }
+
+#[test]
+fn the_frequency_is_the_same_with_and_without_the_motion() {
+    for (equation, order) in [
+        ("x'' + x + eps*x^3 = 0", "24"),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", "24"),
+        ("x'' - mu*x'*(1 - x'^2/3) + x = 0", "14"),
+        ("x'' + sin(x) = 0", "30"),
+        ("x'' + a2*x^2 + a3*x^3 + x = 0", "6"),
+    ] {
+        let whole = law(&[equation, "--order", order]);
+        assert_eq!(law(&[equation, "--order", order, "--omega-only"]), whole, "{equation}");
+        let motion = json(&["derive", equation, "--order", order, "--omega-only"]);
+        assert_eq!(
+            motion["displacement"]["cosine"].as_array().map_or(0, Vec::len),
+            0,
+            "{motion}"
+        );
+    }
+}
+
+#[test]
+fn the_frequency_alone_has_a_higher_limit() {
+    let refused = run(&["derive", "duffing", "--order", "401"]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        !refused.status.success() && message.contains("--omega-only"),
+        "{message}"
+    );
+    assert!(law(&["duffing", "--order", "401", "--omega-only"]).contains("eps^401*A^802"));
+    let refused = run(&["derive", "duffing", "--order", "2001", "--omega-only"]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(!refused.status.success() && message.contains("2000"), "{message}");
+}

@@ -244,14 +244,21 @@ pub fn expand_numbers(
         None => expand(&Integers, &compressed, orders, scheme)?,
     };
     if extent == Extent::Frequency {
-        expansion.displacement.clear();
-        expansion.removed.clear();
-        expansion.amplitudes.clear();
+        expansion.forget_motion();
     }
     Ok(match step {
         1 => expansion,
         _ => expansion.spread(step, highest),
     })
+}
+
+impl<R: Ring> Expansion<R> {
+    /// Leaves the frequency alone.
+    pub fn forget_motion(&mut self) {
+        self.displacement.clear();
+        self.removed.clear();
+        self.amplitudes.clear();
+    }
 }
 
 impl Expansion<Integers> {

@@ -12,6 +12,7 @@
 //!
 //! Memory: the residues of all coefficients, 8 bytes for each 50 binary digits of the result.
 
+use num_integer::Integer as _;
 use num_traits::{One, Zero};
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
@@ -46,6 +47,9 @@ pub fn expand(
     by_widest(Expand(force, highest, *scheme, extent))
 }
 
+/// The order to which long expansions are first derived to see how their denominators grow.
+const GUESSED: usize = 32;
+
 struct Expand<'a>(&'a [ForceTerm<Integers>], usize, Scheme, Extent);
 
 impl Work for Expand<'_> {
@@ -65,7 +69,7 @@ impl Work for Expand<'_> {
                 }
             })
             .collect();
-        let plan = Plan::new(&terms, highest, scheme, extent == Extent::Frequency)?;
+        let plan = |highest: usize| Plan::new(&terms, highest, scheme, extent == Extent::Frequency);
         // Where the amplitude is determined, its condition has the same slope at every order.
         let slope = match (scheme.amplitude, extent) {
             (Amplitude::Free, _) | (_, Extent::Frequency) => None,
@@ -74,7 +78,15 @@ impl Work for Expand<'_> {
                 Some(first.amplitudes.first()?.slope.clone())
             }
         };
-        let orders = Reconstruction::new(arithmetic, &plan, extent).orders()?;
+        // A guess about the denominators that turns out wrong costs little where the order is low.
+        let beginning = match highest > 2 * GUESSED {
+            false => None,
+            true => Some(Beginning::of(
+                &Reconstruction::new(arithmetic, &plan(GUESSED)?, extent).orders(None)?,
+            )?),
+        };
+        let plan = plan(highest)?;
+        let orders = Reconstruction::new(arithmetic, &plan, extent).orders(beginning)?;
         Some(expansion(&plan, orders, slope, extent))
     }
 }
@@ -110,8 +122,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         }
     }
 
-    fn orders(mut self) -> Option<Vec<Order>> {
-        let beginning = self.beginning()?;
+    fn orders(mut self, beginning: Option<Beginning>) -> Option<Vec<Order>> {
+        let beginning = match beginning {
+            Some(beginning) => beginning,
+            None => self.beginning()?,
+        };
         let highest = self.plan.highest;
         let motion = match self.extent {
             Extent::Frequency => vec![vec![Factored::default(); highest + 1]],
@@ -280,6 +295,24 @@ struct Beginning {
     frequency: Guess,
 }
 
+impl Beginning {
+    /// From the orders of a shorter expansion.
+    fn of(orders: &[Order]) -> Option<Self> {
+        let mut beginning = Self::default();
+        for order in orders {
+            let bits =
+                |numbers: &mut dyn Iterator<Item = &Integer>| numbers.map(Integer::bits).max().unwrap_or(0) as f64;
+            let size = bits(&mut order.displacement.iter()) - order.denominator.bits();
+            beginning.motion.push(order.denominator.clone(), size);
+            let both = [&order.frequency, &order.frequency_squared];
+            let denominator = Factored::of(&both[0].denom().lcm(both[1].denom()))?;
+            let sizes = both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
+            beginning.frequency.push(denominator, sizes[0].max(sizes[1]));
+        }
+        Some(beginning)
+    }
+}
+
 /// What the first orders show.
 #[derive(Default)]
 struct Guess {
@@ -291,10 +324,14 @@ struct Guess {
 
 impl Guess {
     fn add(&mut self, (denominator, size): (Integer, f64)) -> Option<()> {
+        self.push(Factored::of(&denominator)?, size);
+        Some(())
+    }
+
+    fn push(&mut self, denominator: Factored, size: f64) {
         let order = self.known.len();
         self.growth = self.growth.max(size / order.max(1) as f64);
-        self.known.push(Factored::of(&denominator)?);
-        Some(())
+        self.known.push(denominator);
     }
 
     /// What the denominators of all orders may be, the likeliest first.
@@ -354,14 +391,16 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     ) -> Option<Vec<Order>> {
         // What the guessed denominators had too much of in the order before they mostly have in the next as well.
         let mut excess = Factored::default();
+        let (mut of_motion, mut of_frequency) = (None, None);
         let mut lifted = Vec::with_capacity(orders.len());
         for order in orders {
             let whole = &motion[order];
             let mut denominator = whole.over(&excess);
-            let mut displacement = self.displacement(order, &denominator);
+            let over = self.over(&denominator, of_motion.take());
+            let mut displacement = self.displacement(order, of_motion.insert(over));
             if displacement.is_none() && !excess.is_one() {
                 (excess, denominator) = (Factored::default(), whole.clone());
-                displacement = self.displacement(order, whole);
+                displacement = self.displacement(order, of_motion.insert(self.over(whole, None)));
             }
             let mut displacement = displacement?;
             let common = denominator.common(&displacement);
@@ -371,7 +410,8 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                 excess = excess.times(&common);
             }
             let whole = &frequency[order];
-            let constants = self.numbers(&self.over(whole), 2, |image, index| match index {
+            let over = self.over(whole, of_frequency.take());
+            let constants = self.numbers(of_frequency.insert(over), 2, |image, index| match index {
                 0 => image.frequency[order],
                 _ => image.frequency_squared[order],
             });
@@ -391,19 +431,34 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     }
 
     /// Empty where no prime keeps the motion.
-    fn displacement(&self, order: usize, denominator: &Factored) -> Option<Vec<Integer>> {
+    fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
         let count = self.test.displacement[order].len();
-        let over = self.over(denominator);
-        self.numbers(&over, count, |image, index| image.displacement[order][index])
+        self.numbers(over, count, |image, index| image.displacement[order][index])
     }
 
-    fn over(&self, denominator: &Factored) -> Over {
-        Over {
-            weights: self
-                .remainders
-                .weights(|modulus| denominator.residue(modulus))
-                .collect(),
-            in_test: denominator.residue(&self.test.modulus),
+    /// From what the last order needed, where that divides.
+    fn over(&self, denominator: &Factored, last: Option<Over>) -> Over {
+        match last.filter(|last| last.denominator.over(denominator).is_one()) {
+            Some(mut last) => {
+                let ratio = denominator.over(&last.denominator);
+                for (weight, image) in last.weights.iter_mut().zip(self.images) {
+                    *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
+                }
+                let test = &self.test.modulus;
+                Over {
+                    denominator: denominator.clone(),
+                    in_test: test.product(last.in_test, ratio.residue(test)),
+                    ..last
+                }
+            }
+            None => Over {
+                denominator: denominator.clone(),
+                weights: self
+                    .remainders
+                    .weights(|modulus| denominator.residue(modulus))
+                    .collect(),
+                in_test: denominator.residue(&self.test.modulus),
+            },
         }
     }
 
@@ -428,6 +483,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
 
 /// A denominator, as the way back needs it.
 struct Over {
+    denominator: Factored,
     /// By which residues are multiplied.
     weights: Vec<u64>,
     /// Its residue modulo the prime that tests.

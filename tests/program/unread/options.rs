@@ -78,6 +78,13 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec![cubic, "--method", "multiple-scales"],
             vec!["--resonance", "1:3"],
         ),
+        ("derive", vec!["pendulum"], vec!["--omega-only"]),
+        ("derive", vec!["pendulum", "--steps"], vec!["--omega-only"]),
+        (
+            "derive",
+            vec!["pendulum", "--method", "energy-balance"],
+            vec!["--omega-only"],
+        ),
         ("derive", vec![cycles], vec!["--cycle", "2"]),
         ("derive", vec!["pendulum"], vec!["--cycle", "1"]),
         (

@@ -127,6 +127,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let values = exact_values(&arguments.at, &problem)?;
+    if arguments.omega_only && values.is_some() {
+        return Err(Failure::Usage(
+            "the values in the file ask for a verdict on the motion, which --omega-only leaves out".to_owned(),
+        ));
+    }
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
@@ -306,8 +311,16 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
     if arguments.resonance.is_some() && !entry.takes(Choice::Resonance) {
         return without("--resonance", &that_take(Choice::Resonance));
     }
-    if arguments.omega_only && arguments.steps {
-        return usage("--steps shows the motion order by order, which --omega-only leaves out".to_owned());
+    let of_motion = [
+        ("--steps", arguments.steps),
+        ("--at", !arguments.at.is_empty()),
+        ("--plot", arguments.common.plot.is_some()),
+        ("--tolerance", arguments.common.tolerance.is_some()),
+    ];
+    if let Some((option, _)) = of_motion.iter().find(|(_, given)| arguments.omega_only && *given) {
+        return usage(format!(
+            "{option} asks for the motion or a verdict on it, which --omega-only leaves out"
+        ));
     }
     if arguments.omega_only && !entry.takes(Choice::FrequencyAlone) {
         return without("--omega-only", &that_take(Choice::FrequencyAlone));

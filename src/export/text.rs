@@ -19,7 +19,7 @@ use crate::mechanics::MechanismStudy;
 use crate::optimize::Study;
 use crate::report::{self, Block, Document};
 use crate::series::terms;
-use crate::solution::Solution;
+use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
@@ -294,7 +294,12 @@ fn facts_in_lines(facts: &[(&str, String)]) -> String {
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
     if solution.displacement.is_zero() {
-        return "  the motion follows by quadrature of the energy\n".to_owned();
+        let why = match solution.method {
+            // Whose motion is a formula: it was not asked for.
+            Method::LindstedtPoincare => "the motion is left out",
+            _ => "the motion follows by quadrature of the energy",
+        };
+        return format!("  {why}\n");
     }
     let waves = terms::waves(
         &solution.displacement,

@@ -56,6 +56,7 @@ pub struct System {
     time: Symbol,
     right: Vec<Expr>,
     numbers: BTreeMap<Symbol, f64>,
+    critical: Vec<f64>,
 }
 
 /// Why there is no system, or no path from this start.
@@ -275,9 +276,19 @@ impl System {
             time,
             right: right.to_vec(),
             numbers: numbers.clone(),
+            critical: vec![],
         };
         taylor::expansion(&system, &[], 1)?;
         Ok(system)
+    }
+
+    /// The same equations with times that no step crosses: where the right sides turn faster than can be seen from afar, as at both
+    /// ends of a short pulse. In any order; what is no finite number is left out.
+    #[must_use]
+    pub fn with_critical_times(self, times: &[f64]) -> Self {
+        let mut critical: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
+        critical.sort_by(f64::total_cmp);
+        Self { critical, ..self }
     }
 
     /// Follows the states from `start` until `end`, or to the first event that stops. Costs, by Taylor series, for each step of

@@ -10,6 +10,7 @@
 //! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, holds the only coordinate there is, it
 //! stays until the force on it is more than friction bears.
 
+mod pulse;
 mod section;
 mod sweep;
 
@@ -313,7 +314,8 @@ impl Course {
             .iter()
             .filter_map(|name| Some((*name, *self.values.get(name)?)))
             .collect();
-        let system = System::new(&states, Symbol::new("t"), &right, &values)?;
+        let critical = pulse::critical_times(&right, &states, &values, self.duration);
+        let system = System::new(&states, Symbol::new("t"), &right, &values)?.with_critical_times(&critical);
         let options = Options {
             integrator,
             tolerance: self.tolerance,
@@ -331,7 +333,7 @@ impl Course {
             let (End::Sticks, Some(last)) = (reason, last) else {
                 break reason;
             };
-            let Some(until) = self.held_until(end, &last, &values, &options)? else {
+            let Some(until) = self.held_until(end, &last, &values, &critical, &options)? else {
                 break reason;
             };
             // At the very end of a hold nothing pulls yet, and it would be held again: the motion grows with the cube of the time, so
@@ -374,6 +376,7 @@ impl Course {
         from: f64,
         state: &[f64],
         values: &BTreeMap<Symbol, f64>,
+        critical: &[f64],
         options: &Options,
     ) -> Result<Option<f64>, TrajectoryError> {
         let ([place, velocity], [x, speed, ..]) = (self.rates.states.as_slice(), state) else {
@@ -401,7 +404,7 @@ impl Course {
             return Ok(Some(from));
         }
         let nothing = fresh("nothing", &numbers.keys().copied().collect::<Vec<_>>());
-        let clock = System::new(&[nothing], Symbol::new("t"), &[Expr::zero()], &numbers)?;
+        let clock = System::new(&[nothing], Symbol::new("t"), &[Expr::zero()], &numbers)?.with_critical_times(critical);
         let events = [Event::stop(forward), Event::stop(backward)];
         let path = clock.solve(from, &[0.0], self.duration, &events, options)?;
         Ok(match path.reason() {

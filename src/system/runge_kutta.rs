@@ -13,7 +13,7 @@ use std::cell::RefCell;
 
 use super::{End, Event, Occurrence, Options, Path, System, SystemError, taylor};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
-use crate::numeric::ode::{self, Action, Point, StopReason, Trajectory, integrate_first_order};
+use crate::numeric::ode::{self, Action, Point, StopReason, Trajectory, integrate_through};
 use crate::symbol::{Symbol, fresh_stem};
 
 /// No step can be held to less: an estimate of its error is rounding below that.
@@ -117,7 +117,8 @@ pub(super) fn follow(
         ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
     };
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
-    let run = integrate_first_order(rates, begin, units.count(end), &watched, &settings);
+    let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
+    let run = integrate_through(rates, begin, units.count(end), &critical, &watched, &settings);
     let trajectory = run.map_err(|error| match error {
         ode::IntegrationError::RateNotFinite { index, .. } => SystemError::Start(system.state[index]),
         _ => SystemError::Bounds,

@@ -113,6 +113,8 @@ pub(super) fn follow(
             break End::Singular;
         }
         let reach = expansion.step(options.tolerance).min(duration - time);
+        let (now, next) = (start + time, next_critical(&system.critical, start + time));
+        let reach = next.map_or(reach, |next| reach.min(next - now));
         if reach.is_nan() || reach <= 0.0 || start + time + reach == start + time {
             break End::Singular;
         }
@@ -170,6 +172,12 @@ pub(super) fn follow(
         reason,
         occurrences,
     })
+}
+
+/// The next of these times, farther away than rounding.
+fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
+    let beyond = now + 4.0 * f64::EPSILON * now.abs();
+    critical.get(critical.partition_point(|time| *time <= beyond)).copied()
 }
 
 /// Expands everything about a point.

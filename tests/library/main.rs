@@ -22,6 +22,7 @@ mod names;
 mod near_rest;
 mod primary;
 mod printed_integrals;
+mod pulses;
 mod quotations;
 mod random_equations;
 mod ranges;

@@ -166,7 +166,7 @@ pub fn integrate<'a>(
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
-    run(&[(&rates, events)], 0, start, end_time, options).map_err(|error| of_motion(error, start))
+    run(&[(&rates, events)], 0, start, end_time, &[], options).map_err(|error| of_motion(error, start))
 }
 
 /// The motion through several smooth right sides: begins in phase `first`, goes on as the switches of the events say.
@@ -200,7 +200,7 @@ pub fn integrate_phases(
         .iter()
         .map(|phase| (&*phase.rates as _, phase.events.as_slice()))
         .collect();
-    run(&parts, first, start, end_time, options).map_err(|error| of_motion(error, start))
+    run(&parts, first, start, end_time, &[], options).map_err(|error| of_motion(error, start))
 }
 
 /// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
@@ -228,7 +228,22 @@ pub fn integrate_first_order<'a, Y: Values>(
     events: &[Event<'a, Point<Y>>],
     options: &Options,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(&[(&rates, events)], 0, start, end_time, options)
+    run(&[(&rates, events)], 0, start, end_time, &[], options)
+}
+
+/// As [`integrate_first_order`], with times, in order, that no step crosses.
+///
+/// # Errors
+/// As [`integrate`].
+pub(crate) fn integrate_through<'a, Y: Values>(
+    rates: impl Fn(f64, &Y, &mut Y) + 'a,
+    start: Point<Y>,
+    end_time: f64,
+    critical: &[f64],
+    events: &[Event<'a, Point<Y>>],
+    options: &Options,
+) -> Result<Trajectory<Point<Y>>, IntegrationError> {
+    run(&[(&rates, events)], 0, start, end_time, critical, options)
 }
 
 /// The error in the words of displacement and velocity.
@@ -250,6 +265,7 @@ fn run<S: Sample>(
     first: usize,
     start: S,
     end_time: f64,
+    critical: &[f64],
     options: &Options,
 ) -> Result<Trajectory<S>, IntegrationError> {
     check(&start, end_time, options)?;
@@ -288,6 +304,7 @@ fn run<S: Sample>(
             phase,
             events,
             end_time,
+            critical,
             options,
         };
         let end = match options.stiff {
@@ -364,6 +381,8 @@ struct Leg<'r, 'a, S: Sample> {
     phase: usize,
     events: &'r [Event<'a, S>],
     end_time: f64,
+    /// Times, in order, that no step crosses.
+    critical: &'r [f64],
     options: &'r Options,
 }
 
@@ -396,7 +415,8 @@ impl<S: Sample> Leg<'_, '_, S> {
                 return LegEnd::Stopped(reason);
             }
             *attempts += 1;
-            let wanted = solver.h().min(self.options.maximum_step).min(remaining);
+            let allowed = self.options.maximum_step.min(remaining).min(self.to_critical(time));
+            let wanted = solver.h().min(allowed);
             solver.set_h(wanted);
             self.equations.non_finite.set(false);
             let outcome = solver.step(&self.equations);
@@ -436,6 +456,15 @@ impl<S: Sample> Leg<'_, '_, S> {
             state = next;
             first = false;
         }
+    }
+
+    /// How far the next critical time is, farther than rounding.
+    fn to_critical(&self, time: f64) -> f64 {
+        let beyond = time + 4.0 * f64::EPSILON * time.abs();
+        let next = self.critical.partition_point(|critical| *critical <= beyond);
+        self.critical
+            .get(next)
+            .map_or(f64::INFINITY, |critical| critical - time)
     }
 
     /// Whether the steps are used up, or somebody wants it to end.

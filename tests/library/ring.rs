@@ -152,11 +152,14 @@ fn van_der_pol<R: Ring>(ring: &R) -> Vec<ForceTerm<R>> {
 }
 
 /// Every series of an expansion, with its name and order.
-fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, &FourierSeries<R>)> {
+fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, FourierSeries<R>)> {
+    let driven = |motion: &FourierSeries<R>| motion.derivative().derivative().sum(motion);
+    let right_sides: Vec<FourierSeries<R>> = expansion.displacement.iter().map(driven).collect();
     let lists = [
         ("omega", &expansion.frequency),
         ("omega^2", &expansion.frequency_squared),
         ("motion", &expansion.displacement),
+        ("right side", &right_sides),
         ("removed", &expansion.removed),
     ];
     let mut parts = Vec::new();
@@ -165,12 +168,12 @@ fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, &FourierSeries<R>)> 
             series
                 .iter()
                 .enumerate()
-                .map(|(n, series)| (format!("{name} {n}"), series)),
+                .map(|(n, series)| (format!("{name} {n}"), series.clone())),
         );
     }
     for (n, fixed) in expansion.amplitudes.iter().enumerate() {
-        parts.push((format!("amplitude {n}"), &fixed.amplitude));
-        parts.push((format!("slope {n}"), &fixed.slope));
+        parts.push((format!("amplitude {n}"), fixed.amplitude.clone()));
+        parts.push((format!("slope {n}"), fixed.slope.clone()));
     }
     parts
 }

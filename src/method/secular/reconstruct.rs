@@ -251,6 +251,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     fn lifted(&mut self, motion: &[Factored], frequency: &[Factored], beginning: &Beginning) -> Option<Vec<Order>> {
         /// Digits beside those of denominator and size, for the factor before the growth.
         const ROOM: f64 = 24.0;
+        /// Residues kept at once, four gigabytes of them.
+        const MOST_RESIDUES: usize = 1 << 29;
         let mut counts = Vec::with_capacity(motion.len());
         for (order, (motion, frequency)) in motion.iter().zip(frequency).enumerate() {
             let bits = |denominator: &Factored, guess: &Guess| denominator.bits() + guess.growth * order as f64;
@@ -259,6 +261,13 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             // Orders share the primes of the longest among their neighbours: what a set of primes needs is computed once.
             let step = (count / 8).next_power_of_two();
             counts.push(count.next_multiple_of(step).max(counts.last().copied().unwrap_or(1)));
+        }
+        if self.extent == Extent::Motion {
+            let orders = counts.iter().enumerate();
+            let kept: usize = orders.map(|(order, count)| self.plan.harmonics(order) * count).sum();
+            if kept > MOST_RESIDUES {
+                return None;
+            }
         }
         let most = *counts.last()?;
         while self.primes.len() <= most {

@@ -34,6 +34,24 @@ impl Factored {
         rest.is_one().then_some(factored)
     }
 
+    /// The factors of a positive word, by division.
+    fn of_word(number: u64) -> Self {
+        let mut rest = number;
+        let mut factored = Self::default();
+        let mut divisor = 2;
+        while rest > 1 {
+            if divisor * divisor > rest {
+                divisor = rest;
+            }
+            while rest.is_multiple_of(divisor) {
+                rest /= divisor;
+                factored.set(divisor, factored.exponent(divisor) + 1);
+            }
+            divisor += 1;
+        }
+        factored
+    }
+
     fn exponent(&self, prime: u64) -> u64 {
         self.0.get(&prime).copied().unwrap_or(0)
     }
@@ -255,32 +273,28 @@ impl Growth {
     /// From the one with the shortest numbers on.
     pub const ALL: [Self; 4] = [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
 
-    /// The number of an order; `largest_factor` is that of the divisors of each order.
-    fn of_order(self, order: usize, largest_factor: &dyn Fn(usize) -> u64) -> Factored {
-        let mut number = Factored::default();
-        let order_as_word = order as u64;
-        match self {
-            Self::FactorialMultiples => {
-                let both = [Self::Factorial, Self::Multiples].map(|growth| growth.of_order(order, largest_factor));
-                number = both[0].times(&both[1]);
+    /// The numbers of all orders up to `highest`; `largest_factor` is that of the divisors of each order.
+    fn of_orders(self, highest: usize, largest_factor: &dyn Fn(usize) -> u64) -> Vec<Factored> {
+        let mut numbers = vec![Factored::default()];
+        for order in 1..=highest {
+            let mut number = numbers[order - 1].clone();
+            if matches!(self, Self::Factorial | Self::FactorialMultiples) {
+                let twice = 2 * order as u64;
+                number = number
+                    .times(&Factored::of_word(twice))
+                    .times(&Factored::of_word(twice + 1));
             }
-            Self::Power => {}
-            Self::Factorial => {
-                let last = 2 * order_as_word + 1;
+            if matches!(self, Self::Multiples | Self::FactorialMultiples) {
+                let last = largest_factor(order);
                 for prime in primes_up_to(last) {
-                    // Legendre.
-                    let powers = std::iter::successors(Some(last / prime), |rest| Some(rest / prime));
-                    number.set(prime, powers.take_while(|&rest| rest > 0).sum());
+                    // The exponent of a prime in lcm(1 .. last).
+                    let more = u64::from(last.checked_ilog(prime).unwrap_or(0));
+                    number.set(prime, number.exponent(prime) + more);
                 }
             }
-            Self::Multiples => {
-                for prime in primes_up_to(largest_factor(order)) {
-                    let exponent = |last: u64| u64::from(last.checked_ilog(prime).unwrap_or(0));
-                    number.set(prime, (1..=order).map(|order| exponent(largest_factor(order))).sum());
-                }
-            }
+            numbers.push(number);
         }
-        number
+        numbers
     }
 
     /// The denominators of all orders up to `highest` if those of the first ones, `known`, are of this growth; the known ones as
@@ -291,10 +305,11 @@ impl Growth {
         highest: usize,
         largest_factor: &dyn Fn(usize) -> u64,
     ) -> Option<Vec<Factored>> {
+        let numbers = self.of_orders(highest.max(known.len()), largest_factor);
         let fitted = |count: usize| {
             let mut base = Factored::default();
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
-                let rest = own.over(&self.of_order(order, largest_factor));
+                let rest = own.over(&numbers[order]);
                 for (&prime, exponent) in &rest.0 {
                     base.set(prime, base.exponent(prime).max(u64::div_ceil(*exponent, order as u64)));
                 }
@@ -313,7 +328,7 @@ impl Growth {
             None => {
                 let mut power = base.clone();
                 power.0.values_mut().for_each(|exponent| *exponent *= order as u64);
-                power.times(&self.of_order(order, largest_factor))
+                power.times(&numbers[order])
             }
         };
         Some((0..=highest).map(denominator).collect())

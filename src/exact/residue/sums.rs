@@ -171,6 +171,32 @@ pub fn mixture<A: Arithmetic>(arithmetic: A, modulus: &Modulus, parts: &[Part], 
     arithmetic.vectorize(Mixture(arithmetic, modulus, parts, tables, out));
 }
 
+/// One order of a table changed by `factor` times `change`, at every point.
+pub fn vary<A: Arithmetic>(
+    arithmetic: A,
+    modulus: &Modulus,
+    (table, order): (&mut Rows, usize),
+    factor: u64,
+    change: &[u64],
+) {
+    struct Vary<'a, A>(A, &'a Modulus, &'a mut Rows, usize, u64, &'a [u64]);
+    impl<A: Arithmetic> NullaryFnOnce for Vary<'_, A> {
+        type Output = ();
+        #[inline(always)]
+        fn call(self) {
+            let Self(arithmetic, modulus, table, order, factor, change) = self;
+            for (block, change) in change.chunks_exact(WIDTH).enumerate() {
+                let mut own = Lanes::default();
+                own.0.copy_from_slice(change);
+                let entry = table.entry(block, order);
+                let sum = arithmetic.add_multiple(arithmetic.none(), modulus.one, entry);
+                *entry = arithmetic.reduce(arithmetic.add_multiple(sum, factor, &own), modulus);
+            }
+        }
+    }
+    arithmetic.vectorize(Vary(arithmetic, modulus, table, order, factor, change));
+}
+
 /// `values *= factors`, one by one, whole [`Lanes`] of them.
 pub fn multiply<A: Arithmetic>(arithmetic: A, modulus: &Modulus, values: &mut [u64], factors: &[u64]) {
     struct Multiply<'a, A>(A, &'a Modulus, &'a mut [u64], &'a [u64]);

@@ -14,7 +14,7 @@
 
 use super::{Amplitude, Detuning, Scheme};
 use crate::exact::Rational;
-use crate::exact::residue::sums::{Part, Product, combine, convolve, mixture, multiply};
+use crate::exact::residue::sums::{Part, Product, combine, convolve, mixture, multiply, vary};
 use crate::exact::residue::{Arithmetic, Modulus, Rows, WIDTH, padded};
 use crate::series::waves::{Grid, Wave, Waves};
 use crate::solution::AmplitudeConvention;
@@ -511,9 +511,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let secular = modulus.negative(right_side[resonant]);
         let amplitude = modulus.product(secular, variation.inverse_slope);
         for (table, change) in self.tables.iter_mut().zip(&variation.tables) {
-            let mut values = table.read(order - 1);
-            add_multiple(&modulus, &mut values, amplitude, change);
-            table.write(order - 1, &values);
+            vary(self.arithmetic, &modulus, (table, order - 1), amplitude, change);
         }
         let before = self.slot(order - 1);
         let first = &mut self.motion[order - 1][resonant];

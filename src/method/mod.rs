@@ -575,13 +575,18 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
     let Some(method) = asked else {
         let periodic = solve_by(Method::LindstedtPoincare, oscillator, options);
         return match &periodic {
-            Err(refusal) if is_of_damping(refusal, oscillator) && options.cycle.is_none() => {
+            Err(refusal) if is_of_damping(refusal, oscillator) && !of_periodic_motions(options) => {
                 averaged_by_default(oscillator, options)
             }
             _ => periodic,
         };
     };
     solve_by(method, oscillator, options)
+}
+
+/// Whether something is asked for that only periodic motions have.
+fn of_periodic_motions(options: &Options) -> bool {
+    options.cycle.is_some() || options.frequency_alone
 }
 
 /// Whether an expansion in periodic motions is refused for what drains or feeds energy.

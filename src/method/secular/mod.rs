@@ -575,7 +575,7 @@ mod tests {
             .collect()
     }
 
-    fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integers> {
+    pub(super) fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integers> {
         let coefficient = FourierSeries::integer(Integers, value.0).divided_by(value.1);
         ForceTerm {
             order,

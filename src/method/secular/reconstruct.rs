@@ -564,19 +564,10 @@ fn expansion(
 #[cfg(test)]
 mod tests {
     use super::super::Detuning;
+    use super::super::tests::term;
     use super::*;
     use crate::exact::residue::portable::Portable;
     use crate::solution::AmplitudeConvention;
-
-    fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integers> {
-        let coefficient = FourierSeries::integer(Integers, value.0).divided_by(value.1);
-        ForceTerm {
-            order,
-            position,
-            velocity,
-            coefficient,
-        }
-    }
 
     /// Every number of the expansion, its steps included, is that of the recursion over whole numbers.
     fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: Amplitude) {

@@ -81,6 +81,25 @@ pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     format!("{sign}{first}{point}{rest}e{exponent}")
 }
 
+/// A fraction with so many decimals at most, without zeros at the end; of what is very large or small fifteen digits.
+pub fn plain_decimal(value: &Rational, decimals: usize) -> String {
+    let size = to_f64(value).abs();
+    if !value.is_zero() && !(1e-5..1e15).contains(&size) {
+        return significant_fraction(value, 15);
+    }
+    let unit = Integer::from(10).pow(decimals as u32);
+    let digits = (value.abs() * Rational::from_integer(unit))
+        .round()
+        .to_integer()
+        .to_string();
+    let digits = format!("{digits:0>width$}", width = decimals + 1);
+    let (whole, fraction) = digits.split_at(digits.len() - decimals);
+    let fraction = fraction.trim_end_matches('0');
+    let sign = if value.is_negative() { "-" } else { "" };
+    let point = if fraction.is_empty() { "" } else { "." };
+    format!("{sign}{whole}{point}{fraction}")
+}
+
 /// A whole number of so many digits, and the power of ten that makes it the fraction, rounded.
 fn scientific(value: &Rational, digits: usize) -> (Integer, i32) {
     if value.is_zero() {
@@ -147,5 +166,9 @@ mod tests {
         assert_eq!(significant_fraction(&third, 6), "0.333333");
         assert_eq!(significant_fraction(&(-&third * ten(500)), 6), "-3.33333e499");
         assert_eq!(significant_fraction(&ten(-400), 6), "1e-400");
+        let long = Rational::new(10_i64.pow(17).into(), (3 * 10_i64.pow(16)).into());
+        assert_eq!(plain_decimal(&-long, 20), "-3.33333333333333333333");
+        let texts = [ten(0), ten(-3) * &third, ten(30), Rational::zero()].map(|value| plain_decimal(&value, 6));
+        assert_eq!(texts, ["1", "0.000333", "1e30", "0"]);
     }
 }

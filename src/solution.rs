@@ -8,6 +8,7 @@
 
 mod advice;
 mod branch;
+pub mod convergence;
 pub mod law;
 mod method;
 pub mod modulation;
@@ -23,6 +24,7 @@ use num_traits::{One, Signed};
 
 pub use advice::{Advice, Setting};
 pub use branch::Branch;
+pub use convergence::Convergence;
 use law::Shown;
 pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};
@@ -198,6 +200,8 @@ pub struct Solution {
     pub numerical: bool,
     /// What is known of where the formula holds.
     pub validity: Vec<Note>,
+    /// How far the series of omega^2 converges, where that has been [looked for](crate::verify::converges).
+    pub convergence: Option<Convergence>,
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
     /// What precedes the orders, or the derivation of any other method, line by line.

@@ -138,7 +138,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .map_err(|refusal| refused(&oscillator, &refusal))?,
         None => options,
     };
-    let (oscillator, values, solution) = solve_at(oscillator, values, &options)?;
+    let (oscillator, values, mut solution) = solve_at(oscillator, values, &options)?;
+    solution.convergence = verify::converges(&solution);
     let tolerance = tolerance(&arguments.common);
     let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
     let verification = match judged {

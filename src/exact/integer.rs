@@ -17,6 +17,16 @@ use num_traits::{Num, One, Pow, Signed, ToPrimitive, Zero};
 pub struct Integer(IBig);
 
 impl Integer {
+    /// As the numbers of that crate have it.
+    pub(super) fn as_inner(&self) -> &IBig {
+        &self.0
+    }
+
+    /// From a number of that crate.
+    pub(super) fn of_inner(value: IBig) -> Self {
+        Self(value)
+    }
+
     /// The number of binary digits of the absolute value, none for zero.
     pub fn bits(&self) -> u64 {
         self.0.bit_len() as u64

@@ -231,6 +231,7 @@ impl Averaged {
             }),
             response: None,
             numerical: false,
+            convergence: None,
             validity: std::iter::once(cut).chain(self.notes).collect(),
             steps: vec![],
             derivation: self.derivation,

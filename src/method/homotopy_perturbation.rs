@@ -122,6 +122,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         modulation: None,
         response: None,
         numerical: false,
+        convergence: None,
         validity,
         steps: series.steps,
         derivation: vec![Line::equation(

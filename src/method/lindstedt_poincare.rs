@@ -130,6 +130,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         modulation: None,
         response: None,
         numerical: false,
+        convergence: None,
         validity,
         steps: series.steps,
         derivation: vec![Line::equation(

@@ -34,6 +34,7 @@ pub mod numbers;
 pub(crate) mod one_term;
 pub(crate) mod pade;
 pub(crate) mod parameter_expansion;
+pub(crate) mod power_series;
 mod quotation;
 mod resonance;
 pub mod secular;

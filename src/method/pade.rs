@@ -24,6 +24,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
+use super::power_series::{PowerSeries, scaled};
 use super::{Options, Refusal, Unsuited, lindstedt_poincare};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
@@ -113,46 +114,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-/// omega^2 in powers of `s`, the small parameter or its square.
-struct PowerSeries {
-    law: Polynomial,
-    small: Symbol,
-    /// The power of the small parameter that `s` is.
-    step: i32,
-}
-
-impl PowerSeries {
-    /// In the squared amplitude where the series has even powers alone.
-    fn of(solution: &Solution, in_amplitude: bool) -> Self {
-        let small = solution.small_parameter;
-        let law = solution.law.frequency_squared().cloned();
-        let law = law.unwrap_or_else(Polynomial::zero);
-        let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
-        Self {
-            law,
-            small,
-            step: if in_amplitude && even { 2 } else { 1 },
-        }
-    }
-
-    /// `c_k`; zero for a negative power.
-    fn coefficient(&self, power: i64) -> Polynomial {
-        match u32::try_from(power) {
-            Ok(power) => part(&self.law, self.small, self.step * power as i32),
-            Err(_) => Polynomial::zero(),
-        }
-    }
-
-    /// `c_0 + c_1 s + ...` of other coefficients.
-    fn with_powers(&self, coefficients: &[Polynomial]) -> Polynomial {
-        let mut sum = Polynomial::zero();
-        for (power, coefficient) in coefficients.iter().enumerate() {
-            sum.accumulate(&coefficient.times_monomial(&Monomial::power_of(self.small, self.step * power as i32)));
-        }
-        sum
-    }
-}
-
 /// The coefficients of numerator and denominator.
 struct Quotient {
     above: Vec<Polynomial>,
@@ -240,15 +201,6 @@ fn has_values(value: &Expr) -> bool {
         .any(|place| value.evaluate(&at(*place)).is_ok_and(f64::is_finite))
 }
 
-/// The terms of one power of the small parameter, without it.
-fn part(law: &Polynomial, small: Symbol, power: i32) -> Polynomial {
-    let mut part = Polynomial::zero();
-    for (monomial, number) in law.terms().filter(|(monomial, _)| monomial.exponent(small) == power) {
-        part.add_term(monomial.without(small), number.clone());
-    }
-    part
-}
-
 /// `q_0, ..., q_m`, the first of them one where it is a single term; or why there are none.
 fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial>, &'static str> {
     const SINGULAR: &str = "the equations for its denominator are singular";
@@ -283,26 +235,6 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
         .ok_or(SINGULAR)?;
     normalise(&mut below, &first);
     Ok(below)
-}
-
-/// The numbers `n_k` of a series `c_k = c_0 unit^k n_k` whose symbols enter in step with the order, and the unit.
-fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)> {
-    let (base, _) = series.first()?.single_term()?;
-    let ratio = |c: &Polynomial| Some(c.single_term()?.0.product(&base.power(-1)));
-    let (k, first) = (1..).zip(&series[1..]).find(|(_, c)| !c.is_zero())?;
-    let mut unit = Monomial::one();
-    for &(symbol, exponent) in ratio(first)?.factors() {
-        unit = unit.product(&Monomial::power_of(
-            symbol,
-            (exponent % k == 0).then_some(exponent / k)?,
-        ));
-    }
-    let number = |(k, c): (i32, &Polynomial)| match c.is_zero() {
-        true => Some(Rational::zero()),
-        false => (ratio(c)? == unit.power(k)).then(|| c.single_term().map(|term| term.1.clone()))?,
-    };
-    let numbers: Option<Vec<Rational>> = (0..).zip(series).map(number).collect();
-    Some((unit, numbers?))
 }
 
 /// Gauss's elimination, exact: rows of coefficients with the right side last. `None` where the rows depend on each other.

@@ -54,7 +54,9 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
         let slow = solution.modulation.as_ref().filter(|slow| slow.release.is_some());
         sections.extend(slow.into_iter().flat_map(|slow| approach(solution, slow)));
     }
-    let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
+    let notes = solution.validity.iter().map(ToString::to_string);
+    let notes = notes.chain(solution.convergence.iter().map(ToString::to_string));
+    let notes = notes.map(Block::Note);
     let heading = Block::Heading("Validity".to_owned());
     sections.push(std::iter::once(heading).chain(notes).collect());
     sections.extend(verification.map(|verification| vec![judged(solution, verification, tolerance)]));

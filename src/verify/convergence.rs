@@ -9,22 +9,27 @@
 //!                             a_0 = 2 cos(phi)/R,  b_0 = -1/R^2
 //! ```
 //!
-//! An estimate is given only where two windows of coefficients, the last ones and those before, agree on it.
+//! An estimate is given only where two windows of coefficients, the last ones and those before, agree on it. Where a solution has
+//! exact coefficients enough they [say it themselves](converges), with as many digits as they support.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use num_integer::Integer as _;
+use num_traits::{One, Zero};
 
 use super::amplitude_series::amplitude_series;
 use super::validity::Range;
-use crate::decimal::significant;
-use crate::exact::Doubles;
+use crate::decimal::{decimal, significant};
+use crate::exact::rational::to_f64;
+use crate::exact::{Doubles, Polynomial, Rational};
 use crate::expr::Expr;
+use crate::method::power_series::PowerSeries;
 use crate::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
-use crate::series::FourierSeries;
 use crate::series::recurrence::numeric_taylor;
-use crate::solution::{AmplitudeConvention, Solution};
+use crate::series::{FourierSeries, singularity};
+use crate::solution::{AmplitudeConvention, Convergence, Solution};
 use crate::symbol::Symbol;
 
 /// Coefficients of the series from which its radius of convergence is estimated.
@@ -45,6 +50,37 @@ const WINDOW: usize = 8;
 /// How well, relative to the radius, two windows must agree.
 const AGREEMENT: f64 = 0.01;
 
+/// How far the series of omega^2 in a solution converges, by its [own exact coefficients](crate::series::singularity); `None` where it
+/// has too few, or symbols that do not enter in step with the order, or none that show a law.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, exact::ratio, solve, verify::converges};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options { order: Some(40), ..Options::default() })?;
+/// let found = converges(&solution).ok_or("a regular series")?;
+/// assert_eq!((found.variable_in_words().as_str(), &found.nearest.place[0].value), ("eps*A^2", &ratio(-1, 1)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn converges(solution: &Solution) -> Option<Convergence> {
+    // Rounded coefficients have no more digits to give than those that are computed below.
+    if solution.numerical {
+        return None;
+    }
+    let (mut variable, mut coefficients) = PowerSeries::of(solution, true).in_one_variable()?;
+    let powers = coefficients.iter().enumerate().filter(|(_, value)| !value.is_zero());
+    let step = powers.fold(0, |common: usize, (power, _)| common.gcd(&power));
+    if step > 1 {
+        variable = variable.power(i32::try_from(step).ok()?);
+        coefficients = coefficients.into_iter().step_by(step).collect();
+    }
+    Some(Convergence {
+        variable,
+        highest: coefficients.len() - 1,
+        nearest: singularity::nearest(&coefficients)?,
+    })
+}
+
 /// The radius of convergence of the series of `solution` in its small parameter, in words; nothing where its coefficients show
 /// no law.
 pub(super) fn convergence(
@@ -52,6 +88,9 @@ pub(super) fn convergence(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<Range> {
+    if let Some(known) = &solution.convergence {
+        return at_numbers(solution, known, numbers);
+    }
     let small = solution.small_parameter;
     let value = numbers.get(&small).copied()?;
     let series = match small == solution.amplitude.symbol() {
@@ -90,6 +129,25 @@ pub(super) fn convergence(
             significant(radius, 3),
             coefficients.len() - 1,
         ),
+        outside: value.abs() >= radius,
+    })
+}
+
+/// Whether the numbers lie within the radius that is known.
+fn at_numbers(solution: &Solution, known: &Convergence, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
+    let variable = Polynomial::term(known.variable.clone(), Rational::one());
+    let value = solution.evaluate(&variable, &|name| numbers.get(&name).copied()).ok()?;
+    let radius = to_f64(&known.nearest.radius.value);
+    let text = match known.in_symbol() {
+        Some((symbol, size)) => format!("the series converges for |{symbol}| < {}", decimal(to_f64(&size.value))),
+        None => format!(
+            "the series converges for |{}| < {}",
+            known.variable_in_words(),
+            decimal(radius)
+        ),
+    };
+    Some(Range {
+        text,
         outside: value.abs() >= radius,
     })
 }

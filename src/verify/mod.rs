@@ -29,7 +29,7 @@ mod transient;
 pub(crate) mod validity;
 pub(crate) mod well;
 
-pub use convergence::{Singularity, nearest_singularity};
+pub use convergence::{Singularity, converges, nearest_singularity};
 pub use driven::JudgedState;
 pub use transient::Followed;
 pub use validity::{Range, Reach};

@@ -9,6 +9,7 @@ mod expr_properties;
 mod friction;
 mod friction_response;
 mod fuzz;
+mod high_orders;
 mod hill;
 mod homotopy;
 mod inertia;

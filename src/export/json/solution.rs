@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::number::{expression, finite};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, unexpected};
 use crate::derivation::Line;
-use crate::exact::{self, Doubles, POLYNOMIALS, Polynomials};
+use crate::exact::{self, Doubles, Monomial, POLYNOMIALS, Polynomials};
 use crate::expr::parse_equation;
 use crate::series::FourierSeries;
+use crate::series::singularity::{self, Singularity};
 use crate::solution::{
     self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Note, Root, Solution, modulation,
 };
@@ -75,8 +76,97 @@ pub struct SolutionDocument {
     pub numerical: bool,
     /// What is known of where the formula holds, in words.
     pub validity: Vec<String>,
+    /// How far the series of omega^2 converges, by its own coefficients; left out where they are too few or show no law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub convergence: Option<Convergence>,
     /// The verdict at given values; null where none were given.
     pub verification: Option<Verification>,
+}
+
+/// The nearest singularity of a series, or a pair of conjugate ones, in the complex plane of its variable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Convergence {
+    /// What the series runs in: the powers of the small parameter and of the symbols that enter in step with it, multiplied.
+    pub variable: Map<i32>,
+    /// The highest power of the variable in the series.
+    pub highest: usize,
+    /// The distance of the singularity from zero: the series converges where the variable is smaller.
+    pub radius: Estimate,
+    /// Its angle in radians, in the upper half plane.
+    pub angle: Estimate,
+    /// The real part of its place.
+    pub real: Estimate,
+    /// The imaginary part of its place, which stands with both signs.
+    pub imaginary: Estimate,
+    /// The power of the distance with which the period is singular there: 1/2 for a square root, 0 for a logarithm; null where it could
+    /// not be told.
+    pub exponent: Option<Estimate>,
+}
+
+/// A number that was estimated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Estimate {
+    /// All digits that the error leaves, as an exact fraction in text.
+    pub exact: String,
+    /// The same as a decimal number.
+    pub value: f64,
+    /// How far it may be off.
+    pub error: f64,
+}
+
+impl Estimate {
+    fn of(estimate: &singularity::Estimate) -> Self {
+        Self {
+            exact: estimate.value.to_string(),
+            value: exact::to_f64(&estimate.value),
+            error: estimate.error,
+        }
+    }
+
+    fn read(&self) -> Result<singularity::Estimate, JsonError> {
+        match self.exact.parse() {
+            Ok(value) => Ok(singularity::Estimate {
+                value,
+                error: self.error,
+            }),
+            Err(_) => unexpected("exact", "a fraction"),
+        }
+    }
+}
+
+impl Convergence {
+    fn of(convergence: &solution::Convergence) -> Self {
+        let nearest = &convergence.nearest;
+        let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
+        let powers = convergence.variable.factors().iter();
+        Self {
+            variable: powers.map(|(name, power)| (name.to_string(), *power)).collect(),
+            highest: convergence.highest,
+            radius: Estimate::of(&nearest.radius),
+            angle: Estimate::of(&nearest.angle),
+            real,
+            imaginary,
+            exponent: nearest.exponent.as_ref().map(Estimate::of),
+        }
+    }
+
+    fn read(&self) -> Result<solution::Convergence, JsonError> {
+        let powers = self.variable.iter();
+        Ok(solution::Convergence {
+            variable: powers.fold(Monomial::one(), |product, (name, power)| {
+                product.product(&Monomial::power_of(Symbol::new(name), *power))
+            }),
+            highest: self.highest,
+            nearest: Singularity {
+                radius: self.radius.read()?,
+                angle: self.angle.read()?,
+                place: [self.real.read()?, self.imaginary.read()?],
+                exponent: self.exponent.as_ref().map(Estimate::read).transpose()?,
+            },
+        })
+    }
 }
 
 /// Algebraic equations for omega and the coefficients of the motion.
@@ -426,6 +516,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
             .map(|response| self::response(response, solution)),
         numerical: solution.numerical,
         validity: solution.validity.iter().map(ToString::to_string).collect(),
+        convergence: solution.convergence.as_ref().map(Convergence::of),
         verification: verification.map(self::verification),
     }
 }
@@ -665,6 +756,7 @@ impl SolutionDocument {
             response: self.response.as_ref().map(Response::read).transpose()?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
+            convergence: self.convergence.as_ref().map(Convergence::read).transpose()?,
             steps: vec![],
             derivation: vec![],
         })

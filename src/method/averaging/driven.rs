@@ -272,6 +272,7 @@ impl<'a> Question<'a> {
             }),
             response: Some(response),
             numerical: false,
+            convergence: None,
             validity: std::iter::once(cut).chain(notes).collect(),
             steps: vec![],
             derivation,

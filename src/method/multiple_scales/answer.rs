@@ -38,6 +38,7 @@ pub(super) fn solution(oscillator: &Oscillator, scaling: &Scaling, found: Found)
         modulation: Some(found.modulation),
         response: found.response,
         numerical: false,
+        convergence: None,
         validity: found.validity,
         steps: vec![],
         derivation: found.derivation,

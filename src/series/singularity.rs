@@ -1,0 +1,734 @@
+//! The singularities on the circle of convergence of a power series with exact coefficients.
+//!
+//! References: D. L. Hunter, G. A. Baker, Phys. Rev. B 19 (1979) 3808-3821 (inhomogeneous differential approximants); R. E. Shafer,
+//! SIAM J. Numer. Anal. 11 (1974) 447-460 (quadratic approximants).
+//!
+//! ```text
+//! quadratic:     P + Q f + R f^2 = O(s^n)    branch points where D = Q^2 - 4 P R = 0, like (s - s_0)^(1/2)
+//! differential:  P g' + Q g + R = O(s^n)     singular where P = 0, like (s - s_0)^(-Q/P');  g = f, or g = f^(-1/2)
+//! ```
+//!
+//! With omega^2 for `f` the last is the period, which has a logarithm where a motion takes for ever, and the differential approximants
+//! take that as it is. All three kinds of [approximant](super::hermite_pade) are made of all coefficients, and of fewer and fewer. Zeros
+//! that are no singularities of the series, and there are many, move from one to the next; one that stays is believed, and how far it
+//! moves is the estimate of its error. Which kind converges fastest is seen by that. It must stand where the growth of the coefficients
+//! says, and where several kinds have found it they must agree within their errors, or the error is what they differ by.
+
+use std::cmp::Ordering;
+use std::fmt;
+use std::ops::{Add, Mul, Sub};
+
+use num_complex::Complex64;
+use num_traits::Zero as _;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+
+use super::hermite_pade::{Field, HermitePade};
+use crate::decimal::plain_decimal;
+use crate::exact::big_float::BigFloat;
+use crate::exact::{Rational, Scaled};
+
+/// A number that was estimated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The estimate, rounded to the digits that its error leaves.
+    pub value: Rational,
+    /// How far it may be off.
+    pub error: f64,
+}
+
+/// A singularity, or a pair of conjugate ones.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Singularity {
+    /// Its distance from zero.
+    pub radius: Estimate,
+    /// Its angle in the upper half plane: exactly zero on the positive axis; on the negative one pi, with the error zero.
+    pub angle: Estimate,
+    /// Real and imaginary part.
+    pub place: [Estimate; 2],
+    /// The power of the distance from it with which `f^(-1/2)` is singular there, the period for `f` = omega^2, as far as that could be
+    /// told: 1/2 for a square root, 0 for a logarithm.
+    pub exponent: Option<Estimate>,
+}
+
+/// The fewest coefficients that say anything.
+pub const FEWEST: usize = 16;
+
+/// The nearest singularity of a series with these coefficients, the lowest power first; `None` where they show none: too few of
+/// them, too irregular, or several singularities that are equally far away.
+///
+/// ```
+/// use lindstedt::exact::ratio;
+/// use lindstedt::series::singularity::nearest;
+///
+/// // sqrt(1 - s/3): c_k = c_(k-1) (2k - 3)/(6k)
+/// let root = |last: &_, k: i64| last * ratio(2 * k - 3, 6 * k);
+/// let mut coefficients = vec![ratio(1, 1)];
+/// for k in 1..=24 {
+///     coefficients.push(root(&coefficients[k - 1], k as i64));
+/// }
+/// let found = nearest(&coefficients).expect("a branch point");
+/// assert_eq!(found.radius.value, ratio(3, 1));
+/// assert_eq!(found.exponent.expect("its kind").value, ratio(1, 2));
+/// ```
+pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
+    let growth = Growth::of(coefficients)?;
+    let bits = BITS_AT_LEAST + BITS_EACH * coefficients.len();
+    let scaled: Vec<BigFloat> = (0..)
+        .zip(coefficients)
+        .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
+        .collect();
+    let find = |kind: Kind| Some((kind, followed(kind, &scaled, &growth)?));
+    let kinds = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
+    #[cfg(feature = "parallel")]
+    let found: Vec<(Kind, Followed)> = kinds.into_par_iter().filter_map(find).collect();
+    #[cfg(not(feature = "parallel"))]
+    let found: Vec<(Kind, Followed)> = kinds.into_iter().filter_map(find).collect();
+    singularity(found, &growth, bits)
+}
+
+/// Binary digits of the calculation, and those for each coefficient: approximants lose many.
+const BITS_AT_LEAST: usize = 256;
+const BITS_EACH: usize = 6;
+
+/// What the sizes of the coefficients say.
+struct Growth {
+    /// The radius lies about here, times `2^unit`.
+    radius: f64,
+    /// How far it may be from there: a factor, as a logarithm.
+    margin: f64,
+    /// The variable is measured in `2^unit`.
+    unit: i64,
+}
+
+impl Growth {
+    fn of(coefficients: &[Rational]) -> Option<Self> {
+        /// The last coefficients, of which the largest counts.
+        const LAST: usize = 12;
+        let highest = coefficients.len().checked_sub(1)?;
+        if highest < FEWEST {
+            return None;
+        }
+        let root = |(k, value): (usize, &Rational)| {
+            let logarithm = Scaled::of_fraction(value).logarithm();
+            logarithm.is_finite().then_some(-logarithm / k as f64)
+        };
+        let last = coefficients.iter().enumerate().rev().take(LAST);
+        let logarithm = last.filter_map(root).reduce(f64::min)?;
+        let unit = (logarithm / std::f64::consts::LN_2).round();
+        let count = highest as f64;
+        Some(Self {
+            radius: (logarithm - unit * std::f64::consts::LN_2).exp(),
+            // Coefficients fall like a power of their number beside the power of the radius.
+            margin: 2.5 * count.ln() / count + 0.05,
+            unit: unit as i64,
+        })
+    }
+
+    fn allows(&self, size: f64) -> bool {
+        (size / self.radius).ln().abs() <= self.margin
+    }
+}
+
+/// Which equation an approximant solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Quadratic,
+    Differential,
+    /// Differential, of `f^(-1/2)`.
+    OfInverseRoot,
+}
+
+impl Kind {
+    /// How many equations so many coefficients give.
+    fn length(self, coefficients: usize) -> usize {
+        match self {
+            Self::Quadratic => coefficients,
+            Self::Differential | Self::OfInverseRoot => coefficients - 1,
+        }
+    }
+}
+
+/// A complex number of many digits.
+#[derive(Clone, Debug)]
+struct Complex {
+    re: BigFloat,
+    im: BigFloat,
+}
+
+impl Complex {
+    fn of(value: Complex64, bits: usize) -> Self {
+        Self {
+            re: BigFloat::of_f64(value.re, bits),
+            im: BigFloat::of_f64(value.im, bits),
+        }
+    }
+
+    fn to_f64(&self) -> Complex64 {
+        Complex64::new(self.re.to_f64(), self.im.to_f64())
+    }
+
+    fn squared_size(&self) -> BigFloat {
+        &(&self.re * &self.re) + &(&self.im * &self.im)
+    }
+
+    /// How far away another number is; in doubles, which reach down to where nothing matters any more.
+    fn distance(&self, other: &Self) -> f64 {
+        (self - other).squared_size().sqrt().map_or(0.0, |size| size.to_f64())
+    }
+
+    /// The quotient; zero where the divisor is.
+    fn over(&self, divisor: &Self) -> Self {
+        let size = divisor.squared_size();
+        let above = self
+            * &Self {
+                re: divisor.re.clone(),
+                im: -&divisor.im,
+            };
+        Self {
+            re: &above.re / &size,
+            im: &above.im / &size,
+        }
+    }
+}
+
+impl Add for &Complex {
+    type Output = Complex;
+
+    fn add(self, other: Self) -> Complex {
+        Complex {
+            re: &self.re + &other.re,
+            im: &self.im + &other.im,
+        }
+    }
+}
+
+impl Sub for &Complex {
+    type Output = Complex;
+
+    fn sub(self, other: Self) -> Complex {
+        Complex {
+            re: &self.re - &other.re,
+            im: &self.im - &other.im,
+        }
+    }
+}
+
+impl Mul for &Complex {
+    type Output = Complex;
+
+    fn mul(self, other: Self) -> Complex {
+        Complex {
+            re: &(&self.re * &other.re) - &(&self.im * &other.im),
+            im: &(&self.re * &other.im) + &(&self.im * &other.re),
+        }
+    }
+}
+
+/// Floats of one precision.
+struct Floats {
+    bits: usize,
+}
+
+impl Field for Floats {
+    type Element = BigFloat;
+
+    fn zero(&self) -> BigFloat {
+        BigFloat::zero(self.bits)
+    }
+    fn one(&self) -> BigFloat {
+        BigFloat::of_f64(1.0, self.bits)
+    }
+    fn quotient(&self, numerator: &BigFloat, denominator: &BigFloat) -> BigFloat {
+        numerator / denominator
+    }
+    fn subtract(&self, number: &mut BigFloat, factor: &BigFloat, other: &BigFloat) {
+        if !other.is_zero() {
+            *number = &*number - &(factor * other);
+        }
+    }
+    fn exponent(&self, number: &BigFloat) -> Option<i64> {
+        number.exponent()
+    }
+    fn noise(&self) -> Option<i64> {
+        Some(self.bits as i64 * 3 / 4)
+    }
+}
+
+/// What is zero at a singularity, and what its exponent is made of.
+struct Approximant {
+    /// D or P.
+    zero: Vec<BigFloat>,
+    /// Q of a differential one.
+    beside: Vec<BigFloat>,
+}
+
+/// The approximants to orders so far below the highest.
+fn approximants(kind: Kind, coefficients: &[BigFloat], below: &[usize]) -> Vec<(usize, Approximant)> {
+    let bits = coefficients[0].bits();
+    let field = Floats { bits };
+    let length = kind.length(coefficients.len());
+    let mut constant = vec![BigFloat::zero(bits); length];
+    constant[0] = field.one();
+    let mut own = match kind {
+        Kind::Quadratic | Kind::Differential => coefficients.to_vec(),
+        Kind::OfInverseRoot => inverse_root(coefficients),
+    };
+    let last = match kind {
+        Kind::Quadratic => product(&own, &own, length),
+        Kind::Differential | Kind::OfInverseRoot => (1..=length)
+            .map(|k| &own[k] * &BigFloat::of_f64(k as f64, bits))
+            .collect(),
+    };
+    own.truncate(length);
+    let mut work = HermitePade::new(field, vec![(constant, 0), (own, 0), (last, 0)]);
+    let mut found = vec![];
+    while work.order() < length {
+        work.advance();
+        if below.contains(&(length - work.order())) {
+            let [p, q, r] = &work.best().factors[..] else { continue };
+            let approximant = match kind {
+                Kind::Quadratic => {
+                    let all = usize::MAX;
+                    let mut zero = product(q, q, all);
+                    let four = BigFloat::of_f64(4.0, bits);
+                    for (place, value) in product(p, r, all).iter().enumerate() {
+                        zero.resize(zero.len().max(place + 1), BigFloat::zero(bits));
+                        zero[place] = &zero[place] - &(&four * value);
+                    }
+                    Approximant { zero, beside: vec![] }
+                }
+                Kind::Differential | Kind::OfInverseRoot => Approximant {
+                    zero: r.clone(),
+                    beside: q.clone(),
+                },
+            };
+            found.push((length - work.order(), approximant));
+        }
+    }
+    found
+}
+
+/// `f^(-1/2)` over the root of its first coefficient: `n c_0 g_n = sum_(k=1..n) (k/2 - n) c_k g_(n-k)`.
+fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
+    let bits = coefficients[0].bits();
+    let mut root = vec![BigFloat::of_f64(1.0, bits)];
+    for n in 1..coefficients.len() {
+        let mut sum = BigFloat::zero(bits);
+        for k in 1..=n {
+            let weight = BigFloat::of_f64(0.5 * k as f64 - n as f64, bits);
+            sum = &sum + &(&(&weight * &coefficients[k]) * &root[n - k]);
+        }
+        root.push(&sum / &(&BigFloat::of_f64(n as f64, bits) * &coefficients[0]));
+    }
+    root
+}
+
+/// The product, of at most so many coefficients.
+fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> {
+    let Some(length) = (left.len() + right.len())
+        .checked_sub(1)
+        .filter(|_| !left.is_empty() && !right.is_empty())
+    else {
+        return vec![];
+    };
+    let mut product = vec![BigFloat::zero(left[0].bits()); length.min(most)];
+    for (i, left) in left.iter().enumerate() {
+        for (sum, right) in product.iter_mut().skip(i).zip(right) {
+            *sum = &*sum + &(left * right);
+        }
+    }
+    product
+}
+
+/// A zero that stays from one approximant to the next.
+struct Followed {
+    place: Complex,
+    error: f64,
+    /// Of a differential approximant, with its error.
+    exponent: Option<(f64, f64)>,
+}
+
+/// A zero of one approximant.
+struct Zero {
+    place: Complex,
+    exponent: Option<Complex64>,
+}
+
+/// The nearest zero that all approximants share, or all but one.
+fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Option<Followed> {
+    /// So many coefficients show in doubles where to look.
+    const FIRST: usize = 48;
+    let length = kind.length(coefficients.len());
+    let window = (length / 8).max(3);
+    let first = length.saturating_sub(FIRST);
+    let last = [2 * window, window, window / 2 + 1, 2, 1, 0];
+    let starts = [first, first + 2, first + 4];
+    let wanted: Vec<usize> = starts.into_iter().chain(last).collect();
+    let all = approximants(kind, coefficients, &wanted);
+    let at = |below: usize| all.iter().find(|own| own.0 == below).map(|own| &own.1);
+    let follow = |start: Complex64| -> Option<Followed> {
+        let mut near = Complex::of(start, coefficients[0].bits());
+        let mut missed = 0;
+        for below in starts {
+            match at(below).and_then(|own| own.zero_near(&near)) {
+                Some(zero) => near = zero.place,
+                None if missed == 0 => missed = 1,
+                None => return None,
+            }
+        }
+        let mut zeros: Vec<(usize, Zero)> = vec![];
+        for below in last {
+            let from = zeros.last().map_or(&near, |(_, zero)| &zero.place);
+            let found = at(below).and_then(|own| own.zero_near(from));
+            zeros.extend(found.map(|zero| (below, zero)));
+        }
+        if zeros.len() + 1 < last.len() {
+            return None;
+        }
+        let (_, end) = zeros.pop()?;
+        let error_of = |distance: &dyn Fn(&Zero, &Zero) -> f64| {
+            let recent = zeros.iter().filter(|(below, _)| *below <= window);
+            let recent = recent.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max);
+            let before = distance(&zeros[0].1, &zeros[1].1);
+            // What converges slowly is farther away than its last steps by how much longer the way is.
+            if 4.0 * recent <= before { recent } else { SLOW * recent }
+        };
+        let exponent = end.exponent.map(|value| {
+            let distance = |one: &Zero, other: &Zero| match (one.exponent, other.exponent) {
+                (Some(one), Some(other)) => (one - other).norm(),
+                _ => 1.0,
+            };
+            (value.re, error_of(&distance).max(value.im.abs()))
+        });
+        Some(Followed {
+            error: error_of(&|one, other| one.place.distance(&other.place)),
+            place: end.place,
+            exponent,
+        })
+    };
+    let mut candidates: Vec<Complex64> = vec![];
+    for below in starts {
+        for candidate in candidates_of(&at(below)?.zero, growth) {
+            if candidates
+                .iter()
+                .all(|other| (other - candidate).norm() > MOVES * candidate.norm())
+            {
+                candidates.push(candidate);
+            }
+        }
+    }
+    let found = candidates.into_iter().filter_map(follow);
+    let allowed = found.filter(|found| growth.allows(found.place.to_f64().norm()));
+    allowed.min_by(|a, b| a.place.to_f64().norm().total_cmp(&b.place.to_f64().norm()))
+}
+
+/// What multiplies the last step of a slow convergence, of which a step is an eighth of the way.
+const SLOW: f64 = 8.0;
+
+/// How far a zero may move between approximants, relatively.
+const MOVES: f64 = 0.05;
+
+impl Approximant {
+    /// The zero to which Newton's iteration leads from a place near to it; nothing where that moves away, or where two zeros are next
+    /// to each other, as they are where no branch point is.
+    fn zero_near(&self, start: &Complex) -> Option<Zero> {
+        const ITERATIONS: usize = 60;
+        const APART: f64 = 1e-3;
+        let bits = start.re.bits();
+        let size = start.to_f64().norm();
+        let mut place = start.clone();
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let [value, slope, _] = derivatives(&self.zero, &place);
+            if value.squared_size().is_zero() {
+                last = 0.0;
+                break;
+            }
+            let step = value.over(&slope);
+            let length = step.squared_size().sqrt()?.to_f64();
+            // Rounding keeps the last digits moving.
+            if length >= last && length < 1e-12 * size {
+                break;
+            }
+            place = &place - &step;
+            last = length;
+            if place.distance(start) > MOVES * size || length == 0.0 {
+                break;
+            }
+        }
+        let [_, slope, bend] = derivatives(&self.zero, &place);
+        let settled = place.distance(start) <= MOVES * size && last < 1e-9 * size;
+        let apart = 2.0 * slope.over(&bend).to_f64().norm() > APART * size || bend.squared_size().is_zero();
+        (settled && apart).then(|| Zero {
+            exponent: (!self.beside.is_empty()).then(|| {
+                let [value, ..] = derivatives(&self.beside, &place);
+                -value.over(&slope).to_f64()
+            }),
+            place: if start.im.is_zero() {
+                Complex {
+                    im: BigFloat::zero(bits),
+                    ..place
+                }
+            } else {
+                place
+            },
+        })
+    }
+}
+
+/// A polynomial, its slope and half of its second derivative.
+fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
+    let zero = Complex::of(Complex64::default(), place.re.bits());
+    let mut found = [zero.clone(), zero.clone(), zero];
+    for coefficient in polynomial.iter().rev() {
+        found[2] = &(&found[2] * place) + &found[1];
+        found[1] = &(&found[1] * place) + &found[0];
+        found[0] = &found[0] * place;
+        found[0].re = &found[0].re + coefficient;
+    }
+    found
+}
+
+/// Zeros of a polynomial about the circle of convergence, in the upper half plane: where Newton's iteration leads from a lattice.
+fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
+    const RADII: usize = 9;
+    const ANGLES: usize = 25;
+    const ITERATIONS: usize = 40;
+    let Some(largest) = polynomial.iter().filter_map(BigFloat::exponent).max() else {
+        return vec![];
+    };
+    let numbers: Vec<f64> = polynomial
+        .iter()
+        .map(|value| value.shifted(-largest).to_f64())
+        .collect();
+    let evaluate = |z: Complex64| {
+        let zero = Complex64::default();
+        numbers.iter().rev().fold((zero, zero), |(value, slope), number| {
+            (value * z + number, slope * z + value)
+        })
+    };
+    let mut found: Vec<Complex64> = vec![];
+    for radius in 0..RADII {
+        let radius = growth.radius * ((radius as f64 / (RADII - 1) as f64 * 2.0 - 1.0) * growth.margin).exp();
+        for angle in 0..ANGLES {
+            let mut z = Complex64::from_polar(radius, angle as f64 / (ANGLES - 1) as f64 * std::f64::consts::PI);
+            if angle == 0 || angle + 1 == ANGLES {
+                z.im = 0.0;
+            }
+            let mut length = f64::INFINITY;
+            for _ in 0..ITERATIONS {
+                let (value, slope) = evaluate(z);
+                let step = value / slope;
+                z -= step;
+                length = step.norm();
+                if length <= 1e-14 * z.norm() || !z.is_finite() {
+                    break;
+                }
+            }
+            let size = z.norm();
+            if !z.is_finite() || length > 1e-6 * size || !growth.allows(size) {
+                continue;
+            }
+            z.im = if z.im.abs() < 1e-7 * size { 0.0 } else { z.im.abs() };
+            if found.iter().all(|other| (other - z).norm() > 1e-5 * size) {
+                found.push(z);
+            }
+        }
+    }
+    found
+}
+
+/// The best of what the kinds of approximants have found, with an error that covers what they differ by.
+fn singularity(mut found: Vec<(Kind, Followed)>, growth: &Growth, bits: usize) -> Option<Singularity> {
+    /// An exponent with more error is not worth saying.
+    const WORST_EXPONENT: f64 = 0.02;
+    /// A place with more error, relatively, is none.
+    const WORST: f64 = 0.05;
+    let exponent = found
+        .iter()
+        .find(|(kind, _)| *kind == Kind::OfInverseRoot)
+        .and_then(|(_, own)| own.exponent)
+        .filter(|(_, error)| *error < WORST_EXPONENT);
+    // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a logarithm of the period.
+    if exponent.is_some_and(|(value, error)| (value - 0.5).abs() > 2.0 * error) {
+        found.retain(|(kind, _)| *kind != Kind::Quadratic);
+    }
+    if exponent.is_some_and(|(value, error)| value.abs() <= error) {
+        found.retain(|(kind, _)| *kind != Kind::Differential);
+    }
+    let (_, best) = found.iter().min_by(|a, b| a.1.error.total_cmp(&b.1.error))?;
+    let size = best.place.to_f64().norm();
+    let mut error = best.error;
+    for (_, other) in &found {
+        let distance = other.place.distance(&best.place);
+        let same = distance <= MOVES * size;
+        if same && distance > best.error + other.error {
+            error = error.max(distance);
+        }
+        // Two different answers that are about as good are none.
+        if !same && other.error < 100.0 * best.error.max(1e-6 * size) {
+            return None;
+        }
+    }
+    // Rounding is far below, but an approximant that is exact does not move at all.
+    error = error.max(size * (-(bits as f64) / 6.0).exp2());
+    if error > WORST * size {
+        return None;
+    }
+    let unit = (growth.unit as f64).exp2();
+    let estimate =
+        |value: &BigFloat, error: f64| Estimate::rounded(&value.shifted(growth.unit).to_fraction(), error * unit);
+    let real = best.place.im.is_zero();
+    let angle = best.place.im.angle(&best.place.re);
+    Some(Singularity {
+        radius: estimate(&best.place.squared_size().sqrt()?, error),
+        angle: Estimate::rounded(&angle.to_fraction(), if real { 0.0 } else { error / size }),
+        place: [
+            estimate(&best.place.re, error),
+            estimate(&best.place.im, if real { 0.0 } else { error }),
+        ],
+        // In doubles.
+        exponent: exponent
+            .map(|(value, error)| Estimate::rounded(&BigFloat::of_f64(value, 64).to_fraction(), error.max(1e-12))),
+    })
+}
+
+impl Singularity {
+    /// Whether it lies on the positive axis, `Greater`, or the negative one, `Less`; `None` for a pair.
+    pub fn sign(&self) -> Option<Ordering> {
+        let [real, imaginary] = &self.place;
+        imaginary.value.is_zero().then(|| real.value.cmp(&Rational::zero()))
+    }
+}
+
+/// The decimals that the error leaves, without zeros at the end.
+impl fmt::Display for Estimate {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&plain_decimal(&self.value, MOST_DECIMALS))
+    }
+}
+
+/// No estimate has more.
+const MOST_DECIMALS: usize = 400;
+
+impl Estimate {
+    /// Rounded to the last decimal of which the error leaves anything; without an error to twenty digits.
+    pub fn rounded(value: &Rational, error: f64) -> Self {
+        let digit = match error > 0.0 {
+            true => (error.log10().ceil() as i32).max(-(MOST_DECIMALS as i32)),
+            false => -20,
+        };
+        let ten = num_traits::Pow::pow(Rational::from_integer(10.into()), digit);
+        let value = match value.is_zero() {
+            true => value.clone(),
+            false => (value / &ten).round() * ten,
+        };
+        Self { value, error }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::rational::{ratio, to_f64};
+
+    /// `(1 - s/place)^power` to a degree.
+    fn power(place: &Rational, power: &Rational, degree: usize) -> Vec<Rational> {
+        let mut coefficients = vec![ratio(1, 1)];
+        for k in 1..=degree as i64 {
+            let last = &coefficients[k as usize - 1];
+            coefficients.push(last * (ratio(k - 1, 1) - power) / (ratio(k, 1) * place));
+        }
+        coefficients
+    }
+
+    fn exponential(rate: &Rational, degree: usize) -> Vec<Rational> {
+        let mut coefficients = vec![ratio(1, 1)];
+        for k in 1..=degree as i64 {
+            coefficients.push(&coefficients[k as usize - 1] * rate / ratio(k, 1));
+        }
+        coefficients
+    }
+
+    fn times(left: &[Rational], right: &[Rational]) -> Vec<Rational> {
+        let term = |n: usize| (0..=n).map(|k| &left[k] * &right[n - k]).sum();
+        (0..left.len()).map(term).collect()
+    }
+
+    fn plus(left: &[Rational], right: &[Rational]) -> Vec<Rational> {
+        left.iter().zip(right).map(|(a, b)| a + b).collect()
+    }
+
+    /// The error is never larger than its estimate and the rounding to it, whatever the singularity and the degree.
+    #[test]
+    fn the_error_is_what_is_said() {
+        let (near, far) = (ratio(-7, 5), ratio(9, 4));
+        for degree in [16, 21, 27, 36, 50] {
+            for exponent in [ratio(1, 2), ratio(-1, 1), ratio(-1, 2), ratio(1, 3), ratio(-3, 2)] {
+                // A singular part that is more than a power, a regular part, and a second singularity beyond.
+                let singular = times(&power(&near, &exponent, degree), &exponential(&ratio(1, 3), degree));
+                let beyond = times(&power(&far, &ratio(1, 4), degree), &exponential(&ratio(-1, 2), degree));
+                let Some(found) = nearest(&plus(&singular, &beyond)) else {
+                    assert!(degree < 30, "{degree} {exponent}");
+                    continue;
+                };
+                let error = to_f64(&(&found.radius.value + &near)).abs();
+                assert!(error <= 1.5 * found.radius.error, "{degree} {exponent}: {found:?}");
+                assert_eq!(found.sign(), Some(Ordering::Less));
+                assert!(degree < 36 || error < 1e-6, "{degree} {exponent}: {found:?}");
+            }
+        }
+    }
+
+    /// `sqrt(1 - 2 s cos(phi)/R + s^2/R^2)` times an exponential: branch points at `R e^(+-i phi)`, with `cos(phi) = 3/5`.
+    #[test]
+    fn a_pair_has_its_angle() {
+        let (cosine, radius) = (ratio(3, 5), ratio(5, 2));
+        let mut root = vec![ratio(1, 1)];
+        // The square of the series is the polynomial.
+        let square = [
+            ratio(1, 1),
+            ratio(-2, 1) * &cosine / &radius,
+            (&radius * &radius).recip(),
+        ];
+        for n in 1..=60 {
+            let own = square.get(n).cloned().unwrap_or_else(Rational::zero);
+            let others: Rational = (1..n).map(|k| &root[k] * &root[n - k]).sum();
+            root.push((own - others) / ratio(2, 1));
+        }
+        let found = nearest(&times(&root, &exponential(&ratio(1, 2), 60))).expect("a pair");
+        assert!(found.radius.error < 1e-12, "{found:?}");
+        assert!(
+            to_f64(&(&found.radius.value - &radius)).abs() <= 1.5 * found.radius.error,
+            "{found:?}"
+        );
+        let angle = to_f64(&found.angle.value);
+        assert!((angle.cos() - 0.6).abs() < 1e-12 && found.sign().is_none(), "{found:?}");
+        assert!(
+            to_f64(&(&found.place[0].value - ratio(3, 2))).abs() < 1e-12,
+            "{found:?}"
+        );
+        // The root of the series is that of the root.
+        assert_eq!(found.exponent.expect("a power").value, ratio(-1, 4));
+    }
+
+    #[test]
+    fn what_shows_no_law_has_none() {
+        // An entire function, noise, a polynomial, and too few coefficients.
+        let noise: Vec<Rational> = (0..40).map(|k| ratio((k * k * 7919) % 31 - 15, 1)).collect();
+        let polynomial: Vec<Rational> = (0..40).map(|k| ratio(i64::from(k < 5), 1)).collect();
+        let few = power(&ratio(2, 1), &ratio(1, 2), FEWEST - 1);
+        for coefficients in [exponential(&ratio(1, 1), 40), noise, polynomial, few] {
+            assert_eq!(nearest(&coefficients), None);
+        }
+    }
+
+    #[test]
+    fn an_exact_relation_is_exact() {
+        // A root without anything beside it: every approximant is the function itself.
+        let found = nearest(&power(&ratio(3, 2), &ratio(1, 2), 40)).expect("a branch point");
+        assert_eq!(found.radius.value, ratio(3, 2));
+        assert!(found.radius.error < 1e-15, "{found:?}");
+    }
+}

@@ -220,17 +220,28 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
         let (cosines, rest) = scratch.split_at_mut(padded(size));
         // In cosines of multiples of phi. The one at index `size` is zero at all points.
         let length = (given.len() + 1).min(size);
-        let at = |index: usize| given.get(index).copied().unwrap_or(0);
-        let below = |index: usize, steps: usize| index.checked_sub(steps).map_or(0, at);
-        cosines.fill(0);
-        for (i, cosine) in cosines[..length].iter_mut().enumerate() {
-            *cosine = match (half_wave, wave) {
-                (true, Wave::Cosine) => modulus.sum(at(i), below(i, 1)),
-                (true, Wave::Sine) => modulus.difference(at(i), below(i, 1)),
-                (false, Wave::Cosine) => at(i),
-                // There is no sine of index zero.
-                (false, Wave::Sine) => modulus.difference(at(i + 1), if i > 1 { at(i - 1) } else { 0 }),
-            };
+        let (own, more) = cosines.split_at_mut(given.len().min(size));
+        own.copy_from_slice(&given[..own.len()]);
+        more.fill(0);
+        match (half_wave, wave) {
+            (true, Wave::Cosine) => {
+                for (cosine, below) in cosines[1..length].iter_mut().zip(given) {
+                    *cosine = modulus.sum(*cosine, *below);
+                }
+            }
+            (true, Wave::Sine) => {
+                for (cosine, below) in cosines[1..length].iter_mut().zip(given) {
+                    *cosine = modulus.difference(*cosine, *below);
+                }
+            }
+            (false, Wave::Cosine) => {}
+            // There is no sine of index zero.
+            (false, Wave::Sine) => {
+                let at = |index: usize| given.get(index).copied().unwrap_or(0);
+                for (i, cosine) in cosines[..length].iter_mut().enumerate() {
+                    *cosine = modulus.difference(at(i + 1), if i > 1 { at(i - 1) } else { 0 });
+                }
+            }
         }
         let (rest, small) = rest.split_at_mut(padded(size));
         for halving in 0..halvings {
@@ -239,11 +250,11 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
                 let whole = &mut rest[..level];
                 whole.copy_from_slice(part);
                 let (even, odd) = part.split_at_mut(level / 2);
-                let mut before = 0;
-                for ((pair, even), odd) in whole.chunks_exact(2).zip(even).zip(odd) {
-                    *even = pair[0];
-                    *odd = modulus.sum(pair[1], before);
-                    before = pair[1];
+                for ((pair, even), odd) in whole.chunks_exact(2).zip(even).zip(&mut *odd) {
+                    (*even, *odd) = (pair[0], pair[1]);
+                }
+                for (pair, odd) in whole.chunks_exact(2).zip(&mut odd[1..]) {
+                    *odd = modulus.sum(*odd, pair[1]);
                 }
             }
         }
@@ -317,10 +328,11 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
                 let halves = &mut rest[..level];
                 halves.copy_from_slice(part);
                 let (even, odd) = halves.split_at(level / 2);
-                let next = odd.iter().skip(1).chain([&0]);
-                for (((pair, even), odd), next) in part.chunks_exact_mut(2).zip(even).zip(odd).zip(next) {
-                    pair[0] = *even;
-                    pair[1] = modulus.sum(*odd, *next);
+                for ((pair, even), odd) in part.chunks_exact_mut(2).zip(even).zip(odd) {
+                    (pair[0], pair[1]) = (*even, *odd);
+                }
+                for (pair, next) in part.chunks_exact_mut(2).zip(&odd[1..]) {
+                    pair[1] = modulus.sum(pair[1], *next);
                 }
             }
         }

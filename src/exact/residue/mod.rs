@@ -93,8 +93,9 @@ impl Modulus {
     /// The sum.
     #[inline(always)]
     pub fn sum(&self, left: u64, right: u64) -> u64 {
-        // Below zero a word is large, so the smaller of the two is the residue: no branch to guess.
-        let sum = left + right;
+        // Below zero a word is large, so the smaller of the two is the residue: no branch to guess. Residues leave room in a word,
+        // and without a look for overflow several sums are formed at a time.
+        let sum = left.wrapping_add(right);
         sum.min(sum.wrapping_sub(self.prime))
     }
 

@@ -17,7 +17,14 @@ pub struct Product {
     pub needed: usize,
 }
 
+/// Orders whose sums over all orders before them are formed together: a row of the tables is read once for all of them.
+const TOGETHER: usize = 8;
+
 /// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a factor of those after it.
+/// The orders come one after the other, from zero on.
+///
+/// What is already there of a product at the orders that follow is kept in its own table. Cost: a multiplication for each pair of
+/// orders and each point, half of them for a square.
 pub fn convolve<A: Arithmetic>(
     arithmetic: A,
     modulus: &Modulus,
@@ -31,14 +38,33 @@ pub fn convolve<A: Arithmetic>(
         #[inline(always)]
         fn call(self) {
             let Self(arithmetic, modulus, products, tables, order) = self;
+            let start = order - order % TOGETHER;
             // Block by block: what one product has read, the next finds in the cache.
             for block in 0..tables.first().map_or(0, Rows::blocks) {
+                if order == start && start > 0 {
+                    for product in products.iter().filter(|product| order <= product.needed) {
+                        prepare(arithmetic, modulus, product, tables, block, start);
+                    }
+                }
                 for product in products.iter().filter(|product| order <= product.needed) {
                     let left = &tables[product.left].row(block)[..=order];
                     let right = &tables[product.right].row(block)[..=order];
-                    let sum = match product.left == product.right {
-                        true => square(arithmetic, left),
-                        false => pairs(arithmetic, left, right),
+                    let square = product.left == product.right;
+                    let sum = if start == 0 {
+                        match square {
+                            true => self::square(arithmetic, left),
+                            false => pairs(arithmetic, left, right),
+                        }
+                    } else {
+                        let recent = order - start + 1;
+                        let first = pairs(arithmetic, &left[..recent], &right[start..]);
+                        let last = match square {
+                            true => first,
+                            false => pairs(arithmetic, &left[start..], &right[..recent]),
+                        };
+                        let before = &tables[product.to].row(block)[order];
+                        let sum = arithmetic.join(first, last);
+                        arithmetic.add_multiple(sum, modulus.one, before)
                     };
                     *tables[product.to].entry(block, order) = arithmetic.reduce(sum, modulus);
                 }
@@ -46,6 +72,79 @@ pub fn convolve<A: Arithmetic>(
         }
     }
     arithmetic.vectorize(Convolve(arithmetic, modulus, products, tables, order));
+}
+
+/// The part of a product at the orders from `start` on in which both factors are of orders before it.
+#[inline(always)]
+fn prepare<A: Arithmetic>(
+    arithmetic: A,
+    modulus: &Modulus,
+    product: &Product,
+    tables: &mut [Rows],
+    block: usize,
+    start: usize,
+) {
+    let orders = tables[product.to].row(block).len();
+    for first in [start, start + TOGETHER / 2] {
+        let left = &tables[product.left].row(block)[..start];
+        let right = &tables[product.right].row(block)[..start];
+        let mut sums = [arithmetic.none(); 4];
+        // Of a square the terms below the middle, twice, and the middle.
+        let square = product.left == product.right;
+        let end = if square { first / 2 } else { start };
+        window(arithmetic, (left, right), (start, first), end, &mut sums);
+        if square {
+            for (k, sum) in sums.iter_mut().enumerate() {
+                let order = first + k;
+                for i in end.max(order - start + 1)..order.div_ceil(2) {
+                    *sum = arithmetic.add_product(*sum, &left[i], &left[order - i]);
+                }
+                *sum = arithmetic.join(*sum, *sum);
+                if order % 2 == 0 && order / 2 < start {
+                    *sum = arithmetic.add_product(*sum, &left[order / 2], &left[order / 2]);
+                }
+            }
+        }
+        for (k, sum) in sums.into_iter().enumerate() {
+            if first + k < orders {
+                *tables[product.to].entry(block, first + k) = arithmetic.reduce(sum, modulus);
+            }
+        }
+    }
+}
+
+/// `sum_i left_i right_(order-i)` for four orders from `first` on, over all `i < end` for which both are below `start`: each entry
+/// that is loaded serves four sums.
+#[inline(always)]
+fn window<A: Arithmetic>(
+    arithmetic: A,
+    (left, right): (&[Lanes], &[Lanes]),
+    (start, first): (usize, usize),
+    end: usize,
+    sums: &mut [A::Sum; 4],
+) {
+    let shared = first - start + 4;
+    for (k, sum) in sums.iter_mut().enumerate() {
+        for i in first + k - start + 1..shared.min(end) {
+            *sum = arithmetic.add_product(*sum, &left[i], &right[first + k - i]);
+        }
+        *sum = arithmetic.carry(*sum);
+    }
+    let mut from = shared;
+    while from < end {
+        let to = (from + A::RUN).min(end);
+        let fours = right[first + 1 - to..first - from + 4].windows(4).rev();
+        for (left, four) in left[from..to].iter().zip(fours) {
+            for k in 0..4 {
+                sums[k] = arithmetic.add_product(sums[k], left, &four[k]);
+            }
+        }
+        // A loop, for a closure would not be compiled for this processor.
+        for sum in sums.iter_mut() {
+            *sum = arithmetic.carry(*sum);
+        }
+        from = to;
+    }
 }
 
 /// `sum_i left_i right_(n-i)`: four sums run beside each other, for each has to wait for itself.

@@ -5,7 +5,7 @@
 //! are powers of two, the pendulum's divide `64^n (2n+1)!`. Which of these it is is read off the first orders, half of them to
 //! fit and the other half to test. It is a guess: every number that is found with it is tried modulo one more prime.
 
-use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
@@ -13,23 +13,27 @@ use num_traits::{One, ToPrimitive, Zero};
 use crate::exact::Integer;
 use crate::exact::residue::{Modulus, primes_up_to};
 
-/// A positive whole number by its prime factors and their exponents.
+/// The primes that are looked for in denominators: larger ones come from coefficients with such a number in them.
+static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
+
+/// A positive whole number by its prime factors, in order, and their exponents.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Factored(BTreeMap<u64, u64>);
+pub(super) struct Factored(Vec<(u64, u64)>);
 
 impl Factored {
     /// The factors of a number whose primes are all small; `None` of another.
     pub fn of(number: &Integer) -> Option<Self> {
-        /// Larger ones come from coefficients with such a number in them.
-        const LARGEST: u64 = 1000;
         let mut rest = number.clone();
         let mut factored = Self::default();
-        for prime in primes_up_to(LARGEST) {
+        let halvings = remove(&mut rest, 2, u64::MAX);
+        factored.set(2, halvings);
+        // Most often nothing is left for the others.
+        for prime in SMALL.iter().skip(1) {
             if rest.is_one() {
                 break;
             }
-            let exponent = remove(&mut rest, prime, u64::MAX);
-            factored.set(prime, exponent);
+            let exponent = remove(&mut rest, *prime, u64::MAX);
+            factored.set(*prime, exponent);
         }
         rest.is_one().then_some(factored)
     }
@@ -53,14 +57,19 @@ impl Factored {
     }
 
     fn exponent(&self, prime: u64) -> u64 {
-        self.0.get(&prime).copied().unwrap_or(0)
+        let place = self.0.binary_search_by_key(&prime, |factor| factor.0);
+        place.map_or(0, |place| self.0[place].1)
     }
 
     fn set(&mut self, prime: u64, exponent: u64) {
-        match exponent {
-            0 => self.0.remove(&prime),
-            _ => self.0.insert(prime, exponent),
-        };
+        match self.0.binary_search_by_key(&prime, |factor| factor.0) {
+            Ok(place) if exponent == 0 => {
+                self.0.remove(place);
+            }
+            Ok(place) => self.0[place].1 = exponent,
+            Err(_) if exponent == 0 => {}
+            Err(place) => self.0.insert(place, (prime, exponent)),
+        }
     }
 
     /// Whether it is one.
@@ -71,7 +80,7 @@ impl Factored {
     /// The product.
     pub fn times(&self, other: &Self) -> Self {
         let mut product = self.clone();
-        for (&prime, exponent) in &other.0 {
+        for &(prime, exponent) in &other.0 {
             product.set(prime, product.exponent(prime) + exponent);
         }
         product
@@ -79,11 +88,11 @@ impl Factored {
 
     /// The quotient, where what the divisor has more of is left out.
     pub fn over(&self, divisor: &Self) -> Self {
-        let mut quotient = self.clone();
-        for (&prime, exponent) in &divisor.0 {
-            quotient.set(prime, self.exponent(prime).saturating_sub(*exponent));
-        }
-        quotient
+        let left = self
+            .0
+            .iter()
+            .map(|&(prime, exponent)| (prime, exponent.saturating_sub(divisor.exponent(prime))));
+        Self(left.filter(|factor| factor.1 > 0).collect())
     }
 
     /// The number.
@@ -116,7 +125,7 @@ impl Factored {
         }
         let mut numerator = numerator;
         let mut denominator = self.clone();
-        for (&prime, &exponent) in &self.0 {
+        for &(prime, exponent) in &self.0 {
             let common = remove(&mut numerator, prime, exponent);
             denominator.set(prime, exponent - common);
         }
@@ -131,7 +140,12 @@ impl Factored {
         let halvings = halvings.map_or(0, |count| count as u64);
         common.set(2, halvings.min(self.exponent(2)));
         // Many primes in one division: most are in common with none of the first numbers already.
-        let odd: Vec<u64> = self.0.keys().copied().filter(|prime| *prime != 2).collect();
+        let odd: Vec<u64> = self
+            .0
+            .iter()
+            .map(|factor| factor.0)
+            .filter(|prime| *prime != 2)
+            .collect();
         let mut shared: Vec<u64> = Vec::new();
         for lot in words(&odd) {
             let all: u64 = lot.iter().product();
@@ -276,6 +290,10 @@ impl Growth {
     /// The numbers of all orders up to `highest`; `largest_factor` is that of the divisors of each order.
     fn of_orders(self, highest: usize, largest_factor: &dyn Fn(usize) -> u64) -> Vec<Factored> {
         let mut numbers = vec![Factored::default()];
+        let primes = match self {
+            Self::Power | Self::Factorial => vec![],
+            Self::Multiples | Self::FactorialMultiples => primes_up_to(largest_factor(highest)),
+        };
         for order in 1..=highest {
             let mut number = numbers[order - 1].clone();
             if matches!(self, Self::Factorial | Self::FactorialMultiples) {
@@ -286,7 +304,7 @@ impl Growth {
             }
             if matches!(self, Self::Multiples | Self::FactorialMultiples) {
                 let last = largest_factor(order);
-                for prime in primes_up_to(last) {
+                for &prime in primes.iter().take_while(|prime| **prime <= last) {
                     // The exponent of a prime in lcm(1 .. last).
                     let more = u64::from(last.checked_ilog(prime).unwrap_or(0));
                     number.set(prime, number.exponent(prime) + more);
@@ -310,8 +328,8 @@ impl Growth {
             let mut base = Factored::default();
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
                 let rest = own.over(&numbers[order]);
-                for (&prime, exponent) in &rest.0 {
-                    base.set(prime, base.exponent(prime).max(u64::div_ceil(*exponent, order as u64)));
+                for (prime, exponent) in rest.0 {
+                    base.set(prime, base.exponent(prime).max(exponent.div_ceil(order as u64)));
                 }
             }
             base
@@ -327,7 +345,7 @@ impl Growth {
             Some(known) => known.clone(),
             None => {
                 let mut power = base.clone();
-                power.0.values_mut().for_each(|exponent| *exponent *= order as u64);
+                power.0.iter_mut().for_each(|factor| factor.1 *= order as u64);
                 power.times(&numbers[order])
             }
         };

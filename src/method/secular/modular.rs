@@ -12,6 +12,8 @@
 //! Cost for `P` products to order `N` with `K` harmonics: `P K N^2/2` multiplications of words (half for a square), `K N^2/6` for
 //! each series that is multiplied by the frequency, and `N` transforms each way.
 
+use std::ops::Range;
+
 use super::{Amplitude, Detuning, Scheme};
 use crate::exact::Rational;
 use crate::exact::residue::sums::{Part, Product, combine, convolve, mixture, multiply, vary};
@@ -49,6 +51,8 @@ pub(super) struct Plan<'a> {
     has_velocity: bool,
     /// Harmonics that the frequency of the last order does not depend on are left out.
     frequency_alone: bool,
+    /// Where the coefficients of each order start in a list of all, and where the last ends.
+    starts: Vec<usize>,
 }
 
 impl<'a> Plan<'a> {
@@ -90,7 +94,11 @@ impl<'a> Plan<'a> {
             of_terms: vec![],
             has_velocity: terms.iter().any(|term| term.velocity > 1),
             frequency_alone,
+            starts: vec![0],
         };
+        for order in 0..=last {
+            plan.starts.push(plan.starts[order] + padded(plan.harmonics(order)));
+        }
         plan.grid = Grid::new(plan.points(), half_wave);
         plan.tables += usize::from(plan.has_velocity);
         plan.of_terms = terms.iter().map(|term| plan.table_of(term)).collect();
@@ -156,6 +164,11 @@ impl<'a> Plan<'a> {
             true => self.reach(order).min(self.reach(self.last - order) + 1),
             false => self.reach(order),
         }
+    }
+
+    /// The places of an order's coefficients in a list of those of all orders.
+    fn places(&self, order: usize) -> Range<usize> {
+        self.starts[order]..self.starts[order] + self.harmonics(order)
     }
 
     /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken for `2K - 1 - j` (`2K - j` where
@@ -227,60 +240,75 @@ impl<'a> Plan<'a> {
 /// What one prime sees: plain residues, order by order.
 pub(super) struct Image {
     pub modulus: Modulus,
-    /// The coefficients of the harmonics of `y_n`; empty for orders that nobody wants from this prime.
-    pub displacement: Vec<Vec<u64>>,
+    /// The coefficients of the harmonics of `y_n` from the order on that is wanted from this prime.
+    displacement: Vec<u64>,
+    /// Where the first of them stands among those of all orders.
+    start: usize,
     /// `W_n`.
     pub frequency_squared: Vec<u64>,
     /// `omega_n`.
     pub frequency: Vec<u64>,
 }
 
-/// Everything that is wanted, modulo one prime; the motion from the order `wanted` on. `None` where a divisor is a multiple of the
-/// prime, and where a secular sine stays: the ring's own recursion says which.
-pub(super) fn expand<A: Arithmetic>(arithmetic: A, plan: &Plan, prime: u64, wanted: usize) -> Option<Image> {
-    let mut recursion = Recursion::new(arithmetic, plan, Modulus::new(prime, A::RADIX))?;
-    for order in 1..=plan.highest {
-        recursion.solve_order(order)?;
+impl Image {
+    /// The coefficients of an order; empty where nobody wants them from this prime.
+    pub fn displacement(&self, plan: &Plan, order: usize) -> &[u64] {
+        let places = plan.places(order);
+        let Some(start) = places.start.checked_sub(self.start) else {
+            return &[];
+        };
+        self.displacement.get(start..places.end - self.start).unwrap_or(&[])
     }
-    if plan.last > plan.highest && plan.highest > 0 {
-        let mut right_side = recursion.right_side(plan.last);
-        recursion.fix_amplitude(plan.last, &mut right_side);
-    }
-    let modulus = recursion.modulus;
-    let plain = |residues: &[u64]| residues.iter().map(|residue| modulus.plain(*residue)).collect();
-    let motion = recursion.motion.iter().enumerate();
-    Some(Image {
-        modulus,
-        displacement: motion
-            .map(|(order, own)| match order < wanted {
-                true => vec![],
-                false => plain(&own[..plan.harmonics(order)]),
-            })
-            .collect(),
-        frequency_squared: plain(&recursion.frequency_squared),
-        frequency: plain(&recursion.frequency),
-    })
 }
 
-struct Recursion<'a, A> {
+/// The recursion modulo one prime after the other, in the same memory.
+pub(super) struct Recursion<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
-    modulus: Modulus,
-    waves: Waves,
-    factors: Factors,
-    coefficients: Vec<u64>,
     /// Values at the points, an entry for each order.
     tables: Vec<Rows>,
     /// Coefficients of the harmonics: of `y_n''` or `-y_n`, of `y_n'`, and of the derivative of all terms with one velocity.
     detuned: Rows,
     derived: Rows,
     damped: Rows,
-    motion: Vec<Vec<u64>>,
+    /// The coefficients of all orders at their [places](Plan::places).
+    motion: Vec<u64>,
     frequency_squared: Vec<u64>,
     frequency: Vec<u64>,
     of_amplitude: Option<Variation>,
     values: Vec<u64>,
     reversed: Vec<u64>,
+    parts: Vec<Part>,
+    right_side: Vec<u64>,
+    change: Vec<u64>,
+}
+
+/// What there is of one prime before anything is expanded.
+pub(super) struct Field {
+    pub modulus: Modulus,
+    waves: Waves,
+    factors: Factors,
+    /// Those of the terms, each over the power whose derivative is meant.
+    pub coefficients: Vec<u64>,
+}
+
+impl Field {
+    /// `None` where a divisor is a multiple of the prime.
+    pub fn new(plan: &Plan, modulus: Modulus) -> Option<Self> {
+        let coefficient = |(term, (_, derivative)): (&Term, &(usize, bool))| {
+            let (numerator, denominator) = (term.coefficient.numer(), term.coefficient.denom());
+            let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
+            let divisor = modulus.product(modulus.integer(denominator), modulus.small(power));
+            (divisor != 0).then(|| modulus.product(modulus.integer(numerator), modulus.inverse(divisor)))
+        };
+        let pairs = plan.terms.iter().zip(&plan.of_terms);
+        Some(Self {
+            modulus,
+            waves: Waves::new(&modulus, plan.grid)?,
+            factors: Factors::new(&modulus, plan)?,
+            coefficients: pairs.map(coefficient).collect::<Option<_>>()?,
+        })
+    }
 }
 
 /// What the coefficients of the harmonics are multiplied by, one by one.
@@ -340,56 +368,84 @@ struct Variation {
 }
 
 impl<'a, A: Arithmetic> Recursion<'a, A> {
-    fn new(arithmetic: A, plan: &'a Plan, modulus: Modulus) -> Option<Self> {
+    /// Room for all orders.
+    pub fn new(arithmetic: A, plan: &'a Plan) -> Self {
         let orders = plan.last + 1;
         let points = plan.grid.size();
         let harmonics = plan.most_harmonics();
-        let coefficient = |(term, (_, derivative)): (&Term, &(usize, bool))| {
-            let (numerator, denominator) = (term.coefficient.numer(), term.coefficient.denom());
-            let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
-            let divisor = modulus.product(modulus.integer(denominator), modulus.small(power));
-            (divisor != 0).then(|| modulus.product(modulus.integer(numerator), modulus.inverse(divisor)))
-        };
-        let pairs = plan.terms.iter().zip(&plan.of_terms);
         let table = |wanted: bool| Rows::new(if wanted { harmonics } else { 0 }, orders + 1);
-        let mut recursion = Self {
+        Self {
             arithmetic,
             plan,
-            modulus,
-            waves: Waves::new(&modulus, plan.grid)?,
-            factors: Factors::new(&modulus, plan)?,
-            coefficients: pairs.map(coefficient).collect::<Option<_>>()?,
             tables: vec![Rows::new(points, orders); plan.tables],
             detuned: table(true),
             derived: table(plan.has_velocity),
             damped: table(plan.of_terms.iter().any(|(_, derivative)| *derivative)),
-            motion: Vec::with_capacity(orders),
-            frequency_squared: vec![modulus.one],
-            frequency: vec![modulus.one],
+            motion: vec![0; *plan.starts.last().unwrap_or(&0)],
+            frequency_squared: Vec::with_capacity(orders),
+            frequency: Vec::with_capacity(orders),
             of_amplitude: None,
             values: vec![0; padded(points)],
             reversed: Vec::with_capacity(orders),
-        };
-        let mut start = vec![0; WIDTH];
-        start[plan.resonant()] = modulus.one;
-        recursion.push_displacement(0, start);
-        if plan.scheme.amplitude == Amplitude::Determined {
-            recursion.of_amplitude = Some(recursion.variation()?);
+            parts: Vec::with_capacity(plan.terms.len()),
+            right_side: vec![0; padded(harmonics)],
+            change: vec![0; padded(harmonics)],
         }
-        Some(recursion)
     }
 
-    fn solve_order(&mut self, order: usize) -> Option<()> {
-        let mut right_side = self.right_side(order);
-        if order > 1 {
-            self.fix_amplitude(order, &mut right_side);
+    /// Everything that is wanted, modulo one prime; the motion from the order `wanted` on. `None` where a divisor is a multiple of
+    /// the prime, and where a secular sine stays: the ring's own recursion says which.
+    pub fn image(&mut self, prime: u64, wanted: usize) -> Option<Image> {
+        let modulus = Modulus::new(prime, A::RADIX);
+        let mut field = Field::new(self.plan, modulus)?;
+        let coefficients = std::mem::take(&mut field.coefficients);
+        self.expand(&mut field, &coefficients)?;
+        let plain = |residues: &[u64]| residues.iter().map(|residue| modulus.plain(*residue)).collect();
+        let start = self.plan.starts[wanted.min(self.plan.highest + 1)];
+        Some(Image {
+            modulus,
+            displacement: plain(&self.motion[start..self.plan.starts[self.plan.highest + 1]]),
+            start,
+            frequency_squared: plain(&self.frequency_squared),
+            frequency: plain(&self.frequency),
+        })
+    }
+
+    /// Expands with these coefficients of the terms.
+    pub fn expand(&mut self, field: &mut Field, coefficients: &[u64]) -> Option<()> {
+        let (plan, one) = (self.plan, field.modulus.one);
+        self.frequency_squared.clear();
+        self.frequency.clear();
+        self.frequency_squared.push(one);
+        self.frequency.push(one);
+        self.right_side.fill(0);
+        self.right_side[plan.resonant()] = one;
+        self.push_displacement(field, 0);
+        self.of_amplitude = match plan.scheme.amplitude {
+            Amplitude::Free => None,
+            Amplitude::Determined => Some(self.variation(field, coefficients)?),
+        };
+        for order in 1..=plan.highest {
+            self.solve_order(field, coefficients, order)?;
         }
-        let (modulus, resonant) = (self.modulus, self.plan.resonant());
+        if plan.last > plan.highest && plan.highest > 0 {
+            self.form_right_side(field, coefficients, plan.last);
+            self.fix_amplitude(field, plan.last);
+        }
+        Some(())
+    }
+
+    fn solve_order(&mut self, field: &mut Field, coefficients: &[u64], order: usize) -> Option<()> {
+        self.form_right_side(field, coefficients, order);
+        if order > 1 {
+            self.fix_amplitude(field, order);
+        }
+        let (modulus, resonant) = (field.modulus, self.plan.resonant());
         let wave = self.plan.wave(order);
         let square = match wave {
-            Wave::Sine if right_side[resonant] != 0 => return None,
+            Wave::Sine if self.right_side[resonant] != 0 => return None,
             Wave::Sine => 0,
-            Wave::Cosine => modulus.negative(right_side[resonant]),
+            Wave::Cosine => modulus.negative(self.right_side[resonant]),
         };
         let lower = (1..order).filter(|&i| self.frequency[i] != 0);
         let products = lower.fold(0, |sum, i| {
@@ -404,59 +460,74 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         };
         self.frequency_squared.push(square);
         self.frequency.push(half);
-        let mut displacement = right_side;
-        multiply(self.arithmetic, &modulus, &mut displacement, &self.factors.solution);
-        self.normalise(wave, &mut displacement);
-        self.push_displacement(order, displacement);
+        let count = padded(self.plan.harmonics(order));
+        multiply(
+            self.arithmetic,
+            &modulus,
+            &mut self.right_side[..count],
+            &field.factors.solution,
+        );
+        self.normalise(field, order);
+        self.push_displacement(field, order);
         Some(())
     }
 
     /// `r_n` as in the head of the module, in the coefficients of its harmonics.
-    fn right_side(&mut self, order: usize) -> Vec<u64> {
-        let (arithmetic, modulus, plan) = (self.arithmetic, self.modulus, self.plan);
+    fn form_right_side(&mut self, field: &mut Field, coefficients: &[u64], order: usize) {
+        let (arithmetic, modulus, plan) = (self.arithmetic, field.modulus, self.plan);
         let wave = plan.wave(order);
         let count = plan.harmonics(order);
-        let mut right_side = vec![0; padded(count)];
-        if self.mixed(order, false) {
+        let mut right_side = std::mem::take(&mut self.right_side);
+        let mut change = std::mem::take(&mut self.change);
+        let used = padded(count);
+        right_side[..used].fill(0);
+        if self.mix(&modulus, coefficients, order, false) {
             let out = &mut right_side[..count];
-            self.waves
+            field
+                .waves
                 .coefficients((arithmetic, &modulus), wave, &mut self.values, out);
             out.iter_mut().for_each(|value| *value = modulus.negative(*value));
         }
-        if self.mixed(order, true) {
-            let mut damped = vec![0; padded(count)];
-            let out = &mut damped[..count];
-            self.waves
-                .coefficients((arithmetic, &modulus), wave.other(), &mut self.values, out);
-            multiply(arithmetic, &modulus, &mut damped, self.factors.derivative(wave.other()));
-            self.damped.write(self.slot(order), &damped);
+        if self.mix(&modulus, coefficients, order, true) {
+            let damped = &mut change[..used];
+            damped.fill(0);
+            field.waves.coefficients(
+                (arithmetic, &modulus),
+                wave.other(),
+                &mut self.values,
+                &mut damped[..count],
+            );
+            multiply(arithmetic, &modulus, damped, field.factors.derivative(wave.other()));
+            self.damped.write(self.slot(order), damped);
             if plan.scheme.detuning == Detuning::Acceleration {
                 self.delayed(
+                    &modulus,
                     |this| (&this.damped, &this.frequency[..]),
                     order,
                     1..order + 1,
-                    &mut damped,
+                    damped,
                 );
             }
-            subtract(&modulus, &mut right_side, &damped);
+            subtract(&modulus, &mut right_side[..used], damped);
         }
         if order > 1 {
-            let mut detuned = vec![0; right_side.len()];
+            let detuned = &mut change[..used];
             self.delayed(
+                &modulus,
                 |this| (&this.detuned, &this.frequency_squared[..]),
                 order,
                 1..order,
-                &mut detuned,
+                detuned,
             );
-            subtract(&modulus, &mut right_side, &detuned);
+            subtract(&modulus, &mut right_side[..used], detuned);
         }
-        right_side
+        (self.right_side, self.change) = (right_side, change);
     }
 
     /// The sum of all terms at an order, with a derivative or without, into `values`; whether there are any such terms.
-    fn mixed(&mut self, order: usize, derivative: bool) -> bool {
-        let terms = self.plan.terms.iter().zip(&self.plan.of_terms).zip(&self.coefficients);
-        let parts: Vec<Part> = terms
+    fn mix(&mut self, modulus: &Modulus, coefficients: &[u64], order: usize, derivative: bool) -> bool {
+        let terms = self.plan.terms.iter().zip(&self.plan.of_terms).zip(coefficients);
+        let parts = terms
             .filter(|((_, (_, own)), _)| *own == derivative)
             .filter_map(|((term, (table, _)), factor)| {
                 Some(Part {
@@ -464,10 +535,13 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                     table: *table,
                     order: order.checked_sub(term.order)?,
                 })
-            })
-            .collect();
-        mixture(self.arithmetic, &self.modulus, &parts, &self.tables, &mut self.values);
-        !parts.is_empty()
+            });
+        self.parts.clear();
+        self.parts.extend(parts);
+        if !self.parts.is_empty() {
+            mixture(self.arithmetic, modulus, &self.parts, &self.tables, &mut self.values);
+        }
+        !self.parts.is_empty()
     }
 
     /// Where an order stands among the coefficients: those of the same symmetry side by side.
@@ -481,9 +555,10 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// `out = sum over i in range of frequency_(order-i) series_i`, where orders of the other symmetry are zero.
     fn delayed(
         &mut self,
+        modulus: &Modulus,
         series: impl Fn(&Self) -> (&Rows, &[u64]),
         order: usize,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         out: &mut [u64],
     ) {
         let step = if self.plan.alternating { 2 } else { 1 };
@@ -497,14 +572,15 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         reversed.extend((start..range.end).step_by(step).map(|i| frequency[order - i]));
         let first = |block| self.plan.first(block, start, step);
         let table = (rows, self.slot(start));
-        combine(self.arithmetic, &self.modulus, &reversed, table, first, out);
+        combine(self.arithmetic, modulus, &reversed, table, first, out);
         self.reversed = reversed;
     }
 
     /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular sine.
-    fn fix_amplitude(&mut self, order: usize, right_side: &mut [u64]) {
+    fn fix_amplitude(&mut self, field: &Field, order: usize) {
         let Some(variation) = &self.of_amplitude else { return };
-        let (modulus, plan, resonant) = (self.modulus, self.plan, self.plan.resonant());
+        let (modulus, plan, resonant) = (field.modulus, self.plan, self.plan.resonant());
+        let right_side = &mut self.right_side[..];
         if plan.wave(order) == Wave::Cosine || right_side[resonant] == 0 {
             return;
         }
@@ -513,17 +589,17 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         for (table, change) in self.tables.iter_mut().zip(&variation.tables) {
             vary(self.arithmetic, &modulus, (table, order - 1), amplitude, change);
         }
+        add_multiple(&modulus, right_side, amplitude, &variation.plain);
+        add_multiple(&modulus, right_side, modulus.negative(amplitude), &variation.damped);
         let before = self.slot(order - 1);
-        let first = &mut self.motion[order - 1][resonant];
+        let first = &mut self.motion[plan.starts[order - 1] + resonant];
         *first = modulus.sum(*first, amplitude);
         let first = *first;
-        let detuned = modulus.product(first, self.factors.detuning[resonant]);
+        let detuned = modulus.product(first, field.factors.detuning[resonant]);
         self.detuned.set(resonant, before, detuned);
         if plan.has_velocity {
             self.derived.set(resonant, before, modulus.negative(first));
         }
-        add_multiple(&modulus, right_side, amplitude, &variation.plain);
-        add_multiple(&modulus, right_side, modulus.negative(amplitude), &variation.damped);
         let slot = self.slot(order);
         if self.damped.blocks() > 0 {
             for (index, change) in variation.damped.iter().enumerate() {
@@ -533,16 +609,17 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
     }
 
-    /// Adds the homogeneous solution that the amplitude convention asks for.
-    fn normalise(&self, wave: Wave, displacement: &mut [u64]) {
+    /// Adds to the solution of an order the homogeneous one that the amplitude convention asks for.
+    fn normalise(&mut self, field: &Field, order: usize) {
         if self.plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
             return;
         }
-        let modulus = &self.modulus;
-        let at_zero = match (wave, self.plan.scheme.amplitude) {
+        let modulus = &field.modulus;
+        let displacement = &mut self.right_side[..self.plan.harmonics(order)];
+        let at_zero = match (self.plan.wave(order), self.plan.scheme.amplitude) {
             (Wave::Sine, _) => displacement
                 .iter()
-                .zip(&self.factors.rising)
+                .zip(&field.factors.rising)
                 .fold(0, |sum, (value, k)| modulus.sum(sum, modulus.product(*value, *k))),
             (Wave::Cosine, Amplitude::Free) => displacement.iter().fold(0, |sum, value| modulus.sum(sum, *value)),
             (Wave::Cosine, Amplitude::Determined) => return,
@@ -550,28 +627,36 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         displacement[self.plan.resonant()] = modulus.negative(at_zero);
     }
 
-    fn push_displacement(&mut self, order: usize, displacement: Vec<u64>) {
-        let (arithmetic, modulus, plan) = (self.arithmetic, self.modulus, self.plan);
+    /// Takes what stands in `right_side` for `y_n`.
+    fn push_displacement(&mut self, field: &mut Field, order: usize) {
+        let (arithmetic, modulus, plan) = (self.arithmetic, field.modulus, self.plan);
         let (wave, count, slot) = (plan.wave(order), plan.harmonics(order), self.slot(order));
-        self.waves
+        let used = padded(count);
+        let displacement = &self.right_side[..used];
+        self.motion[plan.starts[order]..][..used].copy_from_slice(displacement);
+        field
+            .waves
             .values((arithmetic, &modulus), wave, &displacement[..count], &mut self.values);
         self.tables[0].write(order, &self.values);
-        let mut detuned = displacement.clone();
-        multiply(arithmetic, &modulus, &mut detuned, &self.factors.detuning);
-        self.detuned.write(slot, &detuned);
+        let mut change = std::mem::take(&mut self.change);
+        change[..used].copy_from_slice(displacement);
+        multiply(arithmetic, &modulus, &mut change[..used], &field.factors.detuning);
+        self.detuned.write(slot, &change[..used]);
         if plan.has_velocity {
-            let mut velocity = displacement.clone();
-            multiply(arithmetic, &modulus, &mut velocity, self.factors.derivative(wave));
-            self.derived.write(slot, &velocity);
+            let velocity = &mut change[..used];
+            velocity.copy_from_slice(displacement);
+            multiply(arithmetic, &modulus, velocity, field.factors.derivative(wave));
+            self.derived.write(slot, velocity);
             if plan.scheme.detuning == Detuning::Acceleration {
                 self.delayed(
+                    &modulus,
                     |this| (&this.derived, &this.frequency[..]),
                     order,
                     0..order + 1,
-                    &mut velocity,
+                    velocity,
                 );
             }
-            self.waves.values(
+            field.waves.values(
                 (arithmetic, &modulus),
                 wave.other(),
                 &velocity[..count],
@@ -579,13 +664,13 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             );
             self.tables[1].write(order, &self.values);
         }
-        self.motion.push(displacement);
+        self.change = change;
         convolve(arithmetic, &modulus, &plan.products, &mut self.tables, order);
     }
 
     /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.
-    fn variation(&mut self) -> Option<Variation> {
-        let (arithmetic, modulus, plan) = (self.arithmetic, self.modulus, self.plan);
+    fn variation(&mut self, field: &mut Field, coefficients: &[u64]) -> Option<Variation> {
+        let (arithmetic, modulus, plan) = (self.arithmetic, field.modulus, self.plan);
         let start: Vec<Vec<u64>> = self.tables.iter().map(|table| table.read(0)).collect();
         // Of y and of omega y': themselves.
         let leaves = 1 + usize::from(plan.has_velocity);
@@ -602,7 +687,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let count = plan.harmonics(1);
         let mut changes = [(Wave::Sine, false), (Wave::Cosine, true)].map(|(wave, derivative)| {
             let mut values = vec![0; self.values.len()];
-            let terms = plan.terms.iter().zip(&plan.of_terms).zip(&self.coefficients);
+            let terms = plan.terms.iter().zip(&plan.of_terms).zip(coefficients);
             for ((_, (table, _)), coefficient) in
                 terms.filter(|((term, (_, own)), _)| term.order == 1 && *own == derivative)
             {
@@ -610,12 +695,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             }
             let mut change = vec![0; padded(count)];
             let out = &mut change[..count];
-            self.waves.coefficients((arithmetic, &modulus), wave, &mut values, out);
+            field.waves.coefficients((arithmetic, &modulus), wave, &mut values, out);
             change
         });
         let [plain, damped] = &mut changes;
         plain.iter_mut().for_each(|value| *value = modulus.negative(*value));
-        multiply(arithmetic, &modulus, damped, &self.factors.falling);
+        multiply(arithmetic, &modulus, damped, &field.factors.falling);
         let slope = modulus.difference(plain[plan.resonant()], damped[plan.resonant()]);
         let [plain, damped] = changes;
         (slope != 0).then(|| Variation {

@@ -18,7 +18,7 @@ use num_traits::{One, Zero};
 use rayon::prelude::*;
 
 use super::denominators::{Factored, Growth};
-use super::modular::{self, Image, Plan, Term};
+use super::modular::{Image, Plan, Recursion, Term};
 use super::{Amplitude, Expansion, ForceTerm, Scheme, SecularSine};
 use crate::exact::residue::remainder::{Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Modulus, Work, by_widest, primes_below};
@@ -46,6 +46,10 @@ pub fn expand(
 ) -> Option<Expansion<Integers>> {
     by_widest(Expand(force, highest, *scheme, extent))
 }
+
+/// Up to this order one thread is done before others have begun.
+#[cfg(feature = "parallel")]
+const ALONE: usize = 40;
 
 /// The order to which long expansions are first derived to see how their denominators grow.
 const GUESSED: usize = 32;
@@ -128,22 +132,25 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             None => self.beginning()?,
         };
         let highest = self.plan.highest;
-        let motion = match self.extent {
-            Extent::Frequency => vec![vec![Factored::default(); highest + 1]],
-            Extent::Motion => {
-                let factor = |order| self.plan.largest_factor(order);
-                beginning.motion.denominators(highest, &factor)
-            }
+        let of_motion = |order| self.plan.largest_factor(order);
+        let of_frequency = |order| self.plan.largest_factor_of_frequency(order);
+        // One guess about a motion that nobody wants is enough.
+        let guesses = match self.extent {
+            Extent::Frequency => &Growth::ALL[..1],
+            Extent::Motion => &Growth::ALL[..],
         };
-        let factor = |order| self.plan.largest_factor_of_frequency(order);
-        let frequency = beginning.frequency.denominators(highest, &factor);
-        let pairs = motion
-            .iter()
-            .flat_map(|motion| frequency.iter().map(move |frequency| (motion, frequency)));
-        for (motion, frequency) in pairs {
-            let lifted = self.lifted(motion, frequency, &beginning);
-            if lifted.is_some() {
-                return lifted;
+        for growth in guesses {
+            let motion = match self.extent {
+                Extent::Frequency => Some(vec![Factored::default(); highest + 1]),
+                Extent::Motion => growth.denominators(&beginning.motion.known, highest, &of_motion),
+            };
+            let Some(motion) = motion else { continue };
+            for growth in Growth::ALL {
+                let frequency = growth.denominators(&beginning.frequency.known, highest, &of_frequency);
+                let lifted = frequency.and_then(|frequency| self.lifted(&motion, &frequency, &beginning));
+                if lifted.is_some() {
+                    return lifted;
+                }
             }
         }
         None
@@ -165,12 +172,20 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
 
     /// Images of the primes from `self.first.len()` up to `count`, each from the order on that it is wanted for.
     fn images(&self, count: usize, wanted: impl Fn(usize) -> usize + Sync) -> Option<Vec<Image>> {
-        let image = |place: usize| modular::expand(self.arithmetic, self.plan, self.primes[place], wanted(place));
-        let places = self.first.len()..count;
+        let images = |places: &[usize]| -> Option<Vec<Image>> {
+            let mut recursion = Recursion::new(self.arithmetic, self.plan);
+            let image = |place: &usize| recursion.image(self.primes[*place], wanted(*place));
+            places.iter().map(image).collect()
+        };
+        let places: Vec<usize> = (self.first.len()..count).collect();
         #[cfg(feature = "parallel")]
-        return places.into_par_iter().map(image).collect();
-        #[cfg(not(feature = "parallel"))]
-        places.map(image).collect()
+        if self.plan.highest > ALONE {
+            // A few lots for each thread: within one, the memory is used again.
+            let lot = places.len().div_ceil(4 * rayon::current_num_threads()).max(1);
+            let lots: Option<Vec<Vec<Image>>> = places.par_chunks(lot).map(images).collect();
+            return Some(lots?.into_iter().flatten().collect());
+        }
+        images(&places)
     }
 
     /// The first orders as fractions, by as many primes as they need.
@@ -201,7 +216,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                     Extent::Motion => self.plan.harmonics(order),
                     Extent::Frequency => 0,
                 };
-                let motion = known(count, &|image, index| image.displacement[order][index]);
+                let motion = known(count, &|image, index| image.displacement(self.plan, order)[index]);
                 let frequency = known(2, &|image, index| match index {
                     0 => image.frequency[order],
                     _ => image.frequency_squared[order],
@@ -287,11 +302,13 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         let group = |(count, orders): (usize, std::ops::Range<usize>)| {
-            Lift::new(self.arithmetic, &all[..=count]).orders(orders, motion, frequency)
+            Lift::new(self.arithmetic, self.plan, &all[..=count]).orders(orders, motion, frequency)
         };
         #[cfg(feature = "parallel")]
-        let lifted: Option<Vec<Vec<Order>>> = groups.into_par_iter().map(group).collect();
-        #[cfg(not(feature = "parallel"))]
+        if self.plan.highest > ALONE {
+            let lifted: Option<Vec<Vec<Order>>> = groups.into_par_iter().map(group).collect();
+            return Some(lifted?.into_iter().flatten().collect());
+        }
         let lifted: Option<Vec<Vec<Order>>> = groups.into_iter().map(group).collect();
         Some(lifted?.into_iter().flatten().collect())
     }
@@ -342,14 +359,6 @@ impl Guess {
         self.growth = self.growth.max(size / order.max(1) as f64);
         self.known.push(denominator);
     }
-
-    /// What the denominators of all orders may be, the likeliest first.
-    fn denominators(&self, highest: usize, largest_factor: &dyn Fn(usize) -> u64) -> Vec<Vec<Factored>> {
-        let growths = Growth::ALL.into_iter();
-        growths
-            .filter_map(|growth| growth.denominators(&self.known, highest, largest_factor))
-            .collect()
-    }
 }
 
 /// The residues of one number, each times its weight.
@@ -366,6 +375,7 @@ fn weighted<'a>(
 
 /// The way back for orders that share their primes.
 struct Lift<'a, A> {
+    plan: &'a Plan<'a>,
     images: &'a [&'a Image],
     remainders: Remainders<A>,
     /// The prime that only tests.
@@ -376,13 +386,14 @@ struct Lift<'a, A> {
 
 impl<'a, A: Arithmetic> Lift<'a, A> {
     /// The last of the images is the one that tests.
-    fn new(arithmetic: A, images: &'a [&'a Image]) -> Self {
+    fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a Image]) -> Self {
         let (test, images) = images.split_last().expect("one image at least");
         let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
         let digit = test.modulus.residue(1 << A::DIGIT);
         let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2;
         let next = |power: &u64| Some(test.modulus.product(*power, digit));
         Self {
+            plan,
             images,
             remainders: Remainders::new(arithmetic, &moduli),
             test,
@@ -441,8 +452,8 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
 
     /// Empty where no prime keeps the motion.
     fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
-        let count = self.test.displacement[order].len();
-        self.numbers(over, count, |image, index| image.displacement[order][index])
+        let count = self.test.displacement(self.plan, order).len();
+        self.numbers(over, count, |image, index| image.displacement(self.plan, order)[index])
     }
 
     /// From what the last order needed, where that divides.

@@ -5,12 +5,13 @@
 use std::error::Error;
 use std::time::Instant;
 
-use lindstedt::exact::{Integer, Integers, Rational, factorial};
-use lindstedt::method::secular::{Amplitude, Detuning, Expansion, Extent, ForceTerm, Scheme, expand_numbers};
-use lindstedt::method::{Options, solve};
+use lindstedt::Symbol;
+use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, factorial};
+use lindstedt::method::secular::{
+    Amplitude, Detuning, Expansion, Extent, ForceTerm, Scheme, expand_numbers, expand_polynomials,
+};
 use lindstedt::series::{FourierSeries, fraction};
-use lindstedt::solution::{AmplitudeConvention, Law};
-use lindstedt::{Oscillator, Symbol};
+use lindstedt::solution::AmplitudeConvention;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -98,22 +99,32 @@ fn mean(constant: &FourierSeries<Integers>) -> Rational {
     fraction(&numerator, denominator)
 }
 
+/// The frequency alone, as the program it is compared with.
 fn symbolic(order: usize) -> Result<(), Box<dyn Error>> {
-    let oscillator = Oscillator::parse("x'' + x + eps*(a2*x^2 + a3*x^3 + a5*x^5) = 0")?;
-    let options = Options {
-        order: Some(u32::try_from(order)?),
-        ..Options::default()
+    let letters = ["a2", "a3", "a5"];
+    let terms = [2, 3, 5].into_iter().zip(letters);
+    let force: Vec<ForceTerm<Polynomials<Integers>>> = terms
+        .map(|(position, name)| ForceTerm {
+            order: 1,
+            position,
+            velocity: 0,
+            coefficient: FourierSeries::constant(Polynomials(Integers), Polynomial::symbol(Symbol::new(name))),
+        })
+        .collect();
+    let scheme = Scheme {
+        normalisation: AmplitudeConvention::Initial,
+        amplitude: Amplitude::Free,
+        detuning: Detuning::Acceleration,
     };
     let start = Instant::now();
-    let solution = solve(&oscillator, &options)?;
+    let expansion = expand_polynomials(&force, order, &scheme, Extent::Frequency)?;
     println!("T {:.9}", start.elapsed().as_secs_f64());
-    let Law::Series { squared, .. } = &solution.law else {
-        return Err("no series".into());
-    };
-    for (monomial, coefficient) in squared.terms() {
-        let exponent = |name: &str| monomial.exponent(Symbol::new(name));
-        let [n, i, j, k] = ["eps", "a2", "a3", "a5"].map(exponent);
-        println!("W {n} {i} {j} {k} {coefficient}");
+    for (n, square) in expansion.frequency_squared.iter().enumerate() {
+        let (numerator, denominator) = square.mean();
+        for (monomial, coefficient) in numerator.terms() {
+            let [i, j, k] = letters.map(|name| monomial.exponent(Symbol::new(name)));
+            println!("W {n} {i} {j} {k} {}", fraction(coefficient, denominator));
+        }
     }
     Ok(())
 }

@@ -9,7 +9,9 @@ use std::collections::BTreeSet;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::secular::{Amplitude, Expansion, Extent, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers};
+use super::secular::{
+    Amplitude, Expansion, Extent, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers, expand_polynomials,
+};
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -101,12 +103,18 @@ pub fn expand_exactly(
         }
         _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
-            let inverse_slope = inverse_slope.map(|inverse| over_integers(&without(inverse, &scales)));
-            let ring = Polynomials(Integers);
-            let mut expansion = expand_from_root(&ring, &force, order as usize, scheme, inverse_slope)?;
-            if extent == Extent::Frequency {
-                expansion.forget_motion();
-            }
+            let expansion = match inverse_slope {
+                None => expand_polynomials(&force, order as usize, scheme, extent)?,
+                Some(inverse) => {
+                    let inverse = over_integers(&without(inverse, &scales));
+                    let ring = Polynomials(Integers);
+                    let mut expansion = expand_from_root(&ring, &force, order as usize, scheme, Some(inverse))?;
+                    if extent == Extent::Frequency {
+                        expansion.forget_motion();
+                    }
+                    expansion
+                }
+            };
             let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
                 numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
             };

@@ -16,6 +16,7 @@
 mod denominators;
 mod modular;
 mod reconstruct;
+mod symbolic;
 
 pub use reconstruct::Extent;
 
@@ -24,7 +25,7 @@ use std::collections::HashMap;
 use num_integer::Integer as _;
 
 use crate::exact::ring::Indivisible;
-use crate::exact::{Integers, Ring};
+use crate::exact::{Integers, Polynomials, Ring};
 use crate::series::convolution::{Convolutions, Node};
 use crate::series::fourier::{FourierSeries, sum_of_products};
 use crate::solution::AmplitudeConvention;
@@ -250,6 +251,57 @@ pub fn expand_numbers(
         1 => expansion,
         _ => expansion.spread(step, highest),
     })
+}
+
+/// As [`expand`] over polynomials with whole coefficients, and with the same result: from numbers at many values of the symbols
+/// where there are many products of them.
+///
+/// # Errors
+/// See [`SecularError`].
+///
+/// ```
+/// use lindstedt::exact::{Integers, Polynomial, Polynomials};
+/// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_polynomials};
+/// use lindstedt::{Symbol, series::FourierSeries, solution::AmplitudeConvention};
+///
+/// // y'' + y + delta (a y^2 + b y^3) = 0
+/// let term = |position, name| {
+///     let coefficient = Polynomial::symbol(Symbol::new(name));
+///     ForceTerm { order: 1, position, velocity: 0, coefficient: FourierSeries::constant(Polynomials(Integers), coefficient) }
+/// };
+/// let scheme = Scheme {
+///     normalisation: AmplitudeConvention::FirstHarmonic,
+///     amplitude: Amplitude::Free,
+///     detuning: Detuning::Acceleration,
+/// };
+/// let found = expand_polynomials(&[term(2, "a"), term(3, "b")], 6, &scheme, Extent::Frequency)?;
+/// let (numerator, denominator) = found.frequency_squared[2].mean();
+/// // -5/6 a^2 + 3/128 b^2
+/// assert_eq!((numerator.terms().len(), denominator.to_string().as_str()), (2, "384"));
+/// # Ok::<(), lindstedt::method::secular::SecularError>(())
+/// ```
+pub fn expand_polynomials(
+    force: &[ForceTerm<Polynomials<Integers>>],
+    highest: usize,
+    scheme: &Scheme,
+    extent: Extent,
+) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
+    /// Below, there are few products.
+    const MANY: usize = 3;
+    bounded(
+        force.iter().map(|term| (term.order, term.position + term.velocity)),
+        highest,
+    )?;
+    if highest >= MANY
+        && let Some(expansion) = symbolic::expand(force, highest, scheme, extent)
+    {
+        return Ok(expansion);
+    }
+    let mut expansion = expand(&Polynomials(Integers), force, highest, scheme)?;
+    if extent == Extent::Frequency {
+        expansion.forget_motion();
+    }
+    Ok(expansion)
 }
 
 impl<R: Ring> Expansion<R> {

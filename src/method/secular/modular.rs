@@ -411,6 +411,21 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         })
     }
 
+    /// `W_n` of what was expanded last, in Montgomery's form as the others.
+    pub fn frequency_squared(&self) -> &[u64] {
+        &self.frequency_squared
+    }
+
+    /// `omega_n`.
+    pub fn frequency(&self) -> &[u64] {
+        &self.frequency
+    }
+
+    /// The coefficients of the harmonics of `y_n`.
+    pub fn displacement(&self, order: usize) -> &[u64] {
+        &self.motion[self.plan.places(order)]
+    }
+
     /// Expands with these coefficients of the terms.
     pub fn expand(&mut self, field: &mut Field, coefficients: &[u64]) -> Option<()> {
         let (plan, one) = (self.plan, field.modulus.one);

@@ -1,0 +1,579 @@
+//! An exact expansion whose coefficients contain symbols, from what primes see of it at many values of them.
+//!
+//! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013, section 5.5 (change of representation);
+//! N. Dyn and M. S. Floater, *Multivariate polynomial interpolation on lower sets*, J. Approx. Theory 177 (2014) 34-42.
+//!
+//! ```text
+//! sum_t c_t delta^(a_t) y^(p_t) (omega y')^(q_t):   order n = sum K_e prod c_t^(e_t)   over all e with sum a_t e_t = n
+//! c_1 = 1 for a term with a_1 = 1:  the others, u, have sum a_t e_t <= n, a lower set, and K_e follow from values at u_t = e_t
+//! ```
+//!
+//! Terms with the same power of the small parameter and the same symbols share one `u`. At each point the recursion is that over
+//! [residues](super::modular); the fractions are found by the remainders of a few primes, and tried modulo one prime more.
+//!
+//! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each prime, where products of
+//! polynomials would take `P^2` products of coefficients each.
+
+use std::collections::HashMap;
+
+use num_traits::{One, Zero};
+
+use super::modular::{Field, Plan, Recursion, Term};
+use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
+use crate::exact::residue::remainder::{Remainders, fraction};
+use crate::exact::residue::{Arithmetic, Modulus, Work, by_widest, primes_below};
+use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
+use crate::series::FourierSeries;
+use crate::series::waves::Wave;
+
+type Symbols = Polynomials<Integers>;
+
+/// The expansion; `None` where the equation has no symmetry to use, no term of the first order, an amplitude that is determined, or
+/// too many symbols: the ring's own recursion answers then.
+pub(super) fn expand(
+    force: &[ForceTerm<Symbols>],
+    highest: usize,
+    scheme: &Scheme,
+    extent: Extent,
+) -> Option<Expansion<Symbols>> {
+    match scheme.amplitude {
+        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent)),
+        Amplitude::Determined => None,
+    }
+}
+
+struct Expand<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, Extent);
+
+impl Work for Expand<'_> {
+    type Output = Option<Expansion<Symbols>>;
+
+    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+        /// More are as slow as polynomials.
+        const MOST_POINTS: usize = 5000;
+        /// Residues that a prime has of all orders, 32 megabytes of them.
+        const MOST_RESIDUES: usize = 1 << 22;
+        let Self(force, highest, scheme, extent) = self;
+        let (terms, groups) = grouped(force)?;
+        let base = groups.kinds.iter().position(|kind| kind.0 == 1)?;
+        let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
+        let lower_set = LowerSet::new(&weights, base, highest, MOST_POINTS)?;
+        let plan = Plan::new(&terms, highest, scheme, extent == Extent::Frequency)?;
+        let mut search = Search {
+            arithmetic,
+            plan: &plan,
+            groups: &groups,
+            lower_set: &lower_set,
+            extent,
+            primes: Box::new(primes_below(A::BITS, plan.circle())),
+            images: vec![],
+        };
+        let residues: usize = (0..=highest)
+            .map(|order| lower_set.counts[order] * search.numbers(order))
+            .sum();
+        if residues > MOST_RESIDUES {
+            return None;
+        }
+        let orders = search.orders()?;
+        let monomials = lower_set.monomials(&groups.kinds, base);
+        Some(expansion(&plan, &orders, &monomials, extent))
+    }
+}
+
+/// What the symbols of the terms are.
+struct Groups {
+    /// Power of the small parameter and product of symbols.
+    kinds: Vec<(usize, Monomial)>,
+    /// Which of them each term belongs to.
+    of_terms: Vec<usize>,
+}
+
+/// The terms of the force with numbers for coefficients, and what symbols each of them has.
+fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
+    let mut terms = Vec::new();
+    let mut groups = Groups {
+        kinds: vec![],
+        of_terms: vec![],
+    };
+    for own in force {
+        let (numerator, denominator) = own.coefficient.mean();
+        for (monomial, number) in numerator.terms() {
+            let kind = (own.order, monomial.clone());
+            let known = groups.kinds.iter().position(|other| *other == kind);
+            groups.of_terms.push(known.unwrap_or(groups.kinds.len()));
+            if known.is_none() {
+                groups.kinds.push(kind);
+            }
+            terms.push(Term {
+                order: own.order,
+                position: own.position,
+                velocity: own.velocity,
+                coefficient: Rational::new(number.clone(), denominator.clone()),
+            });
+        }
+    }
+    (!terms.is_empty()).then_some((terms, groups))
+}
+
+/// All exponents with `sum weight exponent <= highest`, those of lower weight first.
+struct LowerSet {
+    /// One list of exponents a point; that of the group whose value is one is zero.
+    points: Vec<Vec<usize>>,
+    /// How many points belong to each order.
+    counts: Vec<usize>,
+    /// For each group the places of all points along a line in its direction, from exponent zero on.
+    lines: Vec<Vec<Vec<usize>>>,
+}
+
+impl LowerSet {
+    fn new(weights: &[usize], base: usize, highest: usize, most: usize) -> Option<Self> {
+        let mut of_weight: Vec<Vec<Vec<usize>>> = vec![vec![]; highest + 1];
+        of_weight[0].push(vec![0; weights.len()]);
+        for (group, weight) in weights.iter().enumerate().filter(|(group, _)| *group != base) {
+            for total in *weight..=highest {
+                let more: Vec<Vec<usize>> = of_weight[total - weight]
+                    .iter()
+                    .map(|exponents| {
+                        let mut more = exponents.clone();
+                        more[group] += 1;
+                        more
+                    })
+                    .collect();
+                of_weight[total].extend(more);
+                if of_weight[total].len() > most {
+                    return None;
+                }
+            }
+        }
+        let counts = of_weight.iter().scan(0, |count, own| {
+            *count += own.len();
+            Some(*count)
+        });
+        let counts: Vec<usize> = counts.collect();
+        let points: Vec<Vec<usize>> = of_weight.into_iter().flatten().collect();
+        if points.len() > most {
+            return None;
+        }
+        let place: HashMap<&[usize], usize> = points
+            .iter()
+            .enumerate()
+            .map(|(place, point)| (&point[..], place))
+            .collect();
+        let line = |start: &Vec<usize>, group: usize| -> Vec<usize> {
+            let mut point = start.clone();
+            let mut next = || {
+                let found = place.get(&point[..]).copied();
+                point[group] += 1;
+                found
+            };
+            std::iter::from_fn(&mut next).collect()
+        };
+        let lines = (0..weights.len())
+            .map(|group| {
+                let starts = points.iter().filter(|point| point[group] == 0 && group != base);
+                starts.map(|start| line(start, group)).collect()
+            })
+            .collect();
+        Some(Self { points, counts, lines })
+    }
+
+    /// From values at the points of an order, `numbers` side by side at each, to coefficients, in place. `inverses` are those of
+    /// `1, 2, ...`.
+    fn interpolate(&self, modulus: &Modulus, inverses: &[u64], order: usize, values: &mut [u64], numbers: usize) {
+        let count = self.counts[order];
+        // Points beyond the order are the last ones of a line.
+        let within = |line: &Vec<usize>| line.partition_point(|place| *place < count);
+        // Divided differences at 0, 1, 2, ... in all directions first: only Newton's form has no terms beyond the lower set.
+        for line in self.lines.iter().flatten() {
+            let line = &line[..within(line)];
+            for step in 1..line.len() {
+                for i in (step..line.len()).rev() {
+                    for number in 0..numbers {
+                        let (upper, lower) = (line[i] * numbers + number, line[i - 1] * numbers + number);
+                        let difference = modulus.difference(values[upper], values[lower]);
+                        values[upper] = modulus.product(difference, inverses[step]);
+                    }
+                }
+            }
+        }
+        for line in self.lines.iter().flatten() {
+            let line = &line[..within(line)];
+            for node in (1..line.len().saturating_sub(1)).rev() {
+                let residue = modulus.small(node as i64);
+                for i in node..line.len() - 1 {
+                    for number in 0..numbers {
+                        let product = modulus.product(residue, values[line[i + 1] * numbers + number]);
+                        let lower = &mut values[line[i] * numbers + number];
+                        *lower = modulus.difference(*lower, product);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The symbols that belong to each point but for those of the group whose value is one, and the weight of the point; and that
+    /// group's.
+    fn monomials(&self, kinds: &[(usize, Monomial)], base: usize) -> (Vec<(Monomial, usize)>, Monomial) {
+        let of_point = |point: &Vec<usize>| {
+            let parts = point.iter().zip(kinds);
+            parts.fold(
+                (Monomial::one(), 0),
+                |(product, weight), (exponent, (order, monomial))| {
+                    let power = monomial.power(i32::try_from(*exponent).unwrap_or(i32::MAX));
+                    (product.product(&power), weight + order * exponent)
+                },
+            )
+        };
+        (self.points.iter().map(of_point).collect(), kinds[base].1.clone())
+    }
+}
+
+/// What one prime sees of all orders: for each the plain residues of the coefficients, point by point; of the frequency, of its
+/// square, and of the harmonics where they are wanted.
+struct Image {
+    modulus: Modulus,
+    orders: Vec<Vec<u64>>,
+}
+
+/// One order: the numbers as numerators over one denominator, point by point as in an [`Image`].
+struct Order {
+    denominator: Integer,
+    numerators: Vec<Integer>,
+    /// How many numbers there are at each point.
+    numbers: usize,
+}
+
+struct Search<'a, A> {
+    arithmetic: A,
+    plan: &'a Plan<'a>,
+    groups: &'a Groups,
+    lower_set: &'a LowerSet,
+    extent: Extent,
+    primes: Box<dyn Iterator<Item = u64>>,
+    images: Vec<Image>,
+}
+
+impl<A: Arithmetic> Search<'_, A> {
+    fn numbers(&self, order: usize) -> usize {
+        match self.extent {
+            Extent::Frequency => 2,
+            Extent::Motion => 2 + self.plan.harmonics(order),
+        }
+    }
+
+    fn image(&self, recursion: &mut Recursion<A>, prime: u64) -> Option<Image> {
+        let modulus = Modulus::new(prime, A::RADIX);
+        let mut field = Field::new(self.plan, modulus)?;
+        let highest = self.plan.highest;
+        let sizes = (0..=highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
+        let mut orders: Vec<Vec<u64>> = sizes.map(Vec::with_capacity).collect();
+        let own = std::mem::take(&mut field.coefficients);
+        let mut coefficients = own.clone();
+        for (place, point) in self.lower_set.points.iter().enumerate() {
+            for ((coefficient, own), group) in coefficients.iter_mut().zip(&own).zip(&self.groups.of_terms) {
+                *coefficient = match self.lower_set.lines[*group].is_empty() {
+                    true => *own,
+                    false => modulus.product(*own, modulus.small(point[*group] as i64)),
+                };
+            }
+            recursion.expand(&mut field, &coefficients)?;
+            for (order, values) in orders.iter_mut().enumerate() {
+                if place < self.lower_set.counts[order] {
+                    values.extend([recursion.frequency()[order], recursion.frequency_squared()[order]]);
+                    if self.extent == Extent::Motion {
+                        values.extend(recursion.displacement(order));
+                    }
+                }
+            }
+        }
+        let mut inverses: Vec<u64> = (1..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
+        modulus.invert(&mut inverses)?;
+        inverses.insert(0, 0);
+        for (order, values) in orders.iter_mut().enumerate() {
+            let numbers = self.numbers(order);
+            self.lower_set.interpolate(&modulus, &inverses, order, values, numbers);
+            values.iter_mut().for_each(|value| *value = modulus.plain(*value));
+        }
+        Some(Image { modulus, orders })
+    }
+
+    /// All orders, by as many primes as their fractions need.
+    fn orders(&mut self) -> Option<Vec<Order>> {
+        /// More than any expansion of so few points needs.
+        const MOST_PRIMES: usize = 300;
+        let plan = self.plan;
+        let mut recursion = Recursion::new(self.arithmetic, plan);
+        let mut orders = Vec::with_capacity(plan.highest + 1);
+        let mut count = 2;
+        while orders.len() <= plan.highest {
+            // One prime more, to test.
+            while self.images.len() <= count {
+                let prime = self.primes.next()?;
+                let image = self.image(&mut recursion, prime)?;
+                self.images.push(image);
+            }
+            let (test, images) = self.images.split_last()?;
+            let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
+            let remainders = Remainders::new(self.arithmetic, &moduli);
+            let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
+            while orders.len() <= plan.highest {
+                let order = orders.len();
+                let Some(found) = fractions(images, &remainders, &product, order) else {
+                    break;
+                };
+                let found = Order {
+                    numbers: self.numbers(order),
+                    ..found
+                };
+                if !found.agrees(&test.modulus, &test.orders[order]) {
+                    break;
+                }
+                orders.push(found);
+            }
+            count += count.div_ceil(2);
+            if count > MOST_PRIMES {
+                return None;
+            }
+        }
+        Some(orders)
+    }
+}
+
+/// The numbers of an order as fractions; `None` where the primes are too few.
+fn fractions<A: Arithmetic>(
+    images: &[Image],
+    remainders: &Remainders<A>,
+    product: &Integer,
+    order: usize,
+) -> Option<Order> {
+    let mut denominator = Integer::one();
+    let mut over: Vec<Integer> = vec![];
+    let mut numerators = Vec::new();
+    let mut weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
+    let mut residues = vec![0; images.len()];
+    for index in 0..images[0].orders[order].len() {
+        for ((residue, image), weight) in residues.iter_mut().zip(images).zip(&weights) {
+            *residue = image.modulus.product(image.orders[order][index], *weight);
+        }
+        let number = remainders.lift(&residues).to_integer::<A>();
+        let positive = if number < Integer::zero() {
+            number + product
+        } else {
+            number
+        };
+        let (numerator, more) = fraction(&positive, product)?;
+        if !more.is_one() {
+            denominator *= more;
+            if 2 * denominator.bits() > product.bits() {
+                return None;
+            }
+            let scaled = |modulus: &Modulus| modulus.integer(&denominator);
+            weights = remainders.weights(scaled).collect();
+        }
+        numerators.push(numerator);
+        over.push(denominator.clone());
+    }
+    for (numerator, over) in numerators.iter_mut().zip(over) {
+        *numerator *= &denominator / over;
+    }
+    Some(Order {
+        denominator,
+        numerators,
+        numbers: 0,
+    })
+}
+
+impl Order {
+    /// Whether a prime that knows nothing of these numbers sees the same.
+    fn agrees(&self, modulus: &Modulus, plain: &[u64]) -> bool {
+        let denominator = modulus.integer(&self.denominator);
+        let pairs = self.numerators.iter().zip(plain);
+        let mut pairs = pairs.map(|(numerator, residue)| {
+            modulus.integer(numerator) == modulus.product(modulus.of_plain(*residue), denominator)
+        });
+        pairs.all(|agrees| agrees)
+    }
+
+    /// A number of the order as a polynomial over the [denominator](Self::denominator).
+    fn polynomial(
+        &self,
+        number: usize,
+        order: usize,
+        (monomials, base): &(Vec<(Monomial, usize)>, Monomial),
+    ) -> Polynomial<Integer> {
+        let mut sum = Polynomial::zero();
+        let numerators = self.numerators.iter().skip(number).step_by(self.numbers);
+        for ((monomial, weight), numerator) in monomials.iter().zip(numerators) {
+            if !numerator.is_zero() {
+                let rest = base.power(i32::try_from(order - weight).unwrap_or(i32::MAX));
+                sum.add_term(monomial.product(&rest), numerator.clone());
+            }
+        }
+        sum
+    }
+}
+
+/// The orders as series.
+fn expansion(
+    plan: &Plan,
+    orders: &[Order],
+    monomials: &(Vec<(Monomial, usize)>, Monomial),
+    extent: Extent,
+) -> Expansion<Symbols> {
+    let ring = Polynomials(Integers);
+    let constant = |number: usize| -> Vec<FourierSeries<Symbols>> {
+        let orders = orders.iter().enumerate();
+        orders
+            .map(|(order, own)| {
+                let numerator = own.polynomial(number, order, monomials);
+                FourierSeries::constant(ring, numerator).over(&own.denominator)
+            })
+            .collect()
+    };
+    let mut expansion = Expansion {
+        frequency: constant(0),
+        frequency_squared: constant(1),
+        displacement: vec![],
+        removed: vec![],
+        amplitudes: vec![],
+    };
+    if extent == Extent::Motion {
+        let squares = expansion.frequency_squared.iter().skip(1);
+        expansion.removed = squares.map(|square| square.times(-1)).collect();
+        let series = |(order, own): (usize, &Order)| {
+            let mut coefficients = Vec::new();
+            for index in 0..plan.harmonics(order) {
+                coefficients.resize(plan.harmonic(index), Polynomial::zero());
+                coefficients.push(own.polynomial(2 + index, order, monomials));
+            }
+            let (cosine, sine) = match plan.wave(order) {
+                Wave::Cosine => (coefficients, vec![]),
+                Wave::Sine => (vec![], coefficients),
+            };
+            FourierSeries::in_lowest_terms(ring, own.denominator.clone(), cosine, sine)
+        };
+        expansion.displacement = orders.iter().enumerate().map(series).collect();
+    }
+    expansion
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Detuning;
+    use super::*;
+    use crate::exact::residue::portable::Portable;
+    use crate::solution::AmplitudeConvention;
+    use crate::symbol::Symbol;
+
+    fn letter(name: &str) -> Polynomial<Integer> {
+        Polynomial::symbol(Symbol::new(name))
+    }
+
+    fn term(
+        order: usize,
+        position: u32,
+        velocity: u32,
+        (numerator, denominator): (Polynomial<Integer>, i64),
+    ) -> ForceTerm<Symbols> {
+        ForceTerm {
+            order,
+            position,
+            velocity,
+            coefficient: FourierSeries::constant(Polynomials(Integers), numerator).over(&Integer::from(denominator)),
+        }
+    }
+
+    /// Every number of the expansion is that of the recursion over polynomials.
+    fn agrees(force: &[ForceTerm<Symbols>], highest: usize) {
+        for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
+            for detuning in [Detuning::Acceleration, Detuning::Displacement] {
+                let scheme = Scheme {
+                    normalisation,
+                    amplitude: Amplitude::Free,
+                    detuning,
+                };
+                let exact =
+                    super::super::expand(&Polynomials(Integers), force, highest, &scheme).expect("an expansion");
+                let widest = expand(force, highest, &scheme, Extent::Motion).expect("the same by primes");
+                let portable = Expand(force, highest, scheme, Extent::Motion).by(Portable::new());
+                let alone = expand(force, highest, &scheme, Extent::Frequency).expect("the frequency");
+                assert_eq!(alone.frequency_squared, exact.frequency_squared);
+                assert_eq!(alone.frequency, exact.frequency);
+                assert!(alone.displacement.is_empty());
+                for found in [widest, portable.expect("the same by primes")] {
+                    assert_eq!(found.frequency_squared, exact.frequency_squared);
+                    assert_eq!(found.frequency, exact.frequency);
+                    assert_eq!(found.displacement, exact.displacement);
+                    assert_eq!(found.removed, exact.removed);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn values_at_points_agree_with_polynomials() {
+        let [a, b, c] = ["a", "b", "c"].map(letter);
+        agrees(
+            &[
+                term(1, 2, 0, (a.clone(), 1)),
+                term(1, 3, 0, (b.clone(), 3)),
+                term(1, 5, 0, (c.clone(), 1)),
+            ],
+            4,
+        );
+        // Terms of several orders, with the velocity squared, the same letter twice, and a number.
+        agrees(
+            &[
+                term(1, 3, 0, (a.clone(), 1)),
+                term(2, 5, 0, (b.clone(), 2)),
+                term(1, 1, 2, (a.clone(), -5)),
+                term(2, 3, 2, (Polynomial::constant(Integer::from(7)), 4)),
+            ],
+            5,
+        );
+        // A sum for a coefficient, and a square.
+        let mut sum = a.clone();
+        sum.accumulate(&b.product(&b));
+        agrees(&[term(1, 3, 0, (sum, 1)), term(1, 5, 0, (b, 1))], 4);
+    }
+
+    #[test]
+    fn a_lower_set_gives_back_what_its_points_were_taken_from() {
+        // Weights 1 (the one that is one), 1 and 2: exponents i + 2 j <= 5.
+        let set = LowerSet::new(&[1, 1, 2], 0, 5, 100).expect("few points");
+        assert_eq!(set.counts, [1, 2, 4, 6, 9, 12]);
+        let prime = primes_below(30, 2).next().expect("a prime");
+        let modulus = Modulus::new(prime, 32);
+        let coefficient = |point: &[usize]| (point[1] * 17 + point[2] * point[2] * 5 + 3) as i64;
+        let power = |base: usize, exponent: usize| (base as i64).pow(exponent as u32);
+        let value = |at: &[usize]| -> i64 {
+            let terms = set.points.iter();
+            terms
+                .map(|point| coefficient(point) * power(at[1], point[1]) * power(at[2], point[2]))
+                .sum()
+        };
+        let mut values: Vec<u64> = set.points.iter().map(|at| modulus.small(value(at))).collect();
+        let mut inverses: Vec<u64> = (1..7).map(|k| modulus.small(k)).collect();
+        modulus.invert(&mut inverses).expect("no multiple of the prime");
+        inverses.insert(0, 0);
+        set.interpolate(&modulus, &inverses, 5, &mut values, 1);
+        let expected: Vec<u64> = set
+            .points
+            .iter()
+            .map(|point| modulus.small(coefficient(point)))
+            .collect();
+        assert_eq!(values, expected);
+    }
+
+    #[test]
+    fn what_has_no_term_of_the_first_order_is_left_to_the_ring() {
+        let scheme = Scheme {
+            normalisation: AmplitudeConvention::Initial,
+            amplitude: Amplitude::Free,
+            detuning: Detuning::Acceleration,
+        };
+        let terms = [term(2, 3, 0, (letter("a"), 1)), term(3, 5, 0, (letter("b"), 1))];
+        assert!(expand(&terms, 6, &scheme, Extent::Motion).is_none());
+        let damped = [term(1, 0, 1, (letter("a"), 1)), term(1, 3, 0, (letter("b"), 1))];
+        assert!(expand(&damped, 6, &scheme, Extent::Motion).is_none());
+    }
+}

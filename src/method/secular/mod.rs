@@ -224,7 +224,7 @@ pub fn expand_numbers(
     extent: Extent,
 ) -> Result<Expansion<Integers>, SecularError> {
     /// Below, whole numbers are short enough.
-    const LONG: usize = 12;
+    const LONG: usize = 8;
     bounded(
         force.iter().map(|term| (term.order, term.position + term.velocity)),
         highest,

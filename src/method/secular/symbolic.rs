@@ -185,12 +185,12 @@ impl LowerSet {
         // Divided differences at 0, 1, 2, ... in all directions first: only Newton's form has no terms beyond the lower set.
         for line in self.lines.iter().flatten() {
             let line = &line[..within(line)];
-            for step in 1..line.len() {
+            for (step, inverse) in inverses.iter().enumerate().take(line.len()).skip(1) {
                 for i in (step..line.len()).rev() {
                     for number in 0..numbers {
                         let (upper, lower) = (line[i] * numbers + number, line[i - 1] * numbers + number);
                         let difference = modulus.difference(values[upper], values[lower]);
-                        values[upper] = modulus.product(difference, inverses[step]);
+                        values[upper] = modulus.product(difference, *inverse);
                     }
                 }
             }

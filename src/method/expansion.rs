@@ -10,7 +10,8 @@ use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::secular::{
-    Amplitude, Expansion, Extent, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers, expand_polynomials,
+    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers,
+    expand_polynomials,
 };
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
@@ -96,10 +97,7 @@ pub fn expand_exactly(
                 |number: Rational| FourierSeries::constant(Integers, number.numer().clone()).over(number.denom());
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
             let expansion = expand_numbers(&force, order as usize, scheme, extent)?;
-            let polynomial = |numerator: &Integer, denominator: &Integer| {
-                Polynomial::constant(Rational::new(numerator.clone(), denominator.clone()))
-            };
-            Ok(collect(&expansion, scheme, polynomial, restore, taken))
+            Ok(collect(&expansion, scheme, over::<Integer>, restore, taken))
         }
         _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
@@ -115,11 +113,38 @@ pub fn expand_exactly(
                     expansion
                 }
             };
-            let polynomial = |numerator: &Polynomial<Integer>, denominator: &Integer| {
-                numerator.map(|coefficient| Rational::new(coefficient.clone(), denominator.clone()))
-            };
-            Ok(collect(&expansion, scheme, polynomial, restore, taken))
+            Ok(collect(&expansion, scheme, over::<Polynomial<Integer>>, restore, taken))
         }
+    }
+}
+
+/// A numerator of a series.
+trait Numerator {
+    /// Its polynomial, where `over` divides a number by the denominator of the series.
+    fn polynomial(&self, over: &dyn Fn(&Integer) -> Rational) -> Polynomial;
+}
+
+impl Numerator for Integer {
+    fn polynomial(&self, over: &dyn Fn(&Integer) -> Rational) -> Polynomial {
+        Polynomial::constant(over(self))
+    }
+}
+
+impl Numerator for Polynomial<Integer> {
+    fn polynomial(&self, over: &dyn Fn(&Integer) -> Rational) -> Polynomial {
+        self.map(over)
+    }
+}
+
+/// From the numerators of a series over this denominator to polynomials. The denominators of an expansion have small prime factors
+/// alone: found once, they take the place of a greatest common divisor for each coefficient.
+fn over<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
+    let factored = Factored::of(denominator);
+    move |numerator| {
+        numerator.polynomial(&|number| match &factored {
+            Some(factored) => factored.fraction(number, denominator),
+            None => Rational::new(number.clone(), denominator.clone()),
+        })
     }
 }
 
@@ -182,25 +207,30 @@ fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomia
 }
 
 /// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
-fn collect<R: Ring>(
-    expansion: &Expansion<R>,
+fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
+    expansion: &'a Expansion<R>,
     scheme: &Scheme,
-    polynomial: impl Fn(&R::Element, &Integer) -> Polynomial,
+    over: impl Fn(&'a Integer) -> P,
     restore: impl Fn(usize) -> Monomial,
     taken: &[Symbol],
 ) -> ExactSeries {
     let letter = fresh_stem("B", taken);
-    let exact = |series: &FourierSeries<R>, n: usize| {
+    let exact = |series: &'a FourierSeries<R>, n: usize| {
         let monomial = restore(n);
-        series.map(POLYNOMIALS, |numerator, denominator| {
-            polynomial(numerator, denominator).times_monomial(&monomial)
+        let polynomial = over(series.mean().1);
+        series.map(POLYNOMIALS, |numerator, _| {
+            polynomial(numerator).times_monomial(&monomial)
         })
     };
-    let sum = |orders: &[FourierSeries<R>]| {
-        let exact = orders.iter().enumerate().map(|(n, series)| exact(series, n));
-        exact.fold(FourierSeries::zero(POLYNOMIALS), |sum, term| sum.sum(&term))
+    let orders = |series: &'a [FourierSeries<R>]| -> Vec<FourierSeries<Polynomials>> {
+        series.iter().enumerate().map(|(n, series)| exact(series, n)).collect()
     };
-    let constant = |series: &FourierSeries<R>, n: usize| exact(series, n).constant_term();
+    let sum = |orders: &[FourierSeries<Polynomials>]| {
+        let zero = FourierSeries::zero(POLYNOMIALS);
+        orders.iter().fold(zero, |sum, term| sum.sum(term))
+    };
+    let constant = |series: &'a FourierSeries<R>, n: usize| exact(series, n).constant_term();
+    let displacement = orders(&expansion.displacement);
     let amplitude = |n: usize| {
         let fixed = expansion.amplitudes.get(n.checked_sub(1)?)?;
         let unknown = Symbol::new(&format!("{letter}{n}"));
@@ -213,7 +243,7 @@ fn collect<R: Ring>(
         })
     };
     let step = |n: usize| {
-        let driven = |series: &[FourierSeries<R>]| {
+        let driven = |series: &'a [FourierSeries<R>]| {
             n.checked_sub(1)
                 .map_or_else(|| FourierSeries::zero(POLYNOMIALS), |index| exact(&series[index], n))
         };
@@ -222,15 +252,15 @@ fn collect<R: Ring>(
             resonance: driven(&expansion.removed).constant_term(),
             correction: driven(&expansion.frequency_squared[1..]).constant_term(),
             conditions: conditions(n, scheme),
-            displacement: exact(&expansion.displacement[n], n),
+            displacement: displacement[n].clone(),
             amplitude: amplitude(n),
         }
     };
     ExactSeries {
-        frequency: sum(&expansion.frequency).constant_term(),
-        frequency_squared: sum(&expansion.frequency_squared).constant_term(),
-        displacement: sum(&expansion.displacement),
-        steps: (0..expansion.displacement.len()).map(step).collect(),
+        frequency: sum(&orders(&expansion.frequency)).constant_term(),
+        frequency_squared: sum(&orders(&expansion.frequency_squared)).constant_term(),
+        steps: (0..displacement.len()).map(step).collect(),
+        displacement: sum(&displacement),
     }
 }
 

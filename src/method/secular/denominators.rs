@@ -10,15 +10,15 @@ use std::sync::LazyLock;
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
-use crate::exact::Integer;
 use crate::exact::residue::{Modulus, primes_up_to};
+use crate::exact::{Integer, Rational};
 
 /// The primes that are looked for in denominators: larger ones come from coefficients with such a number in them.
 static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
 
 /// A positive whole number by its prime factors, in order, and their exponents.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Factored(Vec<(u64, u64)>);
+pub(in crate::method) struct Factored(Vec<(u64, u64)>);
 
 impl Factored {
     /// The factors of a number whose primes are all small; `None` of another.
@@ -130,6 +130,25 @@ impl Factored {
             denominator.set(prime, exponent - common);
         }
         (numerator, denominator.value())
+    }
+
+    /// The fraction with this number, whose `value` is known, for a denominator.
+    pub fn fraction(&self, numerator: &Integer, value: &Integer) -> Rational {
+        if numerator.is_zero() {
+            return Rational::zero();
+        }
+        let (mut numerator, mut denominator, mut left) = (numerator.clone(), value.clone(), self.clone());
+        loop {
+            let common = left.common(std::slice::from_ref(&numerator));
+            if common.is_one() {
+                return Rational::new_raw(numerator, denominator);
+            }
+            let divisor = common.value();
+            numerator /= &divisor;
+            denominator /= &divisor;
+            // Of a prime no more than a word was looked for.
+            left = left.over(&common);
+        }
     }
 
     /// What all of these numbers have in common with this one.
@@ -371,6 +390,13 @@ mod tests {
         let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
         assert_eq!(common.value(), integer(12));
         assert_eq!(number.over(&common).value(), integer(60_060));
+        let ratio = |numerator: i64| number.fraction(&integer(numerator), &integer(720_720));
+        assert_eq!(ratio(-1001 * 9), Rational::new(integer(-1), integer(80)));
+        assert_eq!(ratio(0), Rational::zero());
+        // More of one prime than a word holds.
+        let power = Factored::of(&integer(3).pow(90)).expect("small factors");
+        let long = power.fraction(&(integer(3).pow(85) * integer(-14)), &power.value());
+        assert_eq!(long, Rational::new(integer(-14), integer(243)));
         assert!(Factored::of(&integer(1_000_003)).is_none());
     }
 

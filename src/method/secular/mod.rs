@@ -18,6 +18,7 @@ mod modular;
 mod reconstruct;
 mod symbolic;
 
+pub(super) use denominators::Factored;
 pub use reconstruct::Extent;
 
 use std::collections::HashMap;

@@ -535,6 +535,8 @@ fn expansion(
     };
     let frequency_squared: Vec<_> = orders.iter().map(|order| constant(&order.frequency_squared)).collect();
     let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
+    let squares = orders.iter().skip(1).map(|order| &order.frequency_squared);
+    let removed = squares.map(|square| constant(&-square)).collect();
     // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
     let amplitudes = slope.map_or_else(Vec::new, |slope| {
         let (numerator, denominator) = slope.mean();
@@ -562,8 +564,7 @@ fn expansion(
         amplitudes,
     };
     if extent == Extent::Motion {
-        let squares = expansion.frequency_squared.iter().skip(1);
-        expansion.removed = squares.map(|square| square.times(-1)).collect();
+        expansion.removed = removed;
         let orders = orders.into_iter().enumerate();
         expansion.displacement = orders
             .map(|(order, own)| series(order, &own.denominator, own.displacement))

@@ -16,6 +16,7 @@
 mod denominators;
 mod modular;
 mod reconstruct;
+mod sine;
 mod symbolic;
 
 pub(super) use denominators::Factored;

@@ -14,6 +14,7 @@
 
 use std::ops::Range;
 
+use super::sine::{Sine, SineFactors};
 use super::{Amplitude, Detuning, Scheme};
 use crate::exact::Rational;
 use crate::exact::residue::sums::{Part, Product, combine, convolve, mixture, multiply, vary};
@@ -53,12 +54,21 @@ pub(super) struct Plan<'a> {
     frequency_alone: bool,
     /// Where the coefficients of each order start in a list of all, and where the last ends.
     starts: Vec<usize>,
+    /// A sine beside the terms, with its rate.
+    sine: Option<(Sine, Rational)>,
 }
 
 impl<'a> Plan<'a> {
     /// `None` for an equation without the symmetry under reversal of time, and for one without terms. With `frequency_alone`
-    /// nothing but the frequency is right in the image.
-    pub fn new(terms: &'a [Term], highest: usize, scheme: Scheme, frequency_alone: bool) -> Option<Self> {
+    /// nothing but the frequency is right in the image; `sine` is the rate of a [sine](super::sine) beside the terms, for a free
+    /// motion.
+    pub fn new(
+        terms: &'a [Term],
+        sine: Option<Rational>,
+        highest: usize,
+        scheme: Scheme,
+        frequency_alone: bool,
+    ) -> Option<Self> {
         let conservative = terms.iter().all(|term| term.velocity % 2 == 0);
         let alternating = terms.iter().all(|term| term.velocity as usize % 2 == term.order % 2);
         if !(conservative || alternating) || terms.iter().any(|term| term.position + term.velocity == 0) {
@@ -66,7 +76,8 @@ impl<'a> Plan<'a> {
         }
         let power = |term: &Term| (term.position + term.velocity) as usize;
         let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
-        let growth = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order)).max()?;
+        let growths = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order));
+        let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
         let determined = scheme.amplitude == Amplitude::Determined;
         let last = highest + usize::from(determined);
         // The frequency of a limit cycle is the same however its motion is normalised, and without the sum over all harmonics
@@ -95,6 +106,7 @@ impl<'a> Plan<'a> {
             has_velocity: terms.iter().any(|term| term.velocity > 1),
             frequency_alone,
             starts: vec![0],
+            sine: None,
         };
         for order in 0..=last {
             plan.starts.push(plan.starts[order] + padded(plan.harmonics(order)));
@@ -102,6 +114,10 @@ impl<'a> Plan<'a> {
         plan.grid = Grid::new(plan.points(), half_wave);
         plan.tables += usize::from(plan.has_velocity);
         plan.of_terms = terms.iter().map(|term| plan.table_of(term)).collect();
+        if let Some(rate) = sine {
+            plan.sine = Some((Sine::new(plan.tables, last), rate));
+            plan.tables += Sine::TABLES;
+        }
         Some(plan)
     }
 
@@ -290,6 +306,7 @@ pub(super) struct Field {
     factors: Factors,
     /// Those of the terms, each over the power whose derivative is meant.
     pub coefficients: Vec<u64>,
+    sine: Option<SineFactors>,
 }
 
 impl Field {
@@ -307,6 +324,10 @@ impl Field {
             waves: Waves::new(&modulus, plan.grid)?,
             factors: Factors::new(&modulus, plan)?,
             coefficients: pairs.map(coefficient).collect::<Option<_>>()?,
+            sine: match &plan.sine {
+                Some((_, rate)) => Some(SineFactors::new(&modulus, rate, plan.last)?),
+                None => None,
+            },
         })
     }
 }
@@ -496,14 +517,15 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let mut change = std::mem::take(&mut self.change);
         let used = padded(count);
         right_side[..used].fill(0);
-        if self.mix(&modulus, coefficients, order, false) {
+        self.prepare_sine(field, order);
+        if self.mix(field, coefficients, order, false) {
             let out = &mut right_side[..count];
             field
                 .waves
                 .coefficients((arithmetic, &modulus), wave, &mut self.values, out);
             out.iter_mut().for_each(|value| *value = modulus.negative(*value));
         }
-        if self.mix(&modulus, coefficients, order, true) {
+        if self.mix(field, coefficients, order, true) {
             let damped = &mut change[..used];
             damped.fill(0);
             field.waves.coefficients(
@@ -540,7 +562,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 
     /// The sum of all terms at an order, with a derivative or without, into `values`; whether there are any such terms.
-    fn mix(&mut self, modulus: &Modulus, coefficients: &[u64], order: usize, derivative: bool) -> bool {
+    fn mix(&mut self, field: &Field, coefficients: &[u64], order: usize, derivative: bool) -> bool {
+        let modulus = &field.modulus;
         let terms = self.plan.terms.iter().zip(&self.plan.of_terms).zip(coefficients);
         let parts = terms
             .filter(|((_, (_, own)), _)| *own == derivative)
@@ -553,10 +576,67 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             });
         self.parts.clear();
         self.parts.extend(parts);
+        if let (Some((sine, _)), Some(factors), false) = (&self.plan.sine, &field.sine, derivative) {
+            self.parts.push(factors.sine(modulus, sine, order));
+        }
         if !self.parts.is_empty() {
             mixture(self.arithmetic, modulus, &self.parts, &self.tables, &mut self.values);
         }
         !self.parts.is_empty()
+    }
+
+    /// The sum that `S_n` is, without its last term: nobody knows `y_n` yet.
+    fn prepare_sine(&mut self, field: &Field, order: usize) {
+        if let Some((sine, _)) = &self.plan.sine {
+            self.values.fill(0);
+            self.tables[sine.scaled].write(order, &self.values);
+            let products = std::slice::from_ref(&sine.of_sine);
+            convolve(self.arithmetic, &field.modulus, products, &mut self.tables, order);
+        }
+    }
+
+    /// Sine and cosine at an order whose `y_n` stands in its table, the cosine of the next one too.
+    fn push_sine(&mut self, field: &Field, order: usize) {
+        let (Some((sine, _)), Some(factors)) = (&self.plan.sine, &field.sine) else {
+            return;
+        };
+        let (arithmetic, modulus) = (self.arithmetic, &field.modulus);
+        let whole = Part {
+            factor: modulus.one,
+            table: 0,
+            order,
+        };
+        let mut form = |tables: &mut [Rows], parts: &[Part], (table, order): (usize, usize)| {
+            mixture(arithmetic, modulus, parts, tables, &mut self.values);
+            tables[table].write(order, &self.values);
+        };
+        let tables = &mut self.tables[..];
+        form(tables, &[factors.scaled(modulus, order)], (sine.scaled, order));
+        match order {
+            0 => {
+                form(tables, &[whole], (sine.sine, 0));
+                self.values.fill(modulus.one);
+                tables[sine.cosine].write(0, &self.values);
+            }
+            _ => form(tables, &[factors.sine(modulus, sine, order), whole], (sine.sine, order)),
+        }
+        convolve(
+            arithmetic,
+            modulus,
+            std::slice::from_ref(&sine.of_cosine),
+            tables,
+            order,
+        );
+        if order < self.plan.last {
+            mixture(
+                arithmetic,
+                modulus,
+                &[factors.cosine(modulus, sine, order)],
+                tables,
+                &mut self.values,
+            );
+            tables[sine.cosine].write(order + 1, &self.values);
+        }
     }
 
     /// Where an order stands among the coefficients: those of the same symmetry side by side.
@@ -681,6 +761,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
         self.change = change;
         convolve(arithmetic, &modulus, &plan.products, &mut self.tables, order);
+        self.push_sine(field, order);
     }
 
     /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.

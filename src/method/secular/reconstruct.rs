@@ -73,7 +73,11 @@ impl Work for Expand<'_> {
                 }
             })
             .collect();
-        let plan = |highest: usize| Plan::new(&terms, highest, scheme, extent == Extent::Frequency);
+        let (sine, terms) = match scheme.amplitude {
+            Amplitude::Free => super::sine::split(&terms, highest),
+            Amplitude::Determined => (None, terms),
+        };
+        let plan = |highest: usize| Plan::new(&terms, sine.clone(), highest, scheme, extent == Extent::Frequency);
         // Where the amplitude is determined, its condition has the same slope at every order.
         let slope = match (scheme.amplitude, extent) {
             (Amplitude::Free, _) | (_, Extent::Frequency) => None,
@@ -633,15 +637,23 @@ mod tests {
             12,
             free,
         );
-        let mut factorial = 1;
-        let sine: Vec<_> = (1..9)
+        let mut coefficient = Rational::one();
+        let mut sine: Vec<_> = (1..=12_i64)
             .map(|order| {
                 let power = 2 * order;
-                factorial *= -power * (power + 1);
-                term(order as usize, power as u32 + 1, 0, (1, factorial))
+                coefficient /= Rational::from_integer(Integer::from(-power * (power + 1)));
+                let series = FourierSeries::constant(Integers, coefficient.numer().clone());
+                ForceTerm {
+                    coefficient: series.over(coefficient.denom()),
+                    ..term(order as usize, power as u32 + 1, 0, (1, 1))
+                }
             })
             .collect();
         agrees(&sine, 12, free);
+        // The sine beside other terms, and the beginning of one.
+        sine.push(term(1, 1, 2, (1, 2)));
+        agrees(&sine, 10, free);
+        agrees(&sine[..8], 12, free);
         let cycle = Amplitude::Determined;
         // van der Pol, x = 2 y; Rayleigh; both with a nonlinear spring of the second order.
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], 16, cycle);

@@ -57,7 +57,7 @@ impl Work for Expand<'_> {
         let base = groups.kinds.iter().position(|kind| kind.0 == 1)?;
         let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
         let lower_set = LowerSet::new(&weights, base, highest, MOST_POINTS)?;
-        let plan = Plan::new(&terms, highest, scheme, extent == Extent::Frequency)?;
+        let plan = Plan::new(&terms, None, highest, scheme, extent == Extent::Frequency)?;
         let mut search = Search {
             arithmetic,
             plan: &plan,

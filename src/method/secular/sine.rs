@@ -1,0 +1,179 @@
+//! The sine of the motion by its differential equation, where a force is the whole series of one.
+//!
+//! Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998, section 4.7 (functions of power series).
+//!
+//! ```text
+//! S = sin(sqrt(-k delta) y)/sqrt(-k delta) = y + k delta y^3/3! + k^2 delta^2 y^5/5! + ...,   C = cos(sqrt(-k delta) y)
+//! V_n = (n + 1/2) y_n:    (n + 1/2) S_n = sum C_(n-i) V_i,    n C_n = k sum S_(n-1-i) V_i
+//! ```
+//!
+//! Two products for each order take the place of one for each power: `k = -1` is the pendulum's.
+
+use num_traits::{One, Zero};
+
+use super::modular::Term;
+use crate::exact::residue::Modulus;
+use crate::exact::residue::sums::{Part, Product};
+use crate::exact::{Integer, Rational, factorial};
+
+/// Where the tables of the sine stand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sine {
+    /// `V`.
+    pub scaled: usize,
+    /// `S`.
+    pub sine: usize,
+    /// `C`.
+    pub cosine: usize,
+    /// The sum of all `C_(n-i) V_i`, the last one left out until it is known.
+    pub of_sine: Product,
+    /// The sum of all `S_(n-i) V_i`.
+    pub of_cosine: Product,
+}
+
+impl Sine {
+    /// From the table `first` on; how many there are is [`Self::TABLES`].
+    pub fn new(first: usize, last: usize) -> Self {
+        let product = |left, to| Product {
+            left,
+            right: first,
+            to,
+            needed: last,
+        };
+        Self {
+            scaled: first,
+            sine: first + 1,
+            cosine: first + 2,
+            of_sine: product(first + 2, first + 3),
+            of_cosine: product(first + 1, first + 4),
+        }
+    }
+
+    /// How many tables it takes.
+    pub const TABLES: usize = 5;
+}
+
+/// The rate `k` of a sine that the terms contain up to an order, and the terms beside it.
+pub(super) fn split(terms: &[Term], highest: usize) -> (Option<Rational>, Vec<Term>) {
+    /// Below, powers are as fast.
+    const LONG: usize = 6;
+    let rate = rate(terms, highest).filter(|_| highest >= LONG);
+    let of_sine = |term: &&Term| rate.is_some() && place(term).is_some();
+    let others = terms.iter().filter(|term| !of_sine(term)).cloned().collect();
+    (rate, others)
+}
+
+/// Which term of the sine it is: `n` of `delta^n y^(2n+1)`.
+fn place(term: &Term) -> Option<usize> {
+    let own = term.velocity == 0 && term.position as usize == 2 * term.order + 1;
+    own.then_some(term.order)
+}
+
+fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
+    let coefficient = |n: usize| {
+        let mut own = terms.iter().filter(|term| place(term) == Some(n));
+        own.next()
+            .filter(|_| own.next().is_none())
+            .map(|term| &term.coefficient)
+    };
+    let rate = coefficient(1)? * Rational::from_integer(Integer::from(6));
+    let mut power = Rational::one();
+    for n in 1..=highest {
+        power *= &rate;
+        let factorial = factorial(u32::try_from(2 * n + 1).ok()?);
+        if coefficient(n)? * Rational::from_integer(factorial) != power {
+            return None;
+        }
+    }
+    (!rate.is_zero()).then_some(rate)
+}
+
+/// What the recursion multiplies by, modulo a prime.
+pub(super) struct SineFactors {
+    rate: u64,
+    /// The inverses of `1, 2, ...`, after a zero.
+    inverses: Vec<u64>,
+    half: u64,
+}
+
+impl SineFactors {
+    /// `None` where the prime divides a denominator.
+    pub fn new(modulus: &Modulus, rate: &Rational, last: usize) -> Option<Self> {
+        let mut inverses: Vec<u64> = (1..=2 * last as i64 + 2).map(|number| modulus.small(number)).collect();
+        let denominator = modulus.integer(rate.denom());
+        inverses.push(denominator);
+        modulus.invert(&mut inverses)?;
+        let over = inverses.pop()?;
+        inverses.insert(0, 0);
+        Some(Self {
+            rate: modulus.product(modulus.integer(rate.numer()), over),
+            half: inverses[2],
+            inverses,
+        })
+    }
+
+    /// `V_n` from `y_n`, which stands in the first table.
+    pub fn scaled(&self, modulus: &Modulus, order: usize) -> Part {
+        Part {
+            factor: modulus.sum(modulus.small(order as i64), self.half),
+            table: 0,
+            order,
+        }
+    }
+
+    /// `S_n` without what it has of `y_n`.
+    pub fn sine(&self, modulus: &Modulus, sine: &Sine, order: usize) -> Part {
+        let twice = modulus.small(2);
+        Part {
+            factor: modulus.product(twice, self.inverses[2 * order + 1]),
+            table: sine.of_sine.to,
+            order,
+        }
+    }
+
+    /// `C_(n+1)`.
+    pub fn cosine(&self, modulus: &Modulus, sine: &Sine, order: usize) -> Part {
+        Part {
+            factor: modulus.product(self.rate, self.inverses[order + 1]),
+            table: sine.of_cosine.to,
+            order,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sine_is_known_by_all_of_its_terms() {
+        let term = |order: usize, coefficient: Rational| Term {
+            order,
+            position: 2 * order as u32 + 1,
+            velocity: 0,
+            coefficient,
+        };
+        let third = Rational::new(Integer::from(-1), Integer::from(3));
+        let mut power = Rational::one();
+        let mut terms: Vec<Term> = (1..=8)
+            .map(|n| {
+                power *= &third;
+                term(n, &power / Rational::from_integer(factorial(2 * n as u32 + 1)))
+            })
+            .collect();
+        terms.push(Term {
+            order: 1,
+            position: 1,
+            velocity: 2,
+            coefficient: Rational::one(),
+        });
+        let (rate, others) = split(&terms, 8);
+        assert_eq!(rate, Some(third));
+        assert_eq!((others.len(), others[0].velocity), (1, 2));
+        // One term too few, and one that is no term of a sine.
+        assert_eq!(split(&terms, 9).0, None);
+        terms[4].coefficient *= Rational::from_integer(Integer::from(2));
+        let (rate, others) = split(&terms, 8);
+        assert_eq!((rate, others.len()), (None, 9));
+    }
+}

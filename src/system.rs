@@ -4,7 +4,8 @@
 //! In: the names of the states, the name of time, one expression a state, numbers for everything else. Out: a [`Path`] that
 //! answers every state at any time between, the events it met, and why it ended. Corners (`abs`, `sgn`, `H`, `max`, `min`) end a
 //! step where their argument changes its sign and begin the next on the other side; a motion that sticks to a corner, as dry
-//! friction makes it, is handed back up to there with its reason.
+//! friction makes it, is handed back up to there with its reason. Where a function turns faster than the motion, as a narrow well does,
+//! its argument tells beforehand, and steps end beside it.
 //!
 //! ```
 //! use lindstedt::expr::parse_expression;
@@ -19,6 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod narrow;
 mod polynomial;
 mod runge_kutta;
 mod taylor;
@@ -30,6 +32,7 @@ use crate::interrupt::Interrupt;
 use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
+use narrow::Argument;
 use taylor::Step;
 
 /// Equations ready to be followed.
@@ -57,6 +60,8 @@ pub struct System {
     right: Vec<Expr>,
     numbers: BTreeMap<Symbol, f64>,
     critical: Vec<f64>,
+    /// What may turn faster than the motion.
+    narrow: Vec<Argument>,
 }
 
 /// Why there is no system, or no path from this start.
@@ -277,6 +282,7 @@ impl System {
             right: right.to_vec(),
             numbers: numbers.clone(),
             critical: vec![],
+            narrow: narrow::arguments(right, state),
         };
         taylor::expansion(&system, &[], 1)?;
         Ok(system)

@@ -7,9 +7,11 @@
 //! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every
 //! parameter, a start, a duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a mechanism has
 //! energies, and the same by the other integrator to judge it. Power series go first; where they end, as at a root or a touch that
-//! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, holds the only coordinate there is, it
-//! stays until the force on it is more than friction bears.
+//! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')` or `sgn(x' - c)` on a belt, holds the only
+//! coordinate there is, it stays until the force on it is more than friction bears.
 
+mod energy;
+mod hold;
 mod pulse;
 mod section;
 mod sweep;
@@ -19,7 +21,6 @@ use std::collections::BTreeMap;
 use num_traits::Zero;
 use thiserror::Error;
 
-use crate::conservative::potential;
 use crate::exact::Rational;
 use crate::exact::rational::{Integer, ratio};
 use crate::expr::{Expr, ExprError, Function, Node};
@@ -27,10 +28,13 @@ use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Event, Integrator, Options, Path, System, SystemError};
+use crate::system::{End, Integrator, Options, Path, System, SystemError};
 
 pub use section::{Crossing, MOST_CROSSINGS, Section};
 pub use sweep::{SweptMotion, sweep};
+
+use hold::Hold;
+use section::OnSection;
 
 /// What is followed, from where, and how long.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +84,7 @@ pub struct Trajectory {
     /// The balance of energy; nothing where there is no energy.
     pub balance: Option<Balance>,
     pieces: Vec<Piece>,
-    crossings: Vec<Crossing>,
+    on_section: OnSection,
     reason: End,
 }
 
@@ -158,7 +162,7 @@ impl Course {
                 states: vec![coordinate, velocity],
                 right: vec![Expr::from(velocity), -&oscillator.force],
             },
-            energy_of(oscillator),
+            energy::of(oscillator),
         )
     }
 
@@ -322,7 +326,12 @@ impl Course {
             step_limit: self.step_limit,
             interrupt: self.interrupt,
         };
-        let events = self.section.as_ref().map_or(vec![], Section::events);
+        let moving = Rates {
+            states: self.rates.states.clone(),
+            right: right[..self.rates.states.len()].to_vec(),
+        };
+        let events = self.section.as_ref();
+        let events = events.map_or(vec![], |section| section.events(&moving));
         let mut pieces = Vec::new();
         let (mut from, mut state) = (0.0, start);
         let reason = loop {
@@ -333,19 +342,11 @@ impl Course {
             let (End::Sticks, Some(last)) = (reason, last) else {
                 break reason;
             };
-            let Some(until) = self.held_until(end, &last, &values, &critical, &options)? else {
-                break reason;
-            };
-            // At the very end of a hold nothing pulls yet, and it would be held again: the motion grows with the cube of the time, so
-            // that a delay d leaves an error of d^2.
-            let until = (until + DELAY * self.duration).min(self.duration);
-            state = last;
-            state[1] = 0.0;
-            pieces.push(Piece::Held {
-                state: state.clone(),
-                from: end,
-                until,
-            });
+            let held = self.held(end, &last, (&right, &values), &critical, &options)?;
+            let Some(hold) = held else { break reason };
+            let until = hold.until;
+            state = hold.at(until);
+            pieces.push(Piece::Held(hold));
             // A hold without length, or too many of them, lead nowhere.
             if until >= self.duration || until <= end || pieces.len() > MOST_PIECES {
                 break if until >= self.duration {
@@ -361,98 +362,13 @@ impl Course {
             integrator,
             balance: None,
             pieces,
-            crossings: vec![],
+            on_section: OnSection::default(),
             reason,
         };
         motion.balance = motion.account();
-        motion.crossings = motion.find_crossings()?;
+        motion.on_section = motion.find_on_section()?;
         Ok(motion)
     }
-
-    /// How long dry friction holds the only coordinate that there is, from a time on: until the acceleration on one side of rest leads
-    /// away from it. Nothing where it is not held.
-    fn held_until(
-        &self,
-        from: f64,
-        state: &[f64],
-        values: &BTreeMap<Symbol, f64>,
-        critical: &[f64],
-        options: &Options,
-    ) -> Result<Option<f64>, TrajectoryError> {
-        let ([place, velocity], [x, speed, ..]) = (self.rates.states.as_slice(), state) else {
-            return Ok(None);
-        };
-        // A motion that stays on another corner, as on a belt that runs, is not at rest.
-        if speed.abs() > AT_REST * (1.0 + x.abs()) {
-            return Ok(None);
-        }
-        let accelerations = [1, -1].map(|side| on_side(&self.rates.right[1], *velocity, side));
-        let [forward, backward] = accelerations;
-        let (forward, backward) = (forward?, backward?);
-        let mut numbers = values.clone();
-        numbers.extend([(*place, *x), (*velocity, 0.0)]);
-        let at = |expression: &Expr| {
-            let mut numbers = numbers.clone();
-            numbers.insert(Symbol::new("t"), from);
-            expression.evaluate(&numbers)
-        };
-        let is_held = at(&forward).is_ok_and(|rate| rate <= 0.0) && at(&backward).is_ok_and(|rate| rate >= 0.0);
-        if !is_held {
-            return Ok(None);
-        }
-        if from >= self.duration {
-            return Ok(Some(from));
-        }
-        let nothing = fresh("nothing", &numbers.keys().copied().collect::<Vec<_>>());
-        let clock = System::new(&[nothing], Symbol::new("t"), &[Expr::zero()], &numbers)?.with_critical_times(critical);
-        let events = [Event::stop(forward), Event::stop(backward)];
-        let path = clock.solve(from, &[0.0], self.duration, &events, options)?;
-        Ok(match path.reason() {
-            End::Reached | End::Event(_) => Some(path.end()),
-            _ => None,
-        })
-    }
-}
-
-/// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every other term; nothing for an inertia that
-/// depends on the position, whose energy is another.
-fn energy_of(oscillator: &Oscillator) -> Option<Energy> {
-    let parts = oscillator.parts().ok()?;
-    if !parts.inertia.is_zero() {
-        return None;
-    }
-    let speed = Expr::from(oscillator.velocity());
-    let mut value = vec![&speed * &speed * Expr::number(ratio(1, 2))];
-    let mut powers = Vec::new();
-    let works = |term: &Expr| (term.to_string(), -(&speed * term));
-    for term in parts.restoring.terms().iter().filter(|term| !term.is_zero()) {
-        match potential(term, oscillator.coordinate) {
-            Some(potential) => value.push(potential),
-            None => powers.push(works(term)),
-        }
-    }
-    let others = [&parts.damping, &parts.forcing];
-    let others = others
-        .into_iter()
-        .flat_map(|part| part.terms())
-        .filter(|term| !term.is_zero());
-    powers.extend(others.map(works));
-    Some(Energy {
-        value: Expr::sum(value),
-        powers,
-    })
-}
-
-/// An expression with the sign of a velocity that is about to be positive, or negative, and the velocity zero.
-fn on_side(expression: &Expr, velocity: Symbol, side: i64) -> Result<Expr, ExprError> {
-    let toward: BTreeMap<Symbol, Expr> = [(velocity, Expr::from(side))].into();
-    let at_rest = expression.fold(|expr, children: &[Expr]| match expr.node() {
-        Node::Function(Function::Sign, arguments) if arguments[0].as_symbol() == Some(velocity) => {
-            Expr::function(Function::Sign, vec![arguments[0].substitute_all(&toward)?])
-        }
-        _ => expr.with_children(children),
-    })?;
-    at_rest.substitute(velocity, &Expr::zero())
 }
 
 /// What a motion is made of.
@@ -460,36 +376,25 @@ fn on_side(expression: &Expr, velocity: Symbol, side: i64) -> Result<Expr, ExprE
 enum Piece {
     /// As the equations say.
     Moving(Path),
-    /// At rest where dry friction holds it.
-    Held {
-        /// Coordinate and velocity, and the work so far.
-        state: Vec<f64>,
-        from: f64,
-        until: f64,
-    },
+    /// Where dry friction holds it.
+    Held(Hold),
 }
 
 impl Piece {
     fn end(&self) -> f64 {
         match self {
             Self::Moving(path) => path.end(),
-            Self::Held { until, .. } => *until,
+            Self::Held(hold) => hold.until,
         }
     }
 
     fn at(&self, time: f64) -> Option<Vec<f64>> {
         match self {
             Self::Moving(path) => path.at(time),
-            Self::Held { state, .. } => Some(state.clone()),
+            Self::Held(hold) => Some(hold.at(time)),
         }
     }
 }
-
-/// How much longer a hold lasts than it must, over the duration.
-const DELAY: f64 = 1e-9;
-
-/// A speed that rounding leaves of rest.
-const AT_REST: f64 = 1e-9;
 
 /// So often may a motion be held.
 const MOST_PIECES: usize = 20_000;
@@ -600,10 +505,10 @@ impl Trajectory {
         self.pieces.get(place)?.at(time)
     }
 
-    /// Where dry friction holds it: from when until when.
+    /// Where dry friction holds it, at rest or on a belt: from when until when.
     pub fn held(&self) -> impl Iterator<Item = [f64; 2]> {
         self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Held { from, until, .. } => Some([*from, *until]),
+            Piece::Held(hold) => Some([hold.from, hold.until]),
             Piece::Moving(_) => None,
         })
     }

@@ -110,6 +110,11 @@ fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
     if motion.course.after > 0.0 {
         words.push_str(&format!(" from t = {} on", decimal(motion.course.after)));
     }
+    match motion.touches().len() {
+        0 => {}
+        1 => words.push_str("; touched once, not crossed, which is no state"),
+        touches => words.push_str(&format!("; touched {touches} times, not crossed, which are no states")),
+    }
     if count > MOST_ON_SECTION {
         words.push_str(&format!("; the first {MOST_ON_SECTION}, all of them as CSV or JSON"));
     }

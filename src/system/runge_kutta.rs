@@ -11,9 +11,10 @@
 
 use std::cell::RefCell;
 
+use super::narrow::{Argument, COARSE, Kind, arguments, end_by_values};
 use super::{End, Event, Occurrence, Options, Path, System, SystemError, taylor};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
-use crate::numeric::ode::{self, Action, Point, StopReason, Trajectory, integrate_through};
+use crate::numeric::ode::{self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through};
 use crate::symbol::{Symbol, fresh_stem};
 
 /// No step can be held to less: an estimate of its error is rounding below that.
@@ -118,7 +119,12 @@ pub(super) fn follow(
     };
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
     let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
-    let run = integrate_through(rates, begin, units.count(end), &critical, &watched, &settings);
+    let kept = |state: &dyn Fn(f64) -> Point<Vec<f64>>| scaled.short_of_narrow(state);
+    let looks = Looks {
+        critical: &critical,
+        kept: (!smooth.narrow.is_empty()).then_some(&kept as &Kept<Point<Vec<f64>>>),
+    };
+    let run = integrate_through(rates, begin, units.count(end), looks, &watched, &settings);
     let trajectory = run.map_err(|error| match error {
         ode::IntegrationError::RateNotFinite { index, .. } => SystemError::Start(system.state[index]),
         _ => SystemError::Bounds,
@@ -189,6 +195,18 @@ impl Scaled<'_> {
         self.with(t, y, &self.smooth.rates, |state, rate| {
             rates[state] = self.units.time * (rate / self.units.sizes[state]);
         });
+    }
+
+    /// The part of a step, a function of its fraction, that ends beside the first place that is narrow for it, where there is one.
+    fn short_of_narrow(&self, state: &dyn Fn(f64) -> Point<Vec<f64>>) -> Option<f64> {
+        let coarse = COARSE.map(state);
+        let ends = self.smooth.narrow.iter().filter_map(|(kind, function)| {
+            let value = |point: &Point<Vec<f64>>| self.value_of(point.t, &point.y, function);
+            end_by_values(*kind, coarse.each_ref().map(value), |fraction| value(&state(fraction)))
+        });
+        ends.fold(None, |first: Option<f64>, end| {
+            Some(first.map_or(end, |first| first.min(end)))
+        })
     }
 
     /// Where the run begins.
@@ -271,6 +289,8 @@ struct Smooth {
     rates: Vec<CompiledFunction>,
     events: Vec<CompiledFunction>,
     corners: Vec<CompiledFunction>,
+    /// What may turn faster than the motion.
+    narrow: Vec<(Kind, CompiledFunction)>,
 }
 
 impl Smooth {
@@ -306,7 +326,13 @@ impl Smooth {
                 .map(|expression| CompiledFunction::new(expression, &names));
             compiled.collect::<Result<Vec<_>, EvaluationError>>()
         };
+        let narrow = arguments(&rates, &system.state)
+            .into_iter()
+            .map(|Argument { kind, expression }| {
+                Ok::<_, EvaluationError>((kind, CompiledFunction::new(&expression, &names)?))
+            });
         Ok(Self {
+            narrow: narrow.collect::<Result<_, _>>()?,
             typed: compiled(&system.right)?,
             rates: compiled(&rates)?,
             events: compiled(&events)?,

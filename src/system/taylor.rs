@@ -11,6 +11,7 @@
 //!
 //! Time is counted from the start, so that a late start costs no digits.
 
+use super::narrow::{Kind, end_of_step};
 use super::polynomial::{first_root, sign_at_start, value};
 use super::{End, Event, Motion, Occurrence, Options, Path, System, SystemError};
 use crate::series::recurrence::{RecurrenceError, Recurrences};
@@ -40,15 +41,19 @@ pub(super) fn expansion(system: &System, events: &[Event], order: usize) -> Resu
     let states = system.state.iter().map(|state| (*state, None));
     let variables: Vec<(Symbol, Option<usize>)> = states.chain([(system.time, Some(1))]).collect();
     let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
+    let narrow = system.narrow.iter().map(|argument| &argument.expression);
     let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
     let outputs = outputs
+        .chain(narrow)
         .map(|output| recurrences.add(output))
         .collect::<Result<_, _>>()?;
     Ok(Expansion {
         tape: recurrences.into_tape(),
         states: system.state.len(),
+        events: events.len(),
         order,
         outputs,
+        narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
     })
 }
 
@@ -87,91 +92,220 @@ pub(super) fn follow(
     events: &[Event],
     options: &Options,
 ) -> Result<Path, SystemError> {
-    let size = system.state.len();
-    let order = order(options.tolerance);
-    let mut expansion = expansion(system, events, order)?;
-    let duration = end - start;
-    let (mut time, mut values) = (0.0, values.to_vec());
-    let (mut steps, mut occurrences): (Vec<Step>, Vec<Occurrence>) = (vec![], vec![]);
-    expansion.begin(start, &values);
-    let mut signs = vec![0.0; events.len()];
-    let mut stuck = 0;
+    let mut expansion = expansion(system, events, order(options.tolerance))?;
+    expansion.begin(start, values);
+    let mut run = Run {
+        system,
+        events,
+        options,
+        expansion,
+        start,
+        duration: end - start,
+        time: 0.0,
+        values: values.to_vec(),
+        signs: vec![0.0; events.len()],
+        steps: vec![],
+        occurrences: vec![],
+        stuck: 0,
+        last: None,
+        halvings: 0,
+    };
     let reason = loop {
-        if time >= duration {
-            break End::Reached;
+        if let Some(reason) = run.step()? {
+            break reason;
         }
-        if steps.len() >= options.step_limit {
-            break End::StepLimit;
+    };
+    if run.steps.is_empty() {
+        // Nowhere to go: where it starts it is all the same.
+        run.steps.push(Step {
+            start: 0.0,
+            order: 0,
+            coefficients: run.values,
+        });
+    }
+    Ok(Path {
+        end: if reason == End::Reached { end } else { start + run.time },
+        motion: Motion::Taylor {
+            steps: run.steps,
+            start,
+        },
+        reason,
+        occurrences: run.occurrences,
+    })
+}
+
+/// A run on its way.
+struct Run<'a> {
+    system: &'a System,
+    events: &'a [Event],
+    options: &'a Options,
+    expansion: Expansion,
+    start: f64,
+    duration: f64,
+    /// Since the start.
+    time: f64,
+    values: Vec<f64>,
+    /// The signs of the events behind the last step.
+    signs: Vec<f64>,
+    steps: Vec<Step>,
+    occurrences: Vec<Occurrence>,
+    /// How often in a row it was back on a corner at once.
+    stuck: usize,
+    /// The last step, where it ended by itself and may be taken back.
+    last: Option<Last>,
+    /// How often in a row a step from here was taken back.
+    halvings: i32,
+}
+
+/// So often a step is taken back for half of it.
+const MOST_HALVINGS: i32 = 12;
+
+/// What it takes to take a step back.
+struct Last {
+    length: f64,
+    signs: Vec<f64>,
+    sides: Vec<f64>,
+    occurrences: usize,
+}
+
+impl Run<'_> {
+    /// A step on, or one back; answers why the run ends, if it does.
+    ///
+    /// # Errors
+    /// A state or an event without a value where the run begins.
+    fn step(&mut self) -> Result<Option<End>, SystemError> {
+        let over = self.time >= self.duration;
+        if !over && self.steps.len() >= self.options.step_limit {
+            return Ok(Some(End::StepLimit));
         }
-        if options.interrupt.is_requested() {
-            break End::Interrupted;
+        if !over && self.options.interrupt.is_requested() {
+            return Ok(Some(End::Interrupted));
         }
-        if let Err(error) = defined(&mut expansion, system, start + time, &values, events.len()) {
-            if steps.is_empty() {
-                return Err(error);
+        let now = self.start + self.time;
+        let defined = defined(&mut self.expansion, self.system, now, &self.values, self.events.len());
+        let last = self.last.take();
+        if let Some(last) = last {
+            if self.halvings < MOST_HALVINGS && (defined.is_err() || self.has_missed_something(&last)) {
+                self.take_back(last);
+                return Ok(None);
             }
-            break End::Singular;
+            self.halvings = 0;
         }
-        let reach = expansion.step(options.tolerance).min(duration - time);
-        let (now, next) = (start + time, next_critical(&system.critical, start + time));
+        match defined {
+            Err(_) if over => return Ok(Some(End::Reached)),
+            Err(error) if self.steps.is_empty() => return Err(error),
+            Err(_) => return Ok(Some(End::Singular)),
+            Ok(()) => {}
+        }
+        if over {
+            return Ok(Some(End::Reached));
+        }
+        let reach = self.reach(now);
+        if reach.is_nan() || reach <= 0.0 || now + reach == now {
+            return Ok(Some(End::Singular));
+        }
+        Ok(self.go(reach))
+    }
+
+    /// How far the series reach from here, and nothing is stepped over.
+    fn reach(&self, now: f64) -> f64 {
+        let reach = self
+            .expansion
+            .step(self.options.tolerance)
+            .min(self.duration - self.time);
+        let next = next_critical(&self.system.critical, now);
         let reach = next.map_or(reach, |next| reach.min(next - now));
-        if reach.is_nan() || reach <= 0.0 || start + time + reach == start + time {
-            break End::Singular;
-        }
+        let reach = self.expansion.short_of_narrow(reach);
+        reach * 0.5_f64.powi(self.halvings)
+    }
+
+    /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if it does.
+    fn go(&mut self, reach: f64) -> Option<End> {
         // A corner within the step ends it, and so does an event that stops.
-        let corner = expansion.first_corner(reach);
+        let corner = self.expansion.first_corner(reach);
         let mut length = corner.map_or(reach, |(_, place)| place);
-        let mut met = expansion.crossings(&mut signs, length);
-        let stop = met.iter().position(|found| events[found.0].stops);
+        let last = Last {
+            length,
+            signs: self.signs.clone(),
+            sides: self.expansion.sides(),
+            occurrences: self.occurrences.len(),
+        };
+        let mut met = self.expansion.crossings(&mut self.signs, length);
+        let stop = met.iter().position(|found| self.events[found.0].stops);
         let stop = stop.map(|index| {
             met.truncate(index + 1);
             length = met[index].1;
             met[index].0
         });
-        occurrences.extend(met.into_iter().map(|(event, place, rising)| Occurrence {
-            event,
-            time: start + (time + place),
-            rising,
-        }));
-        let coefficients: Vec<f64> = (0..size).flat_map(|state| expansion.state(state).to_vec()).collect();
-        for (state, series) in values.iter_mut().zip(coefficients.chunks(order + 1)) {
+        let (start, time) = (self.start, self.time);
+        self.occurrences
+            .extend(met.into_iter().map(|(event, place, rising)| Occurrence {
+                event,
+                time: start + (time + place),
+                rising,
+            }));
+        let order = self.expansion.order;
+        let coefficients: Vec<f64> = (0..self.values.len())
+            .flat_map(|state| self.expansion.state(state).to_vec())
+            .collect();
+        for (state, series) in self.values.iter_mut().zip(coefficients.chunks(order + 1)) {
             *state = value(series, length);
         }
-        steps.push(Step {
+        self.steps.push(Step {
             start: time,
             order,
             coefficients,
         });
-        let last = time + length >= duration && corner.is_none() && stop.is_none();
-        time = if last { duration } else { time + length };
+        let whole = corner.is_none() && stop.is_none();
+        self.last = whole.then_some(last);
+        let at_end = time + length >= self.duration && whole;
+        self.time = if at_end { self.duration } else { time + length };
         if let Some(event) = stop {
-            break End::Event(event);
+            return Some(End::Event(event));
         }
-        if let Some((corner, _)) = corner {
-            expansion.cross(corner);
-            // Leaving a corner and being back at once, over and over, is to stay on it.
-            const OFTEN: usize = 20;
-            let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * time;
-            stuck = if at_once { stuck + 1 } else { 0 };
-            if stuck > OFTEN {
-                break End::Sticks;
-            }
-        }
-    };
-    if steps.is_empty() {
-        // Nowhere to go: where it starts it is all the same.
-        steps.push(Step {
-            start: 0.0,
-            order: 0,
-            coefficients: values,
-        });
+        let (corner, _) = corner?;
+        self.halvings = 0;
+        self.expansion.cross(corner);
+        // Leaving a corner and being back at once, over and over, is to stay on it.
+        const OFTEN: usize = 20;
+        let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * self.time;
+        self.stuck = if at_once { self.stuck + 1 } else { 0 };
+        (self.stuck > OFTEN).then_some(End::Sticks)
     }
-    Ok(Path {
-        motion: Motion::Taylor { steps, start },
-        end: if reason == End::Reached { end } else { start + time },
-        reason,
-        occurrences,
-    })
+
+    /// Whether the rates where a step has come to are others than its series says: a wall, say, that could not be seen from its
+    /// beginning.
+    fn has_missed_something(&self, last: &Last) -> bool {
+        /// Of the size of a state on the step: what its rate there may be off, times the step.
+        const ASTRAY: f64 = 1e-8;
+        let Some(step) = self.steps.last() else { return false };
+        let differs = |(state, series): (usize, &[f64])| {
+            let rate = self.expansion.state(state).get(1).copied().unwrap_or(0.0);
+            let (mut power, mut size, mut change) = (1.0, series[0].abs(), 0.0);
+            for (order, coefficient) in series.iter().enumerate().skip(1) {
+                power *= last.length;
+                size += (coefficient * power).abs();
+                change += order as f64 * coefficient * power;
+            }
+            (change - rate * last.length).abs() > ASTRAY * size
+        };
+        step.coefficients.chunks(step.order + 1).enumerate().any(differs)
+    }
+
+    /// Back to where the last step began, from where half of it is to be gone.
+    fn take_back(&mut self, last: Last) {
+        let Some(step) = self.steps.pop() else { return };
+        self.time = step.start;
+        self.values = step
+            .coefficients
+            .chunks(step.order + 1)
+            .map(|series| series[0])
+            .collect();
+        self.signs = last.signs;
+        self.expansion.take(&last.sides);
+        self.occurrences.truncate(last.occurrences);
+        self.halvings += 1;
+    }
 }
 
 /// The next of these times, farther away than rounding.
@@ -206,9 +340,11 @@ pub(super) struct Expansion {
     /// Its variables are the states, then time.
     tape: Tape,
     states: usize,
+    events: usize,
     order: usize,
-    /// The places of the rates, then of the events.
+    /// The places of the rates, then of the events, then of what may turn faster than the motion.
     outputs: Vec<usize>,
+    narrow: Vec<Kind>,
 }
 
 impl Expansion {
@@ -280,7 +416,7 @@ impl Expansion {
     /// The longest step within the tolerance of every state, event and argument of a corner.
     pub(super) fn step(&self, tolerance: f64) -> f64 {
         let followed = (0..self.states).map(|state| self.state(state));
-        let events = self.outputs.iter().skip(self.states);
+        let events = self.outputs.iter().skip(self.states).take(self.events);
         let events = events.map(|output| self.tape.series(*output));
         // What a side has no value for is not looked at.
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
@@ -289,6 +425,26 @@ impl Expansion {
             .chain(events)
             .chain(corners)
             .fold(f64::INFINITY, |longest, series| reach(series, tolerance, longest))
+    }
+
+    /// The step, no longer than this, that ends beside the first place that is narrow for it, where there is one.
+    fn short_of_narrow(&self, longest: f64) -> f64 {
+        /// An argument need be known to this part of itself only.
+        const CLOSELY: f64 = 1e-9;
+        let arguments = self.outputs.iter().skip(self.states + self.events);
+        let mut length = longest;
+        for (kind, output) in self.narrow.iter().zip(arguments) {
+            let series = self.tape.series(*output);
+            if end_of_step(*kind, series, length).is_none() {
+                continue;
+            }
+            // Beyond its own reach the series of the argument says nothing.
+            length = reach(series, CLOSELY, length);
+            if let Some(end) = end_of_step(*kind, series, length) {
+                length = end;
+            }
+        }
+        length
     }
 
     /// Every crossing of every event on the step, in their order: which, where, and whether it rises there. `signs` are those
@@ -347,6 +503,20 @@ impl Expansion {
         };
         let found = self.tape.corners().enumerate().filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    /// The sides of the corners.
+    fn sides(&self) -> Vec<f64> {
+        self.tape.corners().map(|(_, side)| side).collect()
+    }
+
+    /// Goes to these sides.
+    fn take(&mut self, sides: &[f64]) {
+        for (corner, side) in sides.iter().enumerate() {
+            if self.tape.corners().nth(corner).is_some_and(|(_, now)| now != *side) {
+                self.cross(corner);
+            }
+        }
     }
 
     /// Goes to the other side of a corner.

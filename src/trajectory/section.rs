@@ -5,12 +5,18 @@
 //! ```text
 //! t = T, 2 T, 3 T, ...                       of a motion that is driven with the period T
 //! s(q, q', t) = 0,  ds/dt > 0                of any motion
+//! s = 0 at the largest or the least s        touched, not crossed
 //! ```
+//!
+//! A motion that turns back where s is zero touches the section and does not cross it, on whichever side rounding leaves it there.
+
+use std::collections::BTreeMap;
 
 use super::{Piece, Trajectory, TrajectoryError};
 use crate::expr::Expr;
+use crate::mechanics::Rates;
 use crate::symbol::Symbol;
-use crate::system::Event;
+use crate::system::{Event, Occurrence};
 
 /// The most states that one section holds.
 pub const MOST_CROSSINGS: f64 = 1e6;
@@ -41,13 +47,35 @@ impl Section {
         }
     }
 
-    /// What the integrator has to look out for.
-    pub(super) fn events(&self) -> Vec<Event> {
+    /// What the integrator has to look out for: the expression, and its rate, whose zeros are where a touch may be. A rate that cannot be
+    /// written is left out.
+    pub(super) fn events(&self, rates: &Rates) -> Vec<Event> {
         match self {
             Self::Every(_) => vec![],
-            Self::Rising(expression) => vec![Event::record(expression.clone())],
+            Self::Rising(expression) => {
+                let rate = rate(expression, rates);
+                let both = [Some(expression.clone()), rate].into_iter().flatten();
+                both.map(Event::record).collect()
+            }
         }
     }
+}
+
+/// ds/dt along a motion; nothing where it cannot be written.
+fn rate(expression: &Expr, rates: &Rates) -> Option<Expr> {
+    let mut parts = vec![expression.differentiate(Symbol::new("t")).ok()?];
+    for (state, right) in rates.states.iter().zip(&rates.right) {
+        parts.push(expression.differentiate(*state).ok()? * right);
+    }
+    let rate = Expr::sum(parts);
+    (!rate.is_zero()).then_some(rate)
+}
+
+/// What a motion leaves behind on its section.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OnSection {
+    pub(super) crossings: Vec<Crossing>,
+    pub(super) touches: Vec<f64>,
 }
 
 impl Trajectory {
@@ -66,21 +94,52 @@ impl Trajectory {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn crossings(&self) -> &[Crossing] {
-        &self.crossings
+        &self.on_section.crossings
     }
 
-    /// The same, found.
-    pub(super) fn find_crossings(&self) -> Result<Vec<Crossing>, TrajectoryError> {
+    /// The times from `after` on at which the motion turns back on its section, to a part in 1e9 of how far it goes: it touches the section
+    /// there and does not cross it, so that there is no crossing.
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    /// use lindstedt::expr::parse_expression;
+    /// use lindstedt::trajectory::{Course, Section};
+    ///
+    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+    /// course.begin("x".into(), 1.0)?;
+    /// course.section = Some(Section::Rising(parse_expression("x - 1")?));
+    /// let motion = course.follow()?;
+    /// assert_eq!((motion.crossings().len(), motion.touches().len()), (0, 7));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn touches(&self) -> &[f64] {
+        &self.on_section.touches
+    }
+
+    /// Both, found.
+    pub(super) fn find_on_section(&self) -> Result<OnSection, TrajectoryError> {
         let course = &self.course;
+        let mut touched: Vec<[f64; 3]> = Vec::new();
         let times: Vec<f64> = match &course.section {
             None => vec![],
-            Some(Section::Rising(_)) => {
+            Some(Section::Rising(expression)) => {
                 let moving = self.pieces.iter().filter_map(|piece| match piece {
                     Piece::Moving(path) => Some(path.occurrences()),
-                    Piece::Held { .. } => None,
+                    Piece::Held(_) => None,
                 });
-                let rising = moving.flatten().filter(|occurrence| occurrence.rising);
-                rising.map(|occurrence| occurrence.time).collect()
+                let (crossed, turned): (Vec<&Occurrence>, Vec<&Occurrence>) =
+                    moving.flatten().partition(|occurrence| occurrence.event == 0);
+                touched = self.turns_on(expression, turned.into_iter().map(|turn| turn.time).collect());
+                let touches = |time: f64| {
+                    touched
+                        .iter()
+                        .any(|[before, _, behind]| (*before..*behind).contains(&time))
+                };
+                let rising = crossed.into_iter().filter(|occurrence| occurrence.rising);
+                rising
+                    .map(|occurrence| occurrence.time)
+                    .filter(|time| !touches(*time))
+                    .collect()
             }
             Some(Section::Every(period)) => {
                 let mut values = course.values.clone();
@@ -99,11 +158,34 @@ impl Trajectory {
                 state: self.at(time)?,
             })
         };
-        Ok(times
-            .into_iter()
-            .filter(|time| *time >= course.after)
-            .filter_map(crossing)
-            .collect())
+        let in_time = |time: &f64| *time >= course.after;
+        Ok(OnSection {
+            crossings: times.into_iter().filter(in_time).filter_map(crossing).collect(),
+            touches: touched.into_iter().map(|[_, at, _]| at).filter(in_time).collect(),
+        })
+    }
+
+    /// Of the times at which an expression is largest or least those at which it is zero, to rounding, and is not at the turns before and
+    /// behind, both on the same side; each between these two.
+    fn turns_on(&self, expression: &Expr, turns: Vec<f64>) -> Vec<[f64; 3]> {
+        /// Of the largest value.
+        const TOUCH: f64 = 1e-9;
+        let mut numbers: BTreeMap<Symbol, f64> = self.course.values.clone();
+        let mut value = |time: f64| {
+            let state = self.at(time)?;
+            numbers.insert(Symbol::new("t"), time);
+            numbers.extend(self.course.rates.states.iter().copied().zip(state));
+            expression.evaluate(&numbers).ok()
+        };
+        let times = [0.0].into_iter().chain(turns).chain([self.end()]);
+        let heights: Vec<(f64, f64)> = times.filter_map(|time| Some((time, value(time)?))).collect();
+        let largest = heights.iter().fold(0.0_f64, |most, (_, height)| most.max(height.abs()));
+        let touch = |around: &[(f64, f64)]| {
+            let [(before, one), (at, height), (behind, other)] = [around[0], around[1], around[2]];
+            let away = |height: f64| height.abs() > TOUCH * largest;
+            (!away(height) && away(one) && away(other) && one * other > 0.0).then_some([before, at, behind])
+        };
+        heights.windows(3).filter_map(touch).collect()
     }
 
     /// The least and the greatest value of each coordinate from the time `after` of the course on.

@@ -23,6 +23,8 @@ pub struct SweptMotion {
     pub extremes: Vec<[f64; 2]>,
     /// The states on the section from then on; none without a section.
     pub crossings: Vec<Crossing>,
+    /// When it touches the section and does not cross it, from then on.
+    pub touches: Vec<f64>,
     /// Why it ended.
     pub reason: End,
 }
@@ -66,6 +68,7 @@ pub fn sweep(
             state: motion.at(motion.end()).unwrap_or_default(),
             extremes: motion.extremes(),
             crossings: motion.crossings().to_vec(),
+            touches: motion.touches().to_vec(),
             reason: motion.reason(),
         })
     };

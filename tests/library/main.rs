@@ -20,6 +20,7 @@ mod literature;
 mod mechanics;
 mod multiple_scales;
 mod names;
+mod narrow;
 mod near_rest;
 mod primary;
 mod printed_integrals;

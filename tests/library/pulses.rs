@@ -52,6 +52,31 @@ fn a_short_pulse_rings() {
     }
 }
 
+/// What a pulse has done is accounted for, however steep it is: its argument stays as it was typed.
+#[test]
+fn the_work_of_a_steep_pulse_closes_the_account() {
+    for equation in [
+        "x'' + 0.2*x' + x = 50e3*exp(-((t-20)*1e5)^2)",
+        "x'' + 0.2*x' + x + x^3*(1 + t)/100 = 1e4/(1 + ((t - 7.3)*1e6)^2)",
+        "x'' + x*(1 + 1e3*exp(-((t - 5)*1e4)^2)) = 0",
+    ] {
+        for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
+            let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+            course.begin(Symbol::new("x"), 0.3).expect("a state");
+            course.duration = 30.0;
+            if integrator == Integrator::RungeKutta {
+                course.tolerance = 1e-12;
+            }
+            let balance = course
+                .follow_by(integrator)
+                .expect(equation)
+                .balance
+                .expect("a balance");
+            assert!(balance.residual < 1e-9, "{equation} by {integrator:?}: {balance:?}");
+        }
+    }
+}
+
 /// Two pulses of opposite sign, half a period apart, in a sum with a wave: all superposed.
 #[test]
 fn every_pulse_of_several_counts() {

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use lindstedt::expr::parse_expression;
+use lindstedt::system::Integrator;
 use lindstedt::trajectory::{Course, Section, TrajectoryError, sweep};
 use lindstedt::{Oscillator, Symbol};
 
@@ -65,6 +66,54 @@ fn a_section_meets_every_zero_from_below() {
             .iter()
             .all(|crossing| (crossing.state[0] + 1.5).abs() < 1e-12)
     );
+}
+
+/// A section through a turning point is touched from one side, whatever rounding does there; a little inside it is crossed, a little outside
+/// it is not met.
+#[test]
+fn a_section_at_a_turning_point_is_touched_not_crossed() {
+    for (section, crossed, touched) in [
+        ("x - 1", 0, 6),
+        ("1 - x", 0, 6),
+        ("x + 1", 0, 6),
+        ("-x - 1", 0, 6),
+        ("x - 1 + 1e-6", 6, 0),
+        ("x - 1 - 1e-6", 0, 0),
+        ("x^2 + x'^2 - 2*x", 7, 0),
+    ] {
+        for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
+            let mut free = course("x'' + x = 0", &[("x", 1.0)], 40.0);
+            free.section = Some(Section::Rising(parse_expression(section).expect("a section")));
+            let motion = free.follow_by(integrator).expect("a motion");
+            let found = (motion.crossings().len(), motion.touches().len());
+            assert_eq!(
+                found,
+                (crossed, touched),
+                "{section} by {integrator:?}: {:?}",
+                motion.touches()
+            );
+            for (turn, time) in motion.touches().iter().enumerate() {
+                let expected = PI
+                    * (2.0 * turn as f64
+                        + if section.contains("+ 1") || section.starts_with('-') {
+                            1.0
+                        } else {
+                            2.0
+                        });
+                assert!((time - expected).abs() < 1e-9, "{section}: {time}");
+            }
+        }
+    }
+}
+
+/// A motion that dies out goes on crossing the middle, however little.
+#[test]
+fn small_swings_are_no_touches() {
+    let mut damped = course("x'' + x'/2 + x = 0", &[("x", 1.0)], 120.0);
+    damped.section = Some(Section::Rising(parse_expression("x").expect("a section")));
+    let motion = damped.follow().expect("a motion");
+    let turns = (120.0 * (1.0 - 1.0 / 16.0_f64).sqrt() / TAU).floor() as usize;
+    assert!(motion.touches().is_empty() && motion.crossings().len().abs_diff(turns) <= 1);
 }
 
 /// The cascade of two wells (D. W. Jordan and P. Smith, *Nonlinear Ordinary Differential Equations*, chapter 13): with

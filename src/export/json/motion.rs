@@ -67,6 +67,8 @@ pub struct SectionDocument {
     pub after: f64,
     /// The states, in order.
     pub states: Vec<MotionSample>,
+    /// The times at which the motion turns back on the section: it touches and does not cross it, so that they are no states.
+    pub touches: Vec<f64>,
 }
 
 /// h = sum q' dL/dq' - L, the energy where nothing depends on the time.
@@ -131,10 +133,10 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
             Integrator::RungeKutta => "runge-kutta",
         }
         .to_owned(),
-        section: course.section.as_ref().map(|section| {
-            let states = motion.crossings().iter();
-            section_document(course, section, states, &named)
-        }),
+        section: course
+            .section
+            .as_ref()
+            .map(|section| section_document(course, section, (motion.crossings(), motion.touches()), &named)),
         samples: report.times().into_iter().filter_map(sample).collect(),
         final_state: sample(motion.end()).unwrap_or(start),
         energy: motion.balance.as_ref().map(|balance| EnergyAccount {
@@ -151,10 +153,10 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
     }
 }
 
-fn section_document<'a>(
+fn section_document(
     course: &Course,
     section: &Section,
-    states: impl Iterator<Item = &'a Crossing>,
+    (crossings, touches): (&[Crossing], &[f64]),
     named: &dyn Fn(&[f64]) -> Map<f64>,
 ) -> SectionDocument {
     let [every, rising] = match section {
@@ -169,7 +171,8 @@ fn section_document<'a>(
         every,
         rising,
         after: course.after,
-        states: states.map(state).collect(),
+        states: crossings.iter().map(state).collect(),
+        touches: touches.to_vec(),
     }
 }
 
@@ -244,7 +247,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
         section: course
             .section
             .as_ref()
-            .map(|section| section_document(course, section, motion.crossings.iter(), &named)),
+            .map(|section| section_document(course, section, (&motion.crossings, &motion.touches), &named)),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == End::Reached,
     });

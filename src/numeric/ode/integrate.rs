@@ -166,7 +166,7 @@ pub fn integrate<'a>(
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
-    run(&[(&rates, events)], 0, start, end_time, &[], options).map_err(|error| of_motion(error, start))
+    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options).map_err(|error| of_motion(error, start))
 }
 
 /// The motion through several smooth right sides: begins in phase `first`, goes on as the switches of the events say.
@@ -200,7 +200,7 @@ pub fn integrate_phases(
         .iter()
         .map(|phase| (&*phase.rates as _, phase.events.as_slice()))
         .collect();
-    run(&parts, first, start, end_time, &[], options).map_err(|error| of_motion(error, start))
+    run(&parts, first, start, end_time, Looks::NOWHERE, options).map_err(|error| of_motion(error, start))
 }
 
 /// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
@@ -228,10 +228,10 @@ pub fn integrate_first_order<'a, Y: Values>(
     events: &[Event<'a, Point<Y>>],
     options: &Options,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(&[(&rates, events)], 0, start, end_time, &[], options)
+    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
 }
 
-/// As [`integrate_first_order`], with times, in order, that no step crosses.
+/// As [`integrate_first_order`], with steps that end where they have to.
 ///
 /// # Errors
 /// As [`integrate`].
@@ -239,12 +239,37 @@ pub(crate) fn integrate_through<'a, Y: Values>(
     rates: impl Fn(f64, &Y, &mut Y) + 'a,
     start: Point<Y>,
     end_time: f64,
-    critical: &[f64],
+    looks: Looks<Point<Y>>,
     events: &[Event<'a, Point<Y>>],
     options: &Options,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(&[(&rates, events)], 0, start, end_time, critical, options)
+    run(&[(&rates, events)], 0, start, end_time, looks, options)
 }
+
+/// What ends a step beside its error.
+pub(crate) struct Looks<'a, S> {
+    /// Times, in order, that no step crosses.
+    pub(crate) critical: &'a [f64],
+    /// From a step as a function of its fraction the fraction of it that may be kept; nothing for all of it.
+    pub(crate) kept: Option<&'a Kept<'a, S>>,
+}
+
+pub(crate) type Kept<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
+
+impl<S> Looks<'_, S> {
+    const NOWHERE: Self = Self {
+        critical: &[],
+        kept: None,
+    };
+}
+
+impl<S> Clone for Looks<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Looks<'_, S> {}
 
 /// The error in the words of displacement and velocity.
 fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
@@ -265,7 +290,7 @@ fn run<S: Sample>(
     first: usize,
     start: S,
     end_time: f64,
-    critical: &[f64],
+    looks: Looks<S>,
     options: &Options,
 ) -> Result<Trajectory<S>, IntegrationError> {
     check(&start, end_time, options)?;
@@ -304,7 +329,7 @@ fn run<S: Sample>(
             phase,
             events,
             end_time,
-            critical,
+            looks,
             options,
         };
         let end = match options.stiff {
@@ -381,8 +406,7 @@ struct Leg<'r, 'a, S: Sample> {
     phase: usize,
     events: &'r [Event<'a, S>],
     end_time: f64,
-    /// Times, in order, that no step crosses.
-    critical: &'r [f64],
+    looks: Looks<'r, S>,
     options: &'r Options,
 }
 
@@ -444,6 +468,18 @@ impl<S: Sample> Leg<'_, '_, S> {
             let Some((step, next)) = self.accepted(scheme, &mut solver, &state) else {
                 return LegEnd::Stopped(StopReason::NonFinite { time });
             };
+            let kept = self
+                .looks
+                .kept
+                .and_then(|kept| kept(&|fraction| step.state_at(fraction)));
+            if let Some(kept) = kept {
+                // The whole step would go past something: not so far, then.
+                match self.solver(scheme, &state, kept * step.length) {
+                    Some(shorter) => solver = shorter,
+                    None => return LegEnd::Stopped(self.failure(time)),
+                }
+                continue;
+            }
             let moved = first.then(|| self.moved(&state, step.length));
             let Some(happenings) = self.happenings(&step, &mut watches, moved.as_ref()) else {
                 return LegEnd::Stopped(StopReason::NonFinite { time });
@@ -461,8 +497,9 @@ impl<S: Sample> Leg<'_, '_, S> {
     /// How far the next critical time is, farther than rounding.
     fn to_critical(&self, time: f64) -> f64 {
         let beyond = time + 4.0 * f64::EPSILON * time.abs();
-        let next = self.critical.partition_point(|critical| *critical <= beyond);
-        self.critical
+        let next = self.looks.critical.partition_point(|critical| *critical <= beyond);
+        self.looks
+            .critical
             .get(next)
             .map_or(f64::INFINITY, |critical| critical - time)
     }

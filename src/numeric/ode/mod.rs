@@ -43,8 +43,8 @@ mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
-pub(crate) use integrate::integrate_through;
 pub use integrate::{IntegrationError, Options, Phase, integrate, integrate_first_order, integrate_phases};
+pub(crate) use integrate::{Kept, Looks, integrate_through};
 pub use sample::{Point, Sample, Values};
 pub use trajectory::{Occurrence, StopReason, Trajectory};
 

@@ -1,0 +1,330 @@
+//! What turns faster than the motion: a narrow well in place, a steep function of the velocity, a pulse that moves with the motion.
+//!
+//! ```text
+//! exp(u), tanh(u), 1/u, ...     u(t*) = 0 or u'(t*) = 0:   width  w = D/|u'|, sqrt(2 D/|u''|),   D: the change of u that matters
+//! a step ends at  t* - 2 w, 4 w, 8 w, ...
+//! ```
+//!
+//! An integrator looks at the right sides along its step only; far from a well there is nothing to be seen of it. Its argument u, though,
+//! moves with the states and is as smooth as they are, so that the places where it does something special are known ahead.
+//! `conservative::features` asks the same of a force at rest.
+
+use crate::exact::rational::to_f64;
+use crate::expr::{Expr, Function, Node};
+use crate::symbol::Symbol;
+use num_traits::Signed as _;
+
+use super::polynomial::{first_root, value};
+
+/// The argument of a function that may turn fast.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Argument {
+    pub(super) expression: Expr,
+    pub(super) kind: Kind,
+}
+
+/// How a function answers to its argument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// It grows with it without bound, and is nothing far below zero: `exp`.
+    Growing,
+    /// It grows with its size: `sinh`, `cosh`.
+    GrowingBothWays,
+    /// It keeps still far from zero: `tanh`.
+    Bounded,
+    /// It comes to rest slowly: `atan`.
+    Slow,
+    /// It changes when the argument changes by its own size over this: powers, logarithms.
+    Power(f64),
+}
+
+/// A step this many times as long as a place is wide would not see it.
+const TIMES: f64 = 16.0;
+
+/// Of the largest value of an argument: what it may be off at a place.
+const ROUNDING: f64 = 1e-13;
+
+/// So many widths away a place is nothing in double precision: from there on steps may end farther apart.
+const FAR: f64 = 32.0;
+
+/// The arguments in the right sides that move with the states. Waves are to be seen everywhere, corners end a step by themselves, and
+/// what depends on the time alone is known beforehand.
+pub(super) fn arguments(right: &[Expr], states: &[Symbol]) -> Vec<Argument> {
+    let mut found: Vec<Argument> = Vec::new();
+    for node in right.iter().flat_map(Expr::unique_nodes) {
+        let Some(argument) = argument(node) else { continue };
+        let moves = states.iter().any(|state| argument.expression.contains(*state));
+        if moves && !found.contains(&argument) {
+            found.push(argument);
+        }
+    }
+    found
+}
+
+fn argument(node: &Expr) -> Option<Argument> {
+    /// A power this high is a bump or a wall.
+    const HIGH: f64 = 8.0;
+    let (expression, kind) = match node.node() {
+        Node::Power(base, exponent) => match exponent.as_number() {
+            Some(number) => {
+                let ordinary = number.is_integer() && number.is_positive() && to_f64(number) < HIGH;
+                (!ordinary).then(|| (base.clone(), Kind::Power(to_f64(&number.abs()))))?
+            }
+            None => {
+                let logarithm = Expr::function(Function::Log, vec![base.clone()]).ok()?;
+                (&logarithm * exponent, Kind::Growing)
+            }
+        },
+        Node::Function(function, arguments) => {
+            let kind = match function {
+                Function::Exp => Kind::Growing,
+                Function::Sinh | Function::Cosh => Kind::GrowingBothWays,
+                Function::Tanh => Kind::Bounded,
+                Function::Atan => Kind::Slow,
+                Function::Log => Kind::Power(1.0),
+                _ => return None,
+            };
+            (arguments.first()?.clone(), kind)
+        }
+        _ => return None,
+    };
+    Some(Argument { expression, kind })
+}
+
+impl Kind {
+    /// The change of the argument that matters where it is so large, give or take so much; nothing where the function is as good as
+    /// constant.
+    fn change(self, argument: f64, error: f64) -> Option<f64> {
+        /// Beyond it an exponential is nothing, whatever it is multiplied by.
+        const NOTHING: f64 = 150.0;
+        match self {
+            Self::Growing if argument + error < -NOTHING => None,
+            Self::Bounded if argument.abs() - error > NOTHING => None,
+            Self::Growing | Self::GrowingBothWays | Self::Bounded => Some(1.0),
+            Self::Slow => Some(argument.abs().max(1.0)),
+            Self::Power(exponent) => Some(argument.abs() / exponent),
+        }
+    }
+
+    /// Whether the zero of an argument is such a place: that of a power is a pole, a root or flat.
+    fn turns_at_zero(self) -> bool {
+        !matches!(self, Self::Power(_))
+    }
+}
+
+/// How far a step may go so that it ends beside the next place that is narrow for it; nothing where it may go to its end. `series` is
+/// the argument along the step, by powers of the time since its beginning.
+pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64> {
+    if is_wide(kind, series, length) || !series.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let slope = derivative(series);
+    let curvature = derivative(&slope);
+    let roots = |series: &[f64]| {
+        let mut found = Vec::new();
+        let mut from = 0.0;
+        // No polynomial has more roots than its degree.
+        for _ in 0..series.len() {
+            let Some((place, _)) = first_root(series, from, length) else {
+                break;
+            };
+            found.push(place);
+            from = place;
+        }
+        found
+    };
+    let mut places = roots(&slope);
+    if kind.turns_at_zero() {
+        places.extend(roots(series));
+    }
+    let largest = series
+        .iter()
+        .rev()
+        .fold(0.0, |sum, coefficient| sum * length + coefficient.abs());
+    let ends = places.into_iter().filter_map(|place| {
+        let at = [series, &slope, &curvature].map(|series| value(series, place));
+        end_before(place, width(kind, at, ROUNDING * largest)?, length)
+    });
+    ends.fold(None, |first: Option<f64>, end| {
+        Some(first.map_or(end, |first| first.min(end)))
+    })
+}
+
+/// The fractions of a step at which an argument is looked at first.
+pub(super) const COARSE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// The same in parts of a step, from the values of the argument at [`COARSE`] and, if these differ much, anywhere.
+pub(super) fn end_by_values(kind: Kind, coarse: [f64; 5], value: impl Fn(f64) -> f64) -> Option<f64> {
+    const CELLS: usize = 32;
+    /// Of the largest value: what the search for a turn may leave of it.
+    const CLOSELY: f64 = 1e-9;
+    /// Turns of an argument beyond which so many cells do not show them.
+    const MOST_TURNS: usize = 8;
+    let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
+    let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
+    let wide = match kind {
+        Kind::Power(_) => least * most > 0.0 && least.abs().max(most.abs()) < 1.5 * least.abs().min(most.abs()),
+        _ => most - least < 0.25 * TIMES,
+    };
+    let cell = 1.0 / CELLS as f64;
+    let values: Vec<f64> = match wide {
+        true => return None,
+        false => (0..=CELLS).map(|index| value(cell * index as f64)).collect(),
+    };
+    if !values.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let mut first: Option<f64> = None;
+    let mut turns = 0;
+    for index in 1..CELLS {
+        let [before, here, after] = [values[index - 1], values[index], values[index + 1]];
+        let (slope, curvature) = (0.5 * (after - before), before - 2.0 * here + after);
+        // Cells from the middle one; those at the ends belong to their neighbours.
+        let from = if index == 1 { -1.0 } else { -0.5 };
+        let to = if index + 1 == CELLS { 1.0 } else { 0.5 };
+        let turn = Some(-slope / curvature).filter(|part| (from..to).contains(part));
+        turns += usize::from(turn.is_some());
+        let zeros = [(before, here, -1.0), (here, after, 0.0)]
+            .into_iter()
+            .skip(usize::from(index > 1));
+        let zeros = zeros.filter(|(one, other, _)| kind.turns_at_zero() && one * other <= 0.0 && one != other);
+        let zeros = zeros.map(|(one, other, cell)| cell + one / (one - other));
+        for part in turn.into_iter().chain(zeros) {
+            let rate = (slope + part * curvature) / cell;
+            let (place, at) = match turn == Some(part) {
+                true => turned(cell * (index as f64 + part), cell, &value),
+                false => (cell * (index as f64 + part), 0.0),
+            };
+            let width = width(kind, [at, rate, curvature / (cell * cell)], CLOSELY * largest);
+            let end = width.and_then(|width| end_before(place, width, 1.0));
+            first = end.map_or(first, |end| Some(first.map_or(end, |first| first.min(end))));
+        }
+    }
+    match turns > MOST_TURNS {
+        true => Some(0.25),
+        false => first,
+    }
+}
+
+/// Where an argument turns near a place, and its value there, by parabolas through closer and closer points.
+fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
+    const TIMES: usize = 4;
+    let (mut place, mut apart) = (place.clamp(0.0, 1.0), cell / 8.0);
+    for _ in 0..TIMES {
+        let middle = place.clamp(apart, 1.0 - apart);
+        let [before, here, after] = [middle - apart, middle, middle + apart].map(value);
+        let part = 0.5 * (before - after) / (before - 2.0 * here + after);
+        if !part.is_finite() {
+            break;
+        }
+        place = (middle + apart * part.clamp(-1.0, 1.0)).clamp(0.0, 1.0);
+        apart /= 8.0;
+    }
+    (place, value(place))
+}
+
+/// The time that a place takes, of the argument, give or take an error, its rate and the rate of that; nothing where the function is as
+/// good as constant.
+fn width(kind: Kind, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
+    let change = kind.change(argument, error)?;
+    let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());
+    (width > 0.0).then_some(width)
+}
+
+/// Where to end a step of this length before a place so far away; nothing where the place is wide, or so near that it is seen.
+fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
+    let width = width.max(1e-13 * length);
+    let near = 2.0 * width;
+    if TIMES * width >= length || distance <= 1.01 * near {
+        return None;
+    }
+    let mut rung = near;
+    loop {
+        let next = if rung < FAR * width { 2.0 * rung } else { 4.0 * rung };
+        if 1.01 * next >= distance {
+            return Some(distance - rung);
+        }
+        rung = next;
+    }
+}
+
+/// Whether the argument changes so little along a step that nothing on it can be narrow.
+fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
+    let (mut first, mut second) = (0.0, 0.0);
+    let mut power = 1.0;
+    for (order, coefficient) in series.iter().enumerate().skip(1) {
+        power *= length;
+        let term = order as f64 * coefficient.abs() * power;
+        first += term;
+        second += order as f64 * term;
+    }
+    match kind {
+        Kind::Power(exponent) => {
+            let size = series[0].abs();
+            let monotonic = 2.0 * series.get(1).map_or(0.0, |slope| slope.abs() * length) > first;
+            monotonic || first < 0.5 * size && exponent * second < TIMES * TIMES * size
+        }
+        _ => first < TIMES && second < TIMES * TIMES,
+    }
+}
+
+fn derivative(series: &[f64]) -> Vec<f64> {
+    let terms = series.iter().enumerate().skip(1);
+    terms.map(|(order, coefficient)| order as f64 * coefficient).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(text: &str) -> Vec<String> {
+        let expression: Expr = text.parse().expect(text);
+        let found = arguments(&[expression], &["x".into(), "v".into()]);
+        found.iter().map(|argument| argument.expression.to_string()).collect()
+    }
+
+    #[test]
+    fn arguments_that_move_with_the_states_are_found() {
+        for (text, expected) in [
+            ("x + x^3 - sin(1e6*x) + abs(v)", vec![]),
+            ("exp(-1e6*t^2) + x", vec![]),
+            ("x*exp(-1e6*(x - t)^2)", vec!["-1000000*(x - t)^2"]),
+            ("tanh(1e3*v)/(1 + x^2)", vec!["1000*v", "x^2 + 1"]),
+        ] {
+            let mut found = found(text);
+            let mut expected: Vec<String> = expected
+                .iter()
+                .map(|text| text.parse::<Expr>().expect(text).to_string())
+                .collect();
+            found.sort();
+            expected.sort();
+            assert_eq!(found, expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_step_ends_beside_the_first_narrow_place() {
+        // exp(-((s - 1/2)/w)^2), w = 1e-3: at 2 w, 4 w, ... before the middle.
+        let series = [-0.25e6, 1e6, -1e6];
+        let end = end_of_step(Kind::Growing, &series, 1.0).expect("an end");
+        assert!((0.3..0.499).contains(&end), "{end}");
+        let mut at = 0.0;
+        for _ in 0..12 {
+            let middle = 0.5 - at;
+            let series = [-middle * middle * 1e6, 2e6 * middle, -1e6];
+            let Some(step) = end_of_step(Kind::Growing, &series, 1.0 - at) else {
+                break;
+            };
+            at += step;
+        }
+        assert!((0.5 - at - 2e-3).abs() < 1e-4, "{at}");
+        // Far below zero an exponential is nothing, and what is wide is seen by itself.
+        assert_eq!(end_of_step(Kind::Growing, &[-1.25e6, 1e6, -1e6], 1.0), None);
+        assert_eq!(end_of_step(Kind::Growing, &[-0.25, 1.0, -1.0], 1.0), None);
+        // A steep tanh, and a pole beside the real line.
+        assert!(end_of_step(Kind::Bounded, &[-3e4, 1e5], 1.0).is_some());
+        assert!(end_of_step(Kind::Power(1.0), &[0.25 + 1e-8, -1.0, 1.0], 1.0).is_some());
+        assert_eq!(end_of_step(Kind::Power(1.0), &[1.25, -1.0, 1.0], 1.0), None);
+    }
+}

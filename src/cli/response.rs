@@ -164,7 +164,7 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::NotPeriodic(_) => {
             Some("time may stand inside sin, cos and tan alone, as cos(Omega*t + phi)".to_owned())
         }
-        ResponseError::Jump(_) | ResponseError::FreeJump => Some(
+        ResponseError::Jump(_) => Some(
             "put (2/pi)*atan(100*x') in place of sgn(x'), or look at the motion itself: `lindstedt simulate` with --every".to_owned(),
         ),
         ResponseError::TwoFrequencies(_) => {

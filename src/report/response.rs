@@ -57,9 +57,10 @@ fn question(response: &Response) -> Vec<Block<'static>> {
         return blocks;
     }
     blocks.push(Block::Sentence(format!(
-        "{name} from {} to {}; harmonic balance, harmonics 0 to {}; theta = {}, and a motion takes {} of the drive.",
+        "{name} from {} to {}; {}, harmonics 0 to {}; theta = {}, and a motion takes {} of the drive.",
         decimal(low),
         decimal(high),
+        method(response),
         response.harmonics,
         phase(response),
         match asked.periods {
@@ -77,16 +78,25 @@ fn question(response: &Response) -> Vec<Block<'static>> {
     blocks
 }
 
+/// How branches are found.
+fn method(response: &Response) -> &'static str {
+    match response.by_map {
+        true => "the map of a period from jump to jump of the force",
+        false => "harmonic balance",
+    }
+}
+
 /// What is computed and listed of motions without drive.
 fn self_excited(response: &Response) -> [Block<'static>; 2] {
     let (name, [low, high]) = (response.question.parameter, response.question.range);
     let frequency = &response.frequency;
     [
         format!(
-            "{name} from {} to {}; nothing drives the motion: harmonic balance, harmonics 0 to {}; theta = {}, and {frequency} is an \
+            "{name} from {} to {}; nothing drives the motion: {}, harmonics 0 to {}; theta = {}, and {frequency} is an \
              unknown of each motion.",
             decimal(low),
             decimal(high),
+            method(response),
             response.harmonics,
             phase(response)
         ),
@@ -199,6 +209,7 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
             "Its mirror image, {image}, is a branch as well, with the same amplitudes."
         )));
     }
+    blocks.extend(sticking(response, branch));
     for (end, point) in branch.ends.iter().zip([branch.points.first(), branch.points.last()]) {
         let Some(point) = point else { continue };
         let place = format!("{name} = {}", significant(point.parameter, 4));
@@ -209,8 +220,9 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
                  motion has more waves than are kept.",
                 significant(std::f64::consts::TAU / point.frequency, 4)
             ),
+            BranchEnd::Held => format!("It comes to rest at {place}: beyond, friction bears what drives it."),
             BranchEnd::Lost if response.jumps => format!(
-                "It could not be followed beyond {place}: the motion begins to stick there, or the force has no value."
+                "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
             ),
             BranchEnd::Lost => {
                 format!("It could not be followed beyond {place}: the force has a jump or no value there.")
@@ -222,6 +234,38 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
         blocks.push(Block::Sentence(words));
     }
     blocks
+}
+
+/// Where dry friction holds the motion on its way.
+fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
+    /// Stretches that are listed.
+    const MOST: usize = 4;
+    let name = response.question.parameter;
+    let sticks = |point: &Point| point.stuck > 0.0;
+    let stretches = branch.points.chunk_by(|one, other| sticks(one) == sticks(other));
+    let stretches: Vec<String> = stretches
+        .filter(|stretch| stretch.first().is_some_and(sticks))
+        .map(|stretch| {
+            let parameters = stretch.iter().map(|point| point.parameter);
+            let low = parameters.clone().fold(f64::INFINITY, f64::min);
+            let high = parameters.fold(f64::NEG_INFINITY, f64::max);
+            format!("from {name} = {} to {}", significant(low, 4), significant(high, 4))
+        })
+        .collect();
+    if stretches.is_empty() {
+        return None;
+    }
+    let longest = branch.points.iter().map(|point| point.stuck).fold(0.0, f64::max);
+    let more = match stretches.len() > MOST {
+        true => ", and elsewhere",
+        false => "",
+    };
+    Some(Block::Sentence(format!(
+        "It sticks on its way, held by friction, {}{more}: for {} % of a period at most. There the points are those of the map of a period, \
+         with the harmonics of the true motion.",
+        stretches[..stretches.len().min(MOST)].join(", "),
+        significant(100.0 * longest, 3)
+    )))
 }
 
 /// From where to where, how many points, how many of them stable.

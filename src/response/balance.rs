@@ -247,13 +247,17 @@ impl<'a> Balance<'a> {
         let mut slopes: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(count));
         // What a jump adds above it is counted where the velocity is.
         let above = self.above(coefficients, parameter, omega, &motion);
-        const BELOW: f64 = -1.0;
+        const BELOW: [f64; 1] = [-1.0];
+        let located = driven.jump_speed(parameter).is_some();
         for (sample, [position, by_phase, curvature]) in motion.iter().enumerate() {
             let velocity = omega * by_phase;
             let at = [*position, velocity, step * sample as f64, parameter];
-            let [by_position, by_velocity, by_parameter] = driven.slopes_on(&at, BELOW);
+            let ([by_position, by_velocity, by_parameter], value) = match located {
+                true => (driven.slopes_on(&at, &BELOW), driven.force_on(&at, &BELOW)),
+                false => (driven.slopes(&at), driven.force(&at)),
+            };
             inertia.push(omega * omega * curvature);
-            force.push(driven.force_on(&at, BELOW));
+            force.push(value);
             slopes[0].push(by_position);
             slopes[1].push(by_velocity);
             let by_frequency = 2.0 * omega * curvature + by_velocity * by_phase;
@@ -316,7 +320,7 @@ impl<'a> Balance<'a> {
         let mut parts: Vec<Part> = Vec::new();
         for phase in &phases {
             let here = at(*phase);
-            let [above, below] = [1.0, -1.0].map(|side| driven.force_on(&here, side));
+            let [above, below] = [1.0, -1.0].map(|side| driven.force_on(&here, &[side]));
             let turn = omega * self.curvature(coefficients, *phase);
             let by_velocity = (above - below) / turn.abs();
             let by_frequency = by_velocity * here[1] / omega;
@@ -343,11 +347,11 @@ impl<'a> Balance<'a> {
                 let begin = from + width * panel as f64;
                 for (phase, weight) in nodes_and_weights(begin, begin + width) {
                     let here = at(phase);
-                    let [above, below] = [1.0, -1.0].map(|side| driven.slopes_on(&here, side));
+                    let [above, below] = [1.0, -1.0].map(|side| driven.slopes_on(&here, &[side]));
                     let [by_position, by_velocity, by_parameter] =
                         std::array::from_fn(|index| weight * (above[index] - below[index]));
                     let by_frequency = by_velocity * here[1] / omega;
-                    let force = weight * (driven.force_on(&here, 1.0) - driven.force_on(&here, -1.0));
+                    let force = weight * (driven.force_on(&here, &[1.0]) - driven.force_on(&here, &[-1.0]));
                     parts.push(Part {
                         phase,
                         values: [

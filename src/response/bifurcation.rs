@@ -14,7 +14,7 @@
 //! of the quantity that changes its sign.
 
 use super::balance::Balance;
-use super::continuation::{Node, Walk};
+use super::continuation::Node;
 use super::stability::Floquet;
 use crate::numeric::ode::root::find_root;
 
@@ -67,11 +67,12 @@ fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<
     value.is_finite().then_some(value)
 }
 
-/// The bifurcations between two neighbouring points, each at its place on the branch. `floquet` finds the multipliers of a point.
+/// The bifurcations between two neighbouring points, each at its place on the branch. `between` finds the point at a part of the way,
+/// `floquet` the multipliers of a point.
 pub fn between(
     balance: &Balance,
-    walk: &Walk,
     [from, to]: [(&Node, Option<Floquet>); 2],
+    between: &impl Fn(f64) -> Option<Node>,
     floquet: &impl Fn(&Node) -> Option<Floquet>,
 ) -> Vec<(BifurcationKind, Node)> {
     use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
@@ -100,14 +101,13 @@ pub fn between(
                 continue;
             }
         }
-        let place = |part: f64| walk.between(balance, from.0, to.0, part);
         let value = |part: f64| {
             let node = if part == 0.0 {
                 Some(from.0.clone())
             } else if part == 1.0 {
                 Some(to.0.clone())
             } else {
-                place(part)
+                between(part)
             };
             let node = node.as_ref();
             let multipliers = node
@@ -122,7 +122,7 @@ pub fn between(
         };
         // Where branches cross Newton's method may not settle: beside it is near enough.
         const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
-        let beside = |part: f64| BESIDE.iter().find_map(|aside| place((part + aside).clamp(0.0, 1.0)));
+        let beside = |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
         let Some(node) = part.and_then(beside) else { continue };
         // A branch that is born at a crossing turns back there without a fold of its own, and its turn is easier to find.
         let crossing = found

@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::balance::{Balance, CONVERGED, Linearised};
 use super::hopf;
+use super::stability::TrueMotion;
 use crate::interrupt::Interrupt;
 
 /// A point of a branch.
@@ -27,9 +28,19 @@ pub struct Node {
     pub tangent: DVector<f64>,
     /// The sign of the determinant of the bordered equations: it changes where branches cross, and not at a fold.
     pub orientation: f64,
+    /// A motion that is known by shooting, not by the balance: it sticks, or has.
+    pub truth: Option<TrueMotion>,
 }
 
 impl Node {
+    /// Position and velocity at phase zero.
+    pub fn begins(&self, balance: &Balance) -> [f64; 2] {
+        self.truth.map_or_else(
+            || balance.start(&self.coefficients, self.parameter),
+            |truth| truth.start,
+        )
+    }
+
     /// dp along the branch: its sign changes at a fold.
     pub fn parameter_slope(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]
@@ -52,6 +63,8 @@ pub enum BranchEnd {
     Lost,
     /// After as many points as are allowed.
     Points,
+    /// It rests all the time: dry friction bears what drives it.
+    Held,
     /// Its amplitude has come to zero: a self-excited motion is born from rest there.
     Rest,
     /// Its period grows without bound: a self-excited motion comes near a place of rest that it cannot pass.
@@ -350,7 +363,7 @@ impl Walk {
     }
 
     /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited motion is born.
-    fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
+    pub(super) fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
         /// Of the largest motion, and of the range: what is beside.
         const BESIDE: f64 = 0.1;
         let small = BESIDE * self.size.max(self.ordinary);
@@ -466,6 +479,7 @@ fn node(factors: &LU<f64, Dyn, Dyn>, coefficients: DVector<f64>, parameter: f64,
         parameter,
         tangent: tangent / length,
         orientation: sign_of_determinant(factors),
+        truth: None,
     })
 }
 

@@ -126,6 +126,7 @@ fn described(path: &Trajectory<Point<[f64; 7]>>, start: [f64; 2], period: f64, d
         },
         first_harmonic: first_harmonic(&positions),
         peak: half_of_peak_to_peak(&positions),
+        stuck: 0.0,
     }
 }
 

@@ -14,9 +14,10 @@ use num_traits::{Signed, Zero};
 
 use super::ResponseError;
 use crate::exact::Rational;
+use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::oscillator::Oscillator;
-use crate::symbol::{Symbol, fresh};
+use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// A driven equation of which one parameter varies.
 #[derive(Clone, Debug)]
@@ -29,10 +30,9 @@ pub struct Driven {
     pub periods: usize,
     /// Whether nothing drives it: the frequency of a motion is then an unknown, for which `frequency` is a name.
     pub self_excited: bool,
-    /// f(x, x', theta; p) with the side of the jump that the velocity is on, where there is one.
+    /// f(x, x', theta; p) with the sides of the jumps that the motion is on, where there are some.
     force: CompiledFunction,
-    /// The velocity at which the force jumps, and its derivative by p.
-    jump: Option<[CompiledFunction; 2]>,
+    jumps: Vec<Jump>,
     /// Its derivatives by x, x' and p.
     slopes: [CompiledFunction; 3],
     /// f(x, x', t; p), as it was given.
@@ -54,14 +54,50 @@ const CORNERS: [Function; 5] = [
     Function::Minimum,
 ];
 
-/// Whether a part of a force jumps where its argument, in which the velocity stands, changes its sign.
-fn jumps(part: &Expr, velocity: Symbol) -> bool {
+/// A line of places and velocities on which the force jumps, `n_x x + n_v x' = c(p)`; n_v is one, or n_x where n_v is zero.
+#[derive(Clone, Debug)]
+struct Jump {
+    normal: [f64; 2],
+    /// c, and its derivative by p.
+    level: [CompiledFunction; 2],
+}
+
+/// The same in symbols.
+#[derive(Clone, Debug, PartialEq)]
+struct Line {
+    normal: [Rational; 2],
+    level: Expr,
+}
+
+/// Whether a part of a force jumps where its argument, in which this stands, changes its sign.
+fn jumps(part: &Expr, name: Symbol) -> bool {
     match part.node() {
         Node::Function(Function::Sign | Function::Step, arguments) => {
-            arguments.iter().any(|argument| argument.contains(velocity))
+            arguments.iter().any(|argument| argument.contains(name))
         }
         _ => false,
     }
+}
+
+/// A term with the jumps along some lines on this side.
+fn on_side(
+    term: &Expr,
+    side: &Expr,
+    is_meant: &impl Fn(&Expr) -> Result<Option<bool>, ResponseError>,
+) -> Result<Expr, ResponseError> {
+    term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
+        (Node::Function(function @ (Function::Sign | Function::Step), arguments), [_]) => {
+            let Some(grows) = is_meant(&arguments[0])? else {
+                return Ok(part.with_children(parts)?);
+            };
+            let sign = if grows { side.clone() } else { -side };
+            match function {
+                Function::Sign => Ok(sign),
+                _ => Ok(Expr::divide(&(Expr::from(1) + sign), &Expr::from(2))?),
+            }
+        }
+        _ => Ok(part.with_children(parts)?),
+    })
 }
 
 /// Whether a term has a jump of its own size at the velocity zero alone, and none there: it is multiplied by a power of the velocity.
@@ -70,67 +106,94 @@ fn is_continuous(term: &Expr, velocity: Symbol) -> Result<bool, ResponseError> {
     if term.unique_nodes().any(elsewhere) {
         return Ok(false);
     }
-    let on_side = |side: i64| -> Result<Expr, ResponseError> {
-        let chosen = term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
-            (Node::Function(function @ (Function::Sign | Function::Step), _), [argument])
-                if argument.as_symbol() == Some(velocity) =>
-            {
-                Expr::function(*function, vec![argument.substitute(velocity, &Expr::from(side))?])
-            }
-            _ => part.with_children(parts),
-        })?;
-        Ok(chosen.substitute(velocity, &Expr::zero())?)
+    let at_zero = |argument: &Expr| Ok((argument.as_symbol() == Some(velocity)).then_some(true));
+    let on = |side: i64| -> Result<Expr, ResponseError> {
+        Ok(on_side(term, &Expr::from(side), &at_zero)?.substitute(velocity, &Expr::zero())?)
     };
-    Ok((&on_side(1)? - &on_side(-1)?).is_zero())
+    Ok((&on(1)? - &on(-1)?).is_zero())
 }
 
-/// The velocity at which the argument of a jump is zero, and whether it grows with the velocity; nothing where that is no velocity of its
-/// own, the same at every place and time.
-fn speed_of(argument: &Expr, oscillator: &Oscillator) -> Result<Option<(Expr, bool)>, ResponseError> {
-    let velocity = oscillator.velocity();
-    let factor = argument.differentiate(velocity)?.expand()?;
-    let Some(number) = factor.as_number().filter(|number| !number.is_zero()) else {
+/// Whether a term has no jump of its own size on a line in place: it is multiplied by what vanishes there, as the force of a contact.
+fn is_continuous_on(term: &Expr, line: &Line, oscillator: &Oscillator) -> Result<bool, ResponseError> {
+    let is_line = |argument: &Expr| {
+        Ok(line_of(argument, oscillator)?
+            .filter(|(own, _)| own == line)
+            .map(|(_, grows)| grows))
+    };
+    let on = |side: i64| -> Result<Expr, ResponseError> {
+        Ok(on_side(term, &Expr::from(side), &is_line)?.substitute(oscillator.coordinate, &line.level)?)
+    };
+    Ok((&on(1)? - &on(-1)?).expand()?.is_zero())
+}
+
+/// The line on which the argument of a jump is zero, and whether it grows across it; nothing where that is no line of places and
+/// velocities, the same at every time.
+fn line_of(argument: &Expr, oscillator: &Oscillator) -> Result<Option<(Line, bool)>, ResponseError> {
+    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let factor = |name: Symbol| -> Result<Option<Rational>, ResponseError> {
+        Ok(argument.differentiate(name)?.expand()?.as_number().cloned())
+    };
+    let (Some(by_position), Some(by_velocity)) = (factor(position)?, factor(velocity)?) else {
         return Ok(None);
     };
-    let grows = number.is_positive();
-    let rest = argument.substitute(velocity, &Expr::zero())?;
-    let speed = Expr::divide(&-rest, &factor)?.expand()?;
-    let own = [oscillator.coordinate, Symbol::new("t")];
-    Ok((!own.iter().any(|name| speed.contains(*name))).then_some((speed, grows)))
+    let over = if by_velocity.is_zero() {
+        by_position.clone()
+    } else {
+        by_velocity.clone()
+    };
+    if over.is_zero() {
+        return Ok(None);
+    }
+    let rest = argument
+        .substitute(velocity, &Expr::zero())?
+        .substitute(position, &Expr::zero())?;
+    let level = Expr::divide(&-rest, &Expr::number(over.clone()))?.expand()?;
+    if level.contains(Symbol::new("t")) {
+        return Ok(None);
+    }
+    let grows = over.is_positive();
+    let normal = [&by_position / &over, &by_velocity / &over];
+    Ok(Some((Line { normal, level }, grows)))
 }
 
-/// The force with a name for the side of the velocity, 1 or -1, in place of what jumps with it, and the velocity at which it does; the
-/// force as it is where nothing jumps.
-fn with_side(oscillator: &Oscillator, side: Symbol) -> Result<(Expr, Option<Expr>), ResponseError> {
-    let velocity = oscillator.velocity();
-    let mut speed: Option<Expr> = None;
+/// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it does; the force as it is where nothing
+/// jumps.
+fn with_sides(oscillator: &Oscillator, side: impl Fn(usize) -> Symbol) -> Result<(Expr, Vec<Line>), ResponseError> {
+    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let mut lines: Vec<Line> = Vec::new();
     let mut replaced = Vec::new();
     for term in oscillator.force.expand()?.terms() {
-        if !term.unique_nodes().any(|part| jumps(part, velocity)) || is_continuous(term, velocity)? {
+        let with_velocity = term.unique_nodes().any(|part| jumps(part, velocity));
+        let in_place = term.unique_nodes().any(|part| jumps(part, position));
+        if !in_place && (!with_velocity || is_continuous(term, velocity)?) {
             replaced.push(term.clone());
             continue;
         }
-        let refused = || ResponseError::Jump(term.to_string());
-        replaced.push(term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
-            (Node::Function(function @ (Function::Sign | Function::Step), _), [argument])
-                if argument.contains(velocity) =>
-            {
-                let (own, grows) = speed_of(argument, oscillator)?.ok_or_else(refused)?;
-                if speed.get_or_insert_with(|| own.clone()) != &own {
-                    return Err(refused());
-                }
-                let sign = if grows { Expr::from(side) } else { -Expr::from(side) };
-                match function {
-                    Function::Sign => Ok(sign),
-                    _ => Ok(Expr::divide(&(Expr::from(1) + sign), &Expr::from(2))?),
-                }
+        replaced.push(term.fold(|part, parts: &[Expr]| {
+            let (Node::Function(Function::Sign | Function::Step, arguments), [argument]) = (part.node(), parts) else {
+                return Ok(part.with_children(parts)?);
+            };
+            let with_velocity = arguments[0].contains(velocity);
+            let found = line_of(argument, oscillator)?.filter(|_| with_velocity || arguments[0].contains(position));
+            let found = match found {
+                // A step in place may be followed as it stands where nothing jumps there.
+                Some((line, _)) if !with_velocity && is_continuous_on(term, &line, oscillator)? => None,
+                None if with_velocity => return Err(ResponseError::Jump(term.to_string())),
+                found => found,
+            };
+            let Some((line, grows)) = found else {
+                return Ok(part.with_children(parts)?);
+            };
+            let index = lines.iter().position(|known| *known == line).unwrap_or(lines.len());
+            if index == lines.len() {
+                lines.push(line);
             }
-            _ => Ok(part.with_children(parts)?),
+            on_side(part, &Expr::from(side(index)), &|_| Ok(Some(grows)))
         })?);
     }
-    Ok(match speed {
-        Some(speed) => (Expr::sum(replaced), Some(speed)),
-        None => (oscillator.force.clone(), None),
+    Ok(match lines.is_empty() {
+        true => (oscillator.force.clone(), lines),
+        false => (Expr::sum(replaced), lines),
     })
 }
 
@@ -142,15 +205,11 @@ impl Driven {
     pub fn new(oscillator: &Oscillator, parameter: Symbol, periods: usize) -> Result<Self, ResponseError> {
         if !oscillator.force.contains(Symbol::new("t")) {
             let names: Vec<Symbol> = oscillator.names().into_iter().chain([parameter]).collect();
-            let found = Self {
+            return Ok(Self {
                 frequency: Expr::from(fresh("omega", &names)),
                 self_excited: true,
                 ..Self::of_frequency(oscillator, Expr::from(1), parameter, 1)?
-            };
-            return match found.jump {
-                Some(_) => Err(ResponseError::FreeJump),
-                None => Ok(found),
-            };
+            });
         }
         let frequency = drive_frequency(oscillator)?;
         Self::of_frequency(oscillator, frequency, parameter, periods)
@@ -167,12 +226,14 @@ impl Driven {
         let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
         let names: Vec<Symbol> = oscillator.names().into_iter().chain([velocity, parameter]).collect();
         let phase = fresh("theta", &names);
-        let side = fresh("side", &names);
-        let (force, speed) = with_side(oscillator, side)?;
+        let stem = fresh_stem("side", &names);
+        let side = |index: usize| Symbol::new(&format!("{stem}{index}"));
+        let (force, lines) = with_sides(oscillator, side)?;
         let base = Expr::divide(&frequency, &Expr::from(i64::try_from(periods).unwrap_or(1)))?;
         let moment = Expr::divide(&Expr::from(phase), &base)?;
         let force = in_phase(&force, time, &moment)?;
-        let arguments = [position, velocity, phase, parameter, side];
+        let own = [position, velocity, phase, parameter];
+        let arguments: Vec<Symbol> = own.into_iter().chain((0..lines.len()).map(side)).collect();
         let compiled = |expression: &Expr| CompiledFunction::new(expression, &arguments).map_err(ResponseError::from);
         let slope = |by: Symbol| compiled(&force.differentiate(by)?);
         let undamped = oscillator
@@ -181,13 +242,18 @@ impl Driven {
         Ok(Self {
             slopes: [slope(position)?, slope(velocity)?, slope(parameter)?],
             force: compiled(&force)?,
-            jump: match speed {
-                Some(speed) => Some([
-                    CompiledFunction::new(&speed, &[parameter])?,
-                    CompiledFunction::new(&speed.differentiate(parameter)?, &[parameter])?,
-                ]),
-                None => None,
-            },
+            jumps: lines
+                .into_iter()
+                .map(|Line { normal, level }| {
+                    Ok::<Jump, ResponseError>(Jump {
+                        normal: normal.map(|factor| to_f64(&factor)),
+                        level: [
+                            CompiledFunction::new(&level, &[parameter])?,
+                            CompiledFunction::new(&level.differentiate(parameter)?, &[parameter])?,
+                        ],
+                    })
+                })
+                .collect::<Result<_, _>>()?,
             in_time: CompiledFunction::new(&oscillator.force, &[position, velocity, time, parameter])?,
             base: [
                 CompiledFunction::new(&base, &[parameter])?,
@@ -212,49 +278,100 @@ impl Driven {
         self.base[1].call(&[parameter])
     }
 
-    /// The velocity at which the force jumps, if it does, as that of dry friction at zero.
+    /// The velocity at which the force jumps, if it does there alone, as that of dry friction at zero.
     pub fn jump_speed(&self, parameter: f64) -> Option<f64> {
-        self.jump.as_ref().map(|jump| jump[0].call(&[parameter]))
+        match self.jumps.as_slice() {
+            [jump] if jump.normal[0] == 0.0 => Some(jump.level[0].call(&[parameter])),
+            _ => None,
+        }
     }
 
     /// The derivative of that velocity by the parameter.
     pub fn jump_speed_slope(&self, parameter: f64) -> f64 {
-        self.jump.as_ref().map_or(0.0, |jump| jump[1].call(&[parameter]))
+        self.jumps.first().map_or(0.0, |jump| jump.level[1].call(&[parameter]))
+    }
+
+    /// On how many lines of places and velocities the force jumps.
+    pub fn jumps(&self) -> usize {
+        self.jumps.len()
+    }
+
+    /// Whether harmonic balance takes its jumps: there are none, or one with the velocity under a drive.
+    pub fn is_balanced(&self) -> bool {
+        match self.jumps.as_slice() {
+            [] => true,
+            [jump] => jump.normal[0] == 0.0 && !self.self_excited,
+            _ => false,
+        }
+    }
+
+    /// Of a jump n_x and n_v: it is where `n_x x + n_v x' = c`.
+    pub fn normal(&self, index: usize) -> [f64; 2] {
+        self.jumps[index].normal
+    }
+
+    /// Of a jump `n_x x + n_v x' - c`.
+    pub fn height(&self, index: usize, [x, v]: [f64; 2], parameter: f64) -> f64 {
+        let Jump { normal, level } = &self.jumps[index];
+        // The velocity zero is met exactly.
+        match normal {
+            [0.0, _] => v - level[0].call(&[parameter]),
+            [by_position, by_velocity] => by_position * x + by_velocity * v - level[0].call(&[parameter]),
+        }
     }
 
     /// f at a position, a velocity and a phase of the motion.
     pub fn force(&self, at: &[f64; 4]) -> f64 {
-        self.force_on(at, self.side(at))
+        match self.jumps.is_empty() {
+            true => self.force.call(at),
+            false => self.force_on(at, &self.sides(at)),
+        }
     }
 
     /// Its derivatives by position, velocity and parameter, the phase being fixed.
     pub fn slopes(&self, at: &[f64; 4]) -> [f64; 3] {
-        self.slopes_on(at, self.side(at))
-    }
-
-    /// f as it is on this side of its jump, 1 above it and -1 below.
-    pub fn force_on(&self, [x, v, phase, p]: &[f64; 4], side: f64) -> f64 {
-        self.force.call(&[*x, *v, *phase, *p, side])
-    }
-
-    /// Its derivatives on this side.
-    pub fn slopes_on(&self, [x, v, phase, p]: &[f64; 4], side: f64) -> [f64; 3] {
-        self.slopes
-            .each_ref()
-            .map(|slope| slope.call(&[*x, *v, *phase, *p, side]))
-    }
-
-    /// The side of its jump that a velocity is on; zero at the jump itself.
-    fn side(&self, at: &[f64; 4]) -> f64 {
-        match self.jump_speed(at[3]) {
-            Some(speed) if at[1] != speed => (at[1] - speed).signum(),
-            _ => 0.0,
+        match self.jumps.is_empty() {
+            true => self.slopes.each_ref().map(|slope| slope.call(at)),
+            false => self.slopes_on(at, &self.sides(at)),
         }
+    }
+
+    /// f as it is on these sides of its jumps, 1 above and -1 below.
+    pub fn force_on(&self, at: &[f64; 4], sides: &[f64]) -> f64 {
+        with(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
+    }
+
+    /// Its derivatives on these sides.
+    pub fn slopes_on(&self, at: &[f64; 4], sides: &[f64]) -> [f64; 3] {
+        with(at, sides, self.jumps.len(), |arguments| {
+            self.slopes.each_ref().map(|slope| slope.call(arguments))
+        })
+    }
+
+    /// The sides of its jumps that a motion is on; zero at a jump itself.
+    fn sides(&self, at: &[f64; 4]) -> Vec<f64> {
+        let side = |height: f64| if height == 0.0 { 0.0 } else { height.signum() };
+        (0..self.jumps.len())
+            .map(|index| side(self.height(index, [at[0], at[1]], at[3])))
+            .collect()
     }
 
     /// f as it was given, in time.
     pub fn force_in_time(&self, at: &[f64; 4]) -> f64 {
         self.in_time.call(at)
+    }
+}
+
+/// What a function gives for a place and the sides of so many jumps.
+fn with<T>([x, v, phase, p]: &[f64; 4], sides: &[f64], jumps: usize, function: impl Fn(&[f64]) -> T) -> T {
+    match (jumps, sides) {
+        (0, _) => function(&[*x, *v, *phase, *p]),
+        (1, [side]) => function(&[*x, *v, *phase, *p, *side]),
+        (2, [one, other]) => function(&[*x, *v, *phase, *p, *one, *other]),
+        _ => {
+            let all: Vec<f64> = [*x, *v, *phase, *p].iter().chain(sides).copied().collect();
+            function(&all)
+        }
     }
 }
 

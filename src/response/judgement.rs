@@ -6,9 +6,10 @@ use super::balance::Balance;
 use super::continuation::Node;
 use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
-    Floquet, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
+    Floquet, SAMPLES, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
 };
 use super::{Asked, Branch, MOST_EVALUATIONS, Point, Simulated};
+use crate::trajectory;
 
 /// The multipliers at a point of a branch, and the true motion beside it.
 pub(super) type Judged = (Option<Floquet>, Option<TrueMotion>);
@@ -26,10 +27,13 @@ impl Asked<'_> {
     pub(super) fn judged(&self, balance: &Balance, node: &Node) -> Judged {
         /// Parts of its size by which the true motion may differ: beyond it is another one.
         const OTHER: f64 = 0.3;
+        if node.truth.is_some() {
+            return (node.truth.map(|truth| truth.floquet), node.truth);
+        }
         if self.driven.self_excited {
             return self.judged_cycle(balance, node);
         }
-        let start = balance.start(&node.coefficients, node.parameter);
+        let start = node.begins(balance);
         let size = balance.extent(&node.coefficients);
         let truth = periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
             let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
@@ -38,7 +42,7 @@ impl Asked<'_> {
         let floquet = truth.map(|truth| truth.floquet);
         let along = || {
             // Across a jump only the true motion tells.
-            if self.driven.jump_speed(node.parameter).is_some() {
+            if self.driven.jumps() > 0 {
                 return None;
             }
             let frequency = self.driven.frequency_at(node.parameter);
@@ -76,6 +80,7 @@ impl Asked<'_> {
                 floquet: along,
                 first_harmonic: [0.0, 0.0],
                 peak: 0.0,
+                stuck: 0.0,
             };
             return (Some(along), Some(at_rest));
         }
@@ -122,6 +127,7 @@ impl Asked<'_> {
             start: truth.map_or_else(|| balance.start(u, node.parameter), |truth| truth.start),
             stable: floquet.map(|floquet| floquet.largest() < allowed),
             multipliers: floquet.map(|floquet| floquet.multipliers()),
+            stuck: truth.map_or(0.0, |truth| truth.stuck),
             error,
         }
     }
@@ -165,6 +171,10 @@ impl Asked<'_> {
                     let most = needed.ceil() as usize + 8;
                     let mut run = |disturbance: f64| {
                         let start = [point.start[0] + disturbance * point.peak, point.start[1]];
+                        if self.driven.jumps() > 0 {
+                            let (frequency, positions) = self.simulated_by_series(start, point, most)?;
+                            return Some(simulated(point, &positions, frequency, size));
+                        }
                         if self.driven.self_excited {
                             let guess = Guess {
                                 start,
@@ -188,6 +198,36 @@ impl Asked<'_> {
             }
         }
         found
+    }
+}
+
+impl Asked<'_> {
+    /// Frequency and positions of the last of so many periods from a start, by the simulation that takes every jump at its event and knows
+    /// nothing of the map by which the points were found; nothing where it does not come so far.
+    fn simulated_by_series(&self, start: [f64; 2], point: &Point, periods: usize) -> Option<(f64, Vec<f64>)> {
+        let mut course = trajectory::Course::of_equation(&self.oscillator);
+        let period = std::f64::consts::TAU / point.frequency;
+        course.energy = None;
+        course.start = start.to_vec();
+        course.values = [(self.question.parameter, point.parameter)].into();
+        course
+            .values
+            .retain(|name, _| self.oscillator.parameters.contains(name));
+        course.interrupt = self.question.interrupt;
+        course.duration = period * (periods + 2) as f64;
+        if self.driven.self_excited {
+            // From one least displacement to the next.
+            course.section = Some(trajectory::Section::Rising(self.oscillator.velocity().into()));
+        }
+        let motion = course.follow().ok().filter(|motion| motion.is_complete())?;
+        let (from, to) = match (self.driven.self_excited, motion.crossings()) {
+            (false, _) => (motion.end() - period, motion.end()),
+            (true, [.., one, other]) => (one.time, other.time),
+            (true, _) => return None,
+        };
+        let time = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
+        let positions = (0..SAMPLES).filter_map(|sample| Some(motion.at(time(sample))?[0]));
+        Some((std::f64::consts::TAU / (to - from), positions.collect()))
     }
 }
 

@@ -1,14 +1,15 @@
-//! The motion across a jump of the force with the velocity, such as dry friction, and its variation.
+//! The motion across jumps of the force, such as dry friction or a step in place, and its variation.
 //!
 //! ```text
-//! h = x' - c,   f = f+ where h > 0, f- where h < 0,   a = -f        crossing:  a+ and a- have one sign
-//! dx, dx' behind a crossing = S (dx, dx'),   S = 1 + (y'_behind - y'_before) n^T/(n^T y'_before) = [1 0; 0 a_behind/a_before]
-//! sticking: a+ <= 0 <= a-,   x' = c,   until a+ > 0 or a- < 0,      S = [1 0; 0 0] where it begins, 1 where it ends
+//! h = n_x x + n_v x' - c,   f = f+ where h > 0, f- where h < 0,   a = -f
+//! crossing: h' = n_x x' + n_v a has one sign on both sides       sticking: h' leads back to h = 0 from both, until it does no more
+//! dx, dx' behind = S (dx, dx'),   S = 1 + (y'_behind - y'_before) n^T/(n^T y'_before)
+//! velocity alone:  S = [1 0; 0 a_behind/a_before] where it crosses,  [1 0; 0 0] where sticking begins,  1 where it ends
 //! ```
 //!
 //! S is the saltation matrix (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004,
 //! chapter 7; M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, *Piecewise-smooth Dynamical Systems*, Springer 2008, chapter
-//! 2). In: a start. Out: the motion leg by leg, each on one side of the jump or sticking, the ends of the legs located as events, and
+//! 2). In: a start. Out: the motion leg by leg, each between the jumps or sticking on one, the ends of the legs located as events, and
 //! M(t). Of a force without such a jump it is one leg.
 
 use super::driven::Driven;
@@ -21,24 +22,35 @@ type Values = [f64; 6];
 #[derive(Clone, Debug)]
 pub struct Course {
     legs: Vec<Trajectory<Point<Values>>>,
+    /// How long it sticks.
+    stuck: f64,
+    /// Whether it has ended where it turns back.
+    turned: bool,
     /// Position, velocity and the two columns of M where it ends.
     pub end: [f64; 6],
 }
 
-/// Where the velocity is.
+/// How far a motion is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Mode {
-    /// Above the jump, 1, or below it, -1.
-    Side(f64),
-    /// On it.
-    Sticking,
+pub enum Until {
+    /// For so long.
+    Time(f64),
+    /// To where its velocity falls through zero, a largest displacement, or for so long.
+    Turn(f64),
+}
+
+impl Until {
+    fn time(self) -> f64 {
+        match self {
+            Self::Time(time) | Self::Turn(time) => time,
+        }
+    }
 }
 
 impl Course {
     /// Positions at equal steps of the duration, its end left out.
     pub fn positions(&self, count: usize) -> Vec<f64> {
-        let from = self.legs.first().map_or(0.0, |leg| leg.start().t);
-        let to = self.legs.last().map_or(0.0, |leg| leg.end().t);
+        let (from, to) = self.span();
         let time = |index: usize| from + index as f64 / count as f64 * (to - from);
         let mut leg = 0;
         let at = |index: usize| {
@@ -50,108 +62,298 @@ impl Course {
         (0..count).filter_map(at).map(|point| point.y[0]).collect()
     }
 
+    fn span(&self) -> (f64, f64) {
+        let from = self.legs.first().map_or(0.0, |leg| leg.start().t);
+        let to = self.legs.last().map_or(0.0, |leg| leg.end().t);
+        (from, to)
+    }
+
+    /// How long it takes.
+    pub fn duration(&self) -> f64 {
+        let (from, to) = self.span();
+        to - from
+    }
+
+    /// The part of the duration in which it sticks.
+    pub fn stuck(&self) -> f64 {
+        match self.duration() {
+            duration if duration > 0.0 => self.stuck / duration,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether it has ended where it turns back.
+    pub fn turned(&self) -> bool {
+        self.turned
+    }
+
+    /// How far it gets from where it begins.
+    pub fn extent(&self) -> f64 {
+        let positions = self.positions(super::stability::SAMPLES);
+        let from = positions.first().copied().unwrap_or(0.0);
+        positions
+            .iter()
+            .fold(0.0, |most, position| most.max((position - from).abs()))
+    }
+
     /// Evaluations of the force.
     pub fn evaluations(&self) -> usize {
         self.legs.iter().map(Trajectory::evaluations).sum()
     }
 }
 
-/// The motion from a start at phase zero for a duration; nothing where it cannot be followed.
-pub fn follow(driven: &Driven, start: [f64; 2], parameter: f64, duration: f64, options: &Options) -> Option<Course> {
+/// The motion from a start at phase zero; nothing where it cannot be followed.
+pub fn follow(driven: &Driven, start: [f64; 2], parameter: f64, until: Until, options: &Options) -> Option<Course> {
     /// Legs of a period: beyond them it does not come to an end.
     const MOST: usize = 400;
-    let begin = [start[0], start[1], 1.0, 0.0, 0.0, 1.0];
-    let Some(speed) = driven.jump_speed(parameter) else {
-        let path = on_side(driven, parameter, 0.0, (0.0, begin), duration, &[], options)?;
-        let end = path.end().y;
-        return Some(Course { legs: vec![path], end });
-    };
-    let omega = driven.frequency_at(parameter);
-    // On the jump, as it is on either side.
-    let acceleration = |t: f64, x: f64, side: f64| -driven.force_on(&[x, speed, omega * t, parameter], side);
-    let mut mode = match start[1] - speed {
-        above if above > 0.0 => Mode::Side(1.0),
-        below if below < 0.0 => Mode::Side(-1.0),
-        _ if acceleration(0.0, start[0], 1.0) > 0.0 => Mode::Side(1.0),
-        _ if acceleration(0.0, start[0], -1.0) < 0.0 => Mode::Side(-1.0),
-        _ => Mode::Sticking,
-    };
-    let (mut t, mut y) = (0.0, begin);
+    let mut run = Run::new(driven, start, parameter);
     let mut legs = Vec::new();
+    let mut stuck = 0.0;
     for _ in 0..MOST {
-        let path = match mode {
-            Mode::Side(side) => {
-                let reached = Event::new(move |point: &Point<Values>| side * (point.y[1] - speed), Action::Stop);
-                on_side(driven, parameter, side, (t, y), duration, &[reached.falling()], options)?
-            }
-            Mode::Sticking => {
-                (y[1], y[3], y[5]) = (speed, 0.0, 0.0);
-                let leaves = [1.0, -1.0].map(|side| {
-                    let pushed = move |point: &Point<Values>| side * acceleration(point.t, point.y[0], side);
-                    Event::new(pushed, Action::Stop).rising()
-                });
-                // Nothing but the drive changes: a step sees all of it.
-                let options = Options {
-                    maximum_step: 0.05 * std::f64::consts::TAU / omega / driven.periods as f64,
-                    ..*options
-                };
-                let rates = |_: f64, _: &Values, rates: &mut Values| *rates = [speed, 0.0, 0.0, 0.0, 0.0, 0.0];
-                let path = integrate_first_order(rates, Point { t, y }, duration, &leaves, &options).ok()?;
-                path.is_complete().then_some(path)?
-            }
+        let began = run.t;
+        let path = match run.sliding {
+            None => run.leg(until, options)?,
+            Some(surface) => run.sliding_leg(surface, until, options)?,
         };
         let (reason, last) = (path.stop_reason(), path.end());
-        (t, y) = (last.t, last.y);
+        (run.t, run.y) = (last.t, last.y);
+        if run.sliding.is_some() {
+            stuck += last.t - began;
+        }
         legs.push(path);
-        let StopReason::Event { event, .. } = reason else {
-            return Some(Course { legs, end: y });
+        let turned = match reason {
+            StopReason::Event { event, .. } => run.met(event, until),
+            _ => false,
         };
-        y[1] = speed;
-        mode = match mode {
-            Mode::Sticking => Mode::Side(if event == 0 { 1.0 } else { -1.0 }),
-            Mode::Side(side) => {
-                let (before, behind) = (acceleration(t, y[0], side), acceleration(t, y[0], -side));
-                if side * behind < 0.0 {
-                    (y[3], y[5]) = (y[3] * behind / before, y[5] * behind / before);
-                    Mode::Side(-side)
-                } else {
-                    Mode::Sticking
-                }
-            }
-        };
-        if t >= duration {
-            if mode == Mode::Sticking {
-                (y[3], y[5]) = (0.0, 0.0);
-            }
-            return Some(Course { legs, end: y });
+        if turned || run.t >= until.time() {
+            return Some(Course {
+                legs,
+                stuck,
+                turned,
+                end: run.y,
+            });
         }
     }
     None
 }
 
-/// A leg on one side of the jump.
-fn on_side(
-    driven: &Driven,
+/// A motion on its way.
+struct Run<'a> {
+    driven: &'a Driven,
     parameter: f64,
-    side: f64,
-    (t, y): (f64, Values),
-    until: f64,
-    events: &[Event<Point<Values>>],
-    options: &Options,
-) -> Option<Trajectory<Point<Values>>> {
-    let omega = driven.frequency_at(parameter);
-    let rates = |t: f64, y: &Values, rates: &mut Values| {
-        let at = [y[0], y[1], omega * t, parameter];
-        let [by_position, by_velocity, _] = driven.slopes_on(&at, side);
-        *rates = [
-            y[1],
-            -driven.force_on(&at, side),
-            y[3],
-            -by_position * y[2] - by_velocity * y[3],
-            y[5],
-            -by_position * y[4] - by_velocity * y[5],
-        ];
-    };
-    let path = integrate_first_order(rates, Point { t, y }, until, events, options).ok()?;
-    path.is_complete().then_some(path)
+    omega: f64,
+    t: f64,
+    y: Values,
+    /// The side of each jump, 1 or -1.
+    sides: Vec<f64>,
+    /// The jump on which it sticks.
+    sliding: Option<usize>,
+}
+
+impl<'a> Run<'a> {
+    fn new(driven: &'a Driven, start: [f64; 2], parameter: f64) -> Self {
+        let y = [start[0], start[1], 1.0, 0.0, 0.0, 1.0];
+        let heights = |index: usize| driven.height(index, start, parameter);
+        let mut run = Self {
+            driven,
+            parameter,
+            omega: driven.frequency_at(parameter),
+            t: 0.0,
+            y,
+            sides: (0..driven.jumps())
+                .map(|index| if heights(index) < 0.0 { -1.0 } else { 1.0 })
+                .collect(),
+            sliding: None,
+        };
+        for index in (0..driven.jumps()).filter(|index| heights(*index) == 0.0) {
+            match [1.0, -1.0].into_iter().find(|side| side * run.rise(index, *side) > 0.0) {
+                Some(side) => run.sides[index] = side,
+                // At rest beside a step in place it is on neither side.
+                None if driven.normal(index)[1] != 0.0 => run.stick(index),
+                None => {}
+            }
+        }
+        run
+    }
+
+    /// The acceleration where it is, with this side of one jump.
+    fn acceleration(&self, index: usize, side: f64) -> f64 {
+        let mut sides = self.sides.clone();
+        sides[index] = side;
+        let at = [self.y[0], self.y[1], self.omega * self.t, self.parameter];
+        -self.driven.force_on(&at, &sides)
+    }
+
+    /// dh/dt on this side of a jump.
+    fn rise(&self, index: usize, side: f64) -> f64 {
+        let [by_position, by_velocity] = self.driven.normal(index);
+        let acceleration = match by_velocity {
+            0.0 => 0.0,
+            _ => by_velocity * self.acceleration(index, side),
+        };
+        by_position * self.y[1] + acceleration
+    }
+
+    /// The events at which it leaves its side of a jump, those but one.
+    fn crossings(&self, but: Option<usize>) -> Vec<Event<'a, Point<Values>>> {
+        let (driven, parameter) = (self.driven, self.parameter);
+        let crossing = |(index, side): (usize, &f64)| {
+            let side = if Some(index) == but { 0.0 } else { *side };
+            let height = move |point: &Point<Values>| side * driven.height(index, [point.y[0], point.y[1]], parameter);
+            Event::new(height, Action::Stop).falling()
+        };
+        self.sides.iter().enumerate().map(crossing).collect()
+    }
+
+    /// The event at which it turns back, behind all others but before them at the same time.
+    fn turn(until: Until) -> Option<Event<'a, Point<Values>>> {
+        let falls = |point: &Point<Values>| point.y[1];
+        matches!(until, Until::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
+    }
+
+    /// A leg between the jumps.
+    fn leg(&self, until: Until, options: &Options) -> Option<Trajectory<Point<Values>>> {
+        let rates = |t: f64, y: &Values, rates: &mut Values| {
+            let at = [y[0], y[1], self.omega * t, self.parameter];
+            let [by_position, by_velocity, _] = self.driven.slopes_on(&at, &self.sides);
+            *rates = [
+                y[1],
+                -self.driven.force_on(&at, &self.sides),
+                y[3],
+                -by_position * y[2] - by_velocity * y[3],
+                y[5],
+                -by_position * y[4] - by_velocity * y[5],
+            ];
+        };
+        let events: Vec<_> = Self::turn(until).into_iter().chain(self.crossings(None)).collect();
+        let begin = Point { t: self.t, y: self.y };
+        let path = integrate_first_order(rates, begin, until.time(), &events, options).ok()?;
+        path.is_complete().then_some(path)
+    }
+
+    /// A leg on a jump: x' = c - n_x x, the velocity counted once.
+    fn sliding_leg(&self, surface: usize, until: Until, options: &Options) -> Option<Trajectory<Point<Values>>> {
+        let [by_position, _] = self.driven.normal(surface);
+        let rates = |_: f64, y: &Values, rates: &mut Values| {
+            *rates = [
+                y[1],
+                -by_position * y[1],
+                y[3],
+                -by_position * y[3],
+                y[5],
+                -by_position * y[5],
+            ];
+        };
+        let leaves = [1.0, -1.0].map(|side| {
+            let mut sides = self.sides.clone();
+            sides[surface] = side;
+            let (driven, omega, parameter) = (self.driven, self.omega, self.parameter);
+            let pushed = move |point: &Point<Values>| {
+                let [x, v, ..] = point.y;
+                side * (by_position * v - driven.force_on(&[x, v, omega * point.t, parameter], &sides))
+            };
+            Event::new(pushed, Action::Stop).rising()
+        });
+        let turn = Self::turn(until);
+        let events: Vec<_> = turn
+            .into_iter()
+            .chain(self.crossings(Some(surface)))
+            .chain(leaves)
+            .collect();
+        // Nothing but the drive changes: a step sees all of it.
+        let options = Options {
+            maximum_step: 0.05 * std::f64::consts::TAU / self.omega / self.driven.periods as f64,
+            ..*options
+        };
+        let begin = Point { t: self.t, y: self.y };
+        let path = integrate_first_order(rates, begin, until.time(), &events, &options).ok()?;
+        path.is_complete().then_some(path)
+    }
+
+    /// Goes on behind an event; whether the motion has turned back there.
+    fn met(&mut self, event: usize, until: Until) -> bool {
+        let index = match (until, event) {
+            (Until::Turn(_), 0) => {
+                self.y[1] = 0.0;
+                return true;
+            }
+            (Until::Turn(_), _) => event - 1,
+            (Until::Time(_), _) => event,
+        };
+        if let Some(side) = index.checked_sub(self.sides.len()) {
+            // Pulled off the jump on which it stuck.
+            if let Some(surface) = self.sliding.take() {
+                self.sides[surface] = if side == 0 { 1.0 } else { -1.0 };
+            }
+            return false;
+        }
+        self.put_on(index);
+        let side = self.sides[index];
+        let before = self.rate_before(index);
+        let behind = self.rise(index, -side);
+        self.sides[index] = -side;
+        if side * behind < 0.0 {
+            let after = self.acceleration(index, -side);
+            self.jump(index, before, after);
+            self.stay();
+        } else if self.driven.normal(index)[1] != 0.0 {
+            self.stick(index);
+        } else {
+            // A step in place that is reached without speed is turned back from.
+            self.sides[index] = side;
+        }
+        false
+    }
+
+    /// Puts it exactly on a jump.
+    fn put_on(&mut self, index: usize) {
+        let height = self.driven.height(index, [self.y[0], self.y[1]], self.parameter);
+        match self.driven.normal(index) {
+            [by_position, 0.0] => self.y[0] -= height / by_position,
+            [_, by_velocity] => self.y[1] -= height / by_velocity,
+        }
+    }
+
+    /// The acceleration with which it comes to a jump.
+    fn rate_before(&self, index: usize) -> f64 {
+        match self.sliding {
+            Some(surface) => -self.driven.normal(surface)[0] * self.y[1],
+            None => self.acceleration(index, self.sides[index]),
+        }
+    }
+
+    /// The saltation matrix of a jump, with the accelerations before and behind.
+    fn jump(&mut self, index: usize, before: f64, behind: f64) {
+        let [by_position, by_velocity] = self.driven.normal(index);
+        let speed = by_position * self.y[1] + by_velocity * before;
+        for column in [2, 4] {
+            let height = by_position * self.y[column] + by_velocity * self.y[column + 1];
+            // What is zero stays so, however slowly it comes.
+            if height != 0.0 {
+                self.y[column + 1] += (behind - before) * height / speed;
+            }
+        }
+    }
+
+    /// Begins to stick on a jump: of what is beside it only what lies along the jump is left.
+    fn stick(&mut self, index: usize) {
+        let [by_position, _] = self.driven.normal(index);
+        self.put_on(index);
+        for column in [2, 4] {
+            self.y[column + 1] = -by_position * self.y[column];
+        }
+        self.sliding = Some(index);
+    }
+
+    /// Whether what stuck on a jump does so still behind another one.
+    fn stay(&mut self) {
+        let Some(surface) = self.sliding else { return };
+        if let Some(side) = [1.0, -1.0]
+            .into_iter()
+            .find(|side| side * self.rise(surface, *side) > 0.0)
+        {
+            self.sides[surface] = side;
+            self.sliding = None;
+        }
+    }
 }

@@ -14,7 +14,7 @@
 //! - [`balance`]: its equations for Fourier coefficients.
 //! - [`continuation`]: the branches.
 //! - [`stability`]: the true motion by shooting, its multipliers; simulations that settle.
-//! - [`jump`]: motions across dry friction, sticking included.
+//! - [`jump`]: motions across dry friction, sticking included; `sticking`: their branches.
 //! - [`bifurcation`]: where a branch changes.
 //! - [`backbone`]: the free motion without damping.
 //! - [`slow`]: the same motions by slow equations of amplitude and phase.
@@ -39,6 +39,7 @@ mod seeds;
 mod self_excited;
 pub mod slow;
 pub mod stability;
+mod sticking;
 
 use std::collections::BTreeMap;
 
@@ -105,14 +106,11 @@ pub enum ResponseError {
     /// Time enters in a way that does not repeat.
     #[error("the term `{0}` is not periodic in time")]
     NotPeriodic(String),
-    /// A force that jumps with the velocity, but at no velocity of its own.
-    #[error("the term `{0}` jumps with the velocity, and not at one velocity that is the same at every place and time")]
-    Jump(String),
-    /// A force that jumps with the velocity, and no drive.
+    /// A force that jumps with the velocity, but along no line of places and velocities.
     #[error(
-        "the force jumps with the velocity, and there is no drive: limit cycles across such a jump are not followed"
+        "the term `{0}` jumps with the velocity, and not on a line of places and velocities that is the same at every time"
     )]
-    FreeJump,
+    Jump(String),
     /// Two frequencies without a common period for every value of the parameter.
     #[error("the frequencies `{}` and `{}` are no whole multiples of one frequency", .0[0], .0[1])]
     TwoFrequencies([String; 2]),
@@ -217,6 +215,8 @@ pub struct Point {
     pub stable: Option<bool>,
     /// The multipliers, the larger first; of a self-excited motion the one that decides, then the one along the motion, which is 1.
     pub multipliers: Option<[Complex<f64>; 2]>,
+    /// The part of a period in which it sticks, held by dry friction.
+    pub stuck: f64,
     /// The error of amplitude or peak against the true motion that shooting found, the larger, over the true peak, or that of the
     /// frequency, over the true one, if that is larger; nothing where it found none near.
     pub error: Option<f64>,
@@ -300,8 +300,10 @@ pub struct Response {
     pub self_excited: bool,
     /// Whether nothing damps the motion.
     pub undamped: bool,
-    /// Whether the force jumps with the velocity, as dry friction does.
+    /// Whether the force jumps with the velocity, as dry friction does, or in place.
     pub jumps: bool,
+    /// Whether all branches are those of the map of a period, because harmonic balance does not take the jumps.
+    pub by_map: bool,
     /// How many harmonics were kept.
     pub harmonics: usize,
     /// The branches, in the order in which they were found.
@@ -545,7 +547,13 @@ impl<'a> Asked<'a> {
     fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<Response, ResponseError> {
         let question = self.question;
         let balance = Balance::new(&self.driven, harmonics);
-        let mut paths = self.branches(&balance, seeds, size_of(seeds));
+        let mut paths = match self.driven.is_balanced() {
+            true => self.branches(&balance, seeds, size_of(seeds)),
+            false => vec![],
+        };
+        let largest_motion = paths.iter().map(|path| largest(&balance, path));
+        let size = largest_motion.fold(size_of(seeds), f64::max);
+        self.follow_sticking(&balance, seeds, &mut paths, size);
         let (all_judged, changes) = self.judged_paths(&balance, seeds, &mut paths);
         // What is small is small beside the largest motion of all.
         let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
@@ -582,7 +590,8 @@ impl<'a> Asked<'a> {
             frequency: self.driven.frequency.clone(),
             self_excited: self.driven.self_excited,
             undamped: self.driven.undamped,
-            jumps: self.driven.jump_speed(question.range[0]).is_some(),
+            jumps: self.driven.jumps() > 0,
+            by_map: !self.driven.is_balanced(),
             harmonics: balance.harmonics,
             backbone: backbones(
                 &self.oscillator,
@@ -677,7 +686,11 @@ impl<'a> Asked<'a> {
                 if self.question.interrupt.is_requested() {
                     break;
                 }
-                let found = bifurcation::between(balance, &walk, [(from, before.0), (to, after.0)], &floquet);
+                let between = |part: f64| match from.truth.or(to.truth) {
+                    Some(_) => self.stuck_between(balance, from, to, part),
+                    None => walk.between(balance, from, to, part),
+                };
+                let found = bifurcation::between(balance, [(from, before.0), (to, after.0)], &between, &floquet);
                 for (mut kind, node) in found {
                     let crossed = kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES;
                     if crossed && self.follow_crossing(balance, &walk, &node, paths) {

@@ -15,6 +15,8 @@ pub(super) struct Seed {
     /// Of the motion.
     pub(super) frequency: f64,
     pub(super) positions: Vec<f64>,
+    /// Position and velocity with which it begins, where a simulation has come to it.
+    pub(super) start: Option<[f64; 2]>,
 }
 
 impl Asked<'_> {
@@ -51,7 +53,8 @@ impl Asked<'_> {
                 // Beside the motion that a balance finds from rest, if it does.
                 let mut still = DVector::zeros(balance.size());
                 still[0] = place;
-                if let Some(found) = balance.solve(&still, *parameter) {
+                let found = self.driven.is_balanced().then(|| balance.solve(&still, *parameter));
+                if let Some(found) = found.flatten() {
                     size = size.max(balance.extent(&found));
                     let positions = (0..SAMPLES).map(|sample| {
                         let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
@@ -61,6 +64,7 @@ impl Asked<'_> {
                         parameter: *parameter,
                         frequency: self.driven.frequency_at(*parameter),
                         positions: positions.collect(),
+                        start: None,
                     });
                 }
                 elsewhere.extend(self.settled([place, 0.0], *parameter, &mut seeds, &mut budget));
@@ -68,7 +72,10 @@ impl Asked<'_> {
         }
         size = size.max(size_of(&seeds));
         // The ring is as wide as the branches that are known by now.
-        let first: Vec<Path> = self.branches(&balance, &seeds, size);
+        let first: Vec<Path> = match self.driven.is_balanced() {
+            true => self.branches(&balance, &seeds, size),
+            false => vec![],
+        };
         let widest = first
             .iter()
             .flat_map(|path| &path.nodes)
@@ -119,6 +126,7 @@ impl Asked<'_> {
             parameter,
             frequency: self.driven.frequency_at(parameter),
             positions: settled.positions,
+            start: Some(settled.state),
         });
         None
     }

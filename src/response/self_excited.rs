@@ -9,6 +9,7 @@
 //! Pergamon 1966, chapter V).
 
 use super::backbone::places_of_rest;
+use super::jump::{Until, follow};
 use super::seeds::Seed;
 use super::{Asked, ResponseError};
 use crate::numeric::ode::root::find_root;
@@ -36,7 +37,10 @@ impl Asked<'_> {
                 }
                 let parameter = low + (high - low) * f64::from(index) / f64::from(count - 1);
                 for place in self.places(parameter) {
-                    self.cycles_about(place, parameter, &mut seeds);
+                    match self.driven.is_balanced() {
+                        true => self.cycles_about(place, parameter, &mut seeds),
+                        false => self.cycles_across_jumps(place, parameter, &mut seeds),
+                    }
                 }
             }
             if !seeds.is_empty() {
@@ -93,6 +97,46 @@ impl Asked<'_> {
                     parameter,
                     frequency: std::f64::consts::TAU / period,
                     positions,
+                    start: None,
+                });
+            }
+        }
+    }
+
+    /// Adds the cycles that turn right of a place of rest where the force jumps on their way. What sticks cannot be followed backward.
+    fn cycles_across_jumps(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
+        /// Beyond it a motion does not turn back.
+        const LONGEST: f64 = 1e3;
+        const SAMPLES: usize = 512;
+        let swing = |radius: f64, (tolerance, _): (f64, usize)| {
+            let options = super::stability::options(radius, tolerance);
+            let course = follow(
+                &self.driven,
+                [place + radius, 0.0],
+                parameter,
+                Until::Turn(LONGEST),
+                &options,
+            )?;
+            let away = course.end[0] - place;
+            (course.turned() && away > 0.0).then_some((course, away))
+        };
+        let growth = |radius: f64| swing(radius, SEARCHED).map_or(f64::NAN, |(_, away)| away / radius - 1.0);
+        let mut before = f64::NAN;
+        for ring in -RINGS..=RINGS {
+            let radius = RATIO.powi(ring);
+            let after = growth(radius);
+            let changes = before * after < 0.0 && before.abs().min(after.abs()) > ROUNDING;
+            let fixed = changes.then(|| find_root(growth, radius / RATIO, radius).ok());
+            before = after;
+            let found = fixed.flatten().and_then(|radius| Some((radius, swing(radius, FOUND)?)));
+            // A jump from growing to shrinking is no cycle.
+            let found = found.filter(|(radius, (_, away))| (away / radius - 1.0).abs() <= 1e-4);
+            if let Some((radius, (course, _))) = found {
+                seeds.push(Seed {
+                    parameter,
+                    frequency: std::f64::consts::TAU / course.duration(),
+                    positions: course.positions(SAMPLES),
+                    start: Some([place + radius, 0.0]),
                 });
             }
         }

@@ -13,7 +13,7 @@ use nalgebra::{Matrix2, Vector2};
 use num_complex::Complex;
 
 use super::driven::Driven;
-use super::jump::{Course, follow};
+use super::jump::{Course, Until, follow};
 use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
@@ -65,6 +65,8 @@ pub struct TrueMotion {
     pub first_harmonic: [f64; 2],
     /// Half of the way from the lowest to the highest point.
     pub peak: f64,
+    /// The part of a period in which it sticks.
+    pub stuck: f64,
 }
 
 /// Relative error of a step where motions are judged.
@@ -89,7 +91,7 @@ fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<C
         driven,
         start,
         parameter,
-        std::f64::consts::TAU / omega,
+        Until::Time(std::f64::consts::TAU / omega),
         &options(size, TOLERANCE),
     )
 }
@@ -176,6 +178,7 @@ fn described(path: &Course, start: [f64; 2], (frequency, floquet): (f64, Floquet
         floquet,
         first_harmonic: first_harmonic(&positions),
         peak: half_of_peak_to_peak(&positions),
+        stuck: path.stuck(),
     }
 }
 
@@ -276,9 +279,9 @@ pub fn settle(
     for _ in 0..most {
         let begin = states.last().copied()?;
         let size = begin[0].abs().max(begin[1].abs() / omega);
-        let path = match driven.jump_speed(parameter) {
-            Some(_) => Period::Legs(follow(driven, begin, parameter, period, &settings(size))?),
-            None => {
+        let path = match driven.jumps() > 0 {
+            true => Period::Legs(follow(driven, begin, parameter, Until::Time(period), &settings(size))?),
+            false => {
                 let begin = Point { t: 0.0, y: begin };
                 Period::One(integrate_first_order(rates, begin, period, &[], &settings(size)).ok()?)
             }

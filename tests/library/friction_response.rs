@@ -1,5 +1,6 @@
 //! Steady states under dry friction against Den Hartog's closed form, simulation piece by piece, and differences of its map.
 
+use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{Point, Question, Response, respond};
 use lindstedt::trajectory::Course;
 use lindstedt::verify::Verdict;
@@ -64,6 +65,20 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
         ("x'' + x'/10 + x + x^3/5 + alpha*sgn(x') = F*cos(Omega*t)", [1.3, 1.8]),
         ("x'' + x'/10 + x + alpha*x*H(x') = F*cos(Omega*t)", [1.4, 1.8]),
         ("x'' + x'/10 + x + alpha*sgn(x' - 1/10) = F*cos(Omega*t)", [1.4, 1.8]),
+        // A step in place, a slanted line, two velocities, place and velocity: by the map alone.
+        ("x'' + x'/10 + x + alpha*sgn(x) = F*cos(Omega*t)", [1.5, 1.8]),
+        (
+            "x'' + x'/10 + x + alpha*H(x' + x/2 - 1/10)*x^2 = F*cos(Omega*t)",
+            [1.5, 1.8],
+        ),
+        (
+            "x'' + x'/10 + x + alpha*(sgn(x') + sgn(x' - 1/2))/2 = F*cos(Omega*t)",
+            [1.5, 1.8],
+        ),
+        (
+            "x'' + x'/10 + x + alpha*(sgn(x') + H(x - 1/5)/3) = F*cos(Omega*t)",
+            [1.5, 1.8],
+        ),
     ] {
         let found = response(equation, range, "F = 1, alpha = 1/5", 12);
         // However few the harmonics, the multipliers are those of the true motion beside them.
@@ -104,14 +119,14 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
 fn a_motion_that_sticks_has_a_multiplier_of_zero() {
     use lindstedt::numeric::ode::Options;
     use lindstedt::response::driven::Driven;
-    use lindstedt::response::jump::follow;
+    use lindstedt::response::jump::{Until, follow};
     let equation = "x'' + x + 3/5*sgn(x') = cos(k*t)";
     let oscillator = Oscillator::parse(equation).expect(equation);
     let driven = Driven::new(&oscillator, "k".into(), 1).expect(equation);
     let (k, period) = (0.5, 4.0 * std::f64::consts::PI);
     let mut start = [0.5, 0.0];
     for _ in 0..6 {
-        let course = follow(&driven, start, k, period, &Options::with_tolerance(1e-11)).expect("a motion");
+        let course = follow(&driven, start, k, Until::Time(period), &Options::with_tolerance(1e-11)).expect("a motion");
         let [x, v, a, c, b, d] = course.end;
         assert!((a * d - b * c).abs() < 1e-12);
         let expected = after_a_period("x'' + x + 3/5*sgn(x') = cos(t/2)", &[], start, period);
@@ -121,4 +136,152 @@ fn a_motion_that_sticks_has_a_multiplier_of_zero() {
         );
         start = [x, v];
     }
+}
+
+/// A motion under dry friction alone that does not stop, `x = alpha + V F cos(W t) + ...` down from one turning point to the other: the largest
+/// displacement X, and W^2 X - alpha, which is positive as long as it does not rest at the turn (Den Hartog, as above).
+fn without_a_stop(r: f64, alpha: f64) -> (f64, f64) {
+    let response = 1.0 / (1.0 - r * r);
+    let friction = (0.5 * std::f64::consts::PI / r).tan() / r;
+    let peak = (response.powi(2) - (alpha * friction).powi(2)).sqrt();
+    (peak, r * r * peak - alpha)
+}
+
+/// Below the frequency at which Den Hartog's motion would rest at its turns the branch goes on with motions that stick: each the fixed point
+/// of the simulation that knows nothing of the branch, with a multiplier of zero.
+#[test]
+fn a_branch_goes_on_where_the_motion_begins_to_stick() {
+    let equation = "x'' + x + alpha*sgn(x') = F*cos(Omega*t)";
+    let found = response(equation, [0.35, 0.85], "F = 1, alpha = 1/2", 24);
+    assert_eq!((found.branches.len(), found.unjudged), (1, 0), "{:?}", found.branches);
+    let (mut low, mut high) = (0.5, 0.7);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match without_a_stop(middle, 0.5).1 < 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    let mut sticking = 0;
+    for (index, point) in points(&found).enumerate() {
+        let r = point.parameter;
+        assert_eq!(point.stuck > 0.0, r < low, "{r}: {} {low}", point.stuck);
+        assert_eq!(point.stable, Some(true), "{point:?}");
+        if point.stuck == 0.0 {
+            let (peak, _) = without_a_stop(r, 0.5);
+            // Waves are slow to come near; the error that stands beside them is theirs.
+            let error = point.error.expect("an error");
+            assert!(
+                (point.peak / peak - 1.0).abs() < error + 1e-6,
+                "{r}: {} {peak}",
+                point.peak
+            );
+            continue;
+        }
+        sticking += 1;
+        let [one, other] = point.multipliers.expect("multipliers");
+        assert!(one.norm() < 1.0 && other.norm() < 1e-9, "{point:?}");
+        if index % 9 == 0 {
+            let numbers = [("F", 1.0), ("alpha", 0.5), ("Omega", r)];
+            let back = after_a_period(equation, &numbers, point.start, std::f64::consts::TAU / r);
+            assert!(
+                (back[0] - point.start[0]).hypot(back[1] - point.start[1]) < 1e-6,
+                "{point:?} {back:?}"
+            );
+        }
+    }
+    assert!(sticking > 10);
+}
+
+/// Less force than friction bears moves nothing: the branch ends there, at rest.
+#[test]
+fn a_branch_ends_where_friction_bears_the_drive() {
+    let question = Question::new(
+        "x'' + x'/20 + x + alpha*sgn(x') = F*cos(7/10*t)",
+        "F",
+        [0.2, 2.0],
+        "alpha = 1/2",
+    );
+    let question = Question {
+        harmonics: Some(12),
+        ..question.expect("a question")
+    };
+    let found = respond(&question).expect("a response");
+    let [branch] = &found.branches[..] else {
+        panic!("one branch: {:?}", found.branches)
+    };
+    let ends = [
+        (branch.ends[0], branch.points.first()),
+        (branch.ends[1], branch.points.last()),
+    ];
+    let held = ends
+        .iter()
+        .find(|(end, _)| *end == BranchEnd::Held)
+        .and_then(|(_, point)| *point);
+    let last = held.expect("an end at rest");
+    assert!((0.5..0.52).contains(&last.parameter) && last.stuck > 0.8, "{last:?}");
+    assert!(
+        branch
+            .points
+            .iter()
+            .any(|point| point.parameter > 1.99 && point.stuck == 0.0)
+    );
+}
+
+/// Dry friction that damps and a damper that feeds: a cycle that repels, in closed form from one turn to the next, `X = c (q + 1)/(q - 1)` with
+/// `q = e^(pi/sqrt 3)` and the multiplier q^2.
+#[test]
+fn a_cycle_across_a_jump_is_that_of_its_half_swings() {
+    let question = Question::new("x'' + c*sgn(x') - x' + x = 0", "c", [0.1, 1.0], "").expect("a question");
+    let found = respond(&question).expect("a response");
+    assert!(found.by_map && found.branches.len() == 1 && found.unjudged == 0);
+    let growth = (std::f64::consts::PI / 3.0_f64.sqrt()).exp();
+    for point in points(&found) {
+        let turn = point.parameter * (growth + 1.0) / (growth - 1.0);
+        assert!((point.start[0] / turn - 1.0).abs() < 1e-8, "{point:?} {turn}");
+        let multiplier = point.multipliers.expect("multipliers")[0].re;
+        assert!((multiplier / growth.powi(2) - 1.0).abs() < 1e-6, "{multiplier}");
+        assert!((point.frequency / 0.75_f64.sqrt() - 1.0).abs() < 1e-9 && point.stable == Some(false));
+    }
+}
+
+/// A mass on a belt whose friction falls with the speed of sliding: it sticks and slips, with a multiplier of zero, until the belt is fast
+/// enough; beside it a cycle that only slips repels, born from rest where the friction falls no faster than the damper bears.
+#[test]
+fn a_mass_on_a_belt_sticks_and_slips() {
+    let friction = "3/10*sgn(x' - v)*(1 + exp(-10*abs(x' - v))/2)";
+    let equation = format!("x'' + x'/50 + x + {friction} = 0");
+    let found = respond(&Question::new(&equation, "v", [0.1, 1.0], "").expect("a question")).expect("a response");
+    assert_eq!(
+        (found.branches.len(), found.verdict),
+        (2, Verdict::Pass),
+        "{:?}",
+        found.error
+    );
+    for (index, branch) in found.branches.iter().enumerate() {
+        let sticks = branch.points[branch.points.len() / 2].stuck > 0.0;
+        for point in branch.points.iter().step_by(25).filter(|point| point.peak > 1e-3) {
+            assert_eq!(
+                (point.stuck > 0.0, point.stable),
+                (sticks, Some(sticks)),
+                "{index}: {point:?}"
+            );
+            let period = std::f64::consts::TAU / point.frequency;
+            let back = after_a_period(&equation, &[("v", point.parameter)], point.start, period);
+            assert!(
+                (back[0] - point.start[0]).abs() < 1e-6 && back[1].abs() < 1e-6,
+                "{point:?} {back:?}"
+            );
+            if sticks {
+                assert!(point.multipliers.expect("multipliers")[0].norm() < 1e-8, "{point:?}");
+            }
+        }
+    }
+    // 1/50 = (3/10) 5 e^(-10 v).
+    let born = 0.1 * (0.3_f64 * 5.0 * 50.0).ln();
+    let hopf: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
+    assert!(
+        hopf.iter().any(|parameter| (parameter - born).abs() < 1e-6),
+        "{hopf:?} {born}"
+    );
 }

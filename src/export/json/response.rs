@@ -26,7 +26,7 @@ pub struct ResponseDocument {
     pub parameter: String,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
-    /// How the branches were found: `harmonic-balance`.
+    /// How the branches were found: `harmonic-balance`, or `period-map` where the force has jumps that harmonic balance does not take.
     pub method: String,
     /// The highest harmonic kept.
     pub harmonics: usize,
@@ -42,6 +42,8 @@ pub struct ResponseDocument {
     pub branches: Vec<Vec<ResponsePoint>>,
     /// Of each branch whether -x half a period of the drive later is a branch as well, which is not listed.
     pub mirrored: Vec<bool>,
+    /// Of each point of a branch the part of a period in which dry friction holds it; empty for a branch that nothing holds.
+    pub stuck: Vec<Vec<f64>>,
     /// Where branches change.
     pub bifurcations: Vec<ResponseBifurcation>,
     /// The free motion without damping, a list of points for each stable place of rest; empty where the frequency of the drive does not
@@ -270,7 +272,11 @@ pub fn response(response: &Response) -> ResponseDocument {
             .collect(),
         parameter: asked.parameter.to_string(),
         range: asked.range,
-        method: "harmonic-balance".to_owned(),
+        method: match response.by_map {
+            true => "period-map",
+            false => "harmonic-balance",
+        }
+        .to_owned(),
         harmonics: response.harmonics,
         periods: asked.periods,
         frequency: motion_frequency(response),
@@ -282,6 +288,14 @@ pub fn response(response: &Response) -> ResponseDocument {
             .map(|branch| branch.points.iter().map(point).collect())
             .collect(),
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
+        stuck: response
+            .branches
+            .iter()
+            .map(|branch| match branch.points.iter().any(|point| point.stuck > 0.0) {
+                true => branch.points.iter().map(|point| point.stuck).collect(),
+                false => vec![],
+            })
+            .collect(),
         bifurcations: response
             .bifurcations
             .iter()

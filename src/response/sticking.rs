@@ -1,0 +1,487 @@
+//! Branches of motions across jumps of the force that harmonic balance does not take: by the map of a period.
+//!
+//! ```text
+//! P(y; p): position and velocity a period later,   P(y; p) - y = 0        [M - 1  P_p; y'^T  p'] [dy; dp] = -[P - y; 0]
+//! ```
+//!
+//! A sum of waves is smooth and has no rest in it, so that harmonic balance is lost where sticking begins. The map of a period, followed
+//! from event to event ([`jump`](super::jump)), is continuous there, and its derivative M is what the legs and their saltation matrices
+//! make it: of what sticks one multiplier is zero. Pseudo-arclength goes on with it (R. I. Leine and H. Nijmeijer, *Dynamics and
+//! Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, chapter 8). Where nothing drives the motion the map goes from one
+//! largest displacement to the next, and its derivative is the multiplier. In: a periodic motion. Out: the branch through it, each
+//! point with the harmonics of the true motion.
+
+use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
+
+use super::balance::Balance;
+use super::branches::largest;
+use super::continuation::{BranchEnd, Node, Path};
+use super::jump::{Course, Until, follow};
+use super::seeds::Seed;
+use super::stability::{Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options};
+use super::{Asked, LONGEST_STEP, MOST_BRANCHES};
+
+/// Position, velocity and parameter, each in its size.
+type Scaled = Vector3<f64>;
+
+/// A periodic motion on a branch.
+#[derive(Clone, Debug)]
+struct Shot {
+    at: Scaled,
+    tangent: Scaled,
+    course: Course,
+}
+
+/// The map of a period in its sizes.
+struct PeriodMap<'a> {
+    asked: &'a Asked<'a>,
+    /// Of position, velocity and parameter.
+    sizes: Scaled,
+}
+
+impl<'a> PeriodMap<'a> {
+    fn new(asked: &'a Asked<'a>, size: f64, parameter: f64) -> Self {
+        let [low, high] = asked.question.range;
+        let size = size.max(1e-12);
+        Self {
+            asked,
+            sizes: Vector3::new(size, size * asked.driven.frequency_at(parameter), high - low),
+        }
+    }
+
+    fn scaled(&self, start: [f64; 2], parameter: f64) -> Scaled {
+        Vector3::new(start[0], start[1], parameter).component_div(&self.sizes)
+    }
+
+    fn start(&self, at: &Scaled) -> ([f64; 2], f64) {
+        let real = at.component_mul(&self.sizes);
+        ([real[0], real[1]], real[2])
+    }
+
+    /// A period from here; nothing where it cannot be followed.
+    fn period(&self, at: &Scaled) -> Option<Course> {
+        /// Beyond it a motion without drive does not turn back.
+        const LONGEST: f64 = 1e3;
+        let (start, parameter) = self.start(at);
+        let driven = &self.asked.driven;
+        let options = options(self.sizes[0].max(start[0].abs()), TOLERANCE);
+        if driven.self_excited {
+            let mut course = follow(driven, [start[0], 0.0], parameter, Until::Turn(LONGEST), &options)?;
+            // What is beside the start in the velocity is no other start; what is beside the end along the motion is the same end.
+            let [x, _, by_start, ..] = course.end;
+            course.end = [x, 0.0, by_start, 0.0, 0.0, 0.0];
+            return course.turned().then_some(course);
+        }
+        let omega = driven.frequency_at(parameter);
+        if omega.is_nan() || omega <= 0.0 {
+            return None;
+        }
+        follow(
+            driven,
+            start,
+            parameter,
+            Until::Time(std::f64::consts::TAU / omega),
+            &options,
+        )
+    }
+
+    /// dP/dp, by differences.
+    fn by_parameter(&self, at: &Scaled) -> Option<[f64; 2]> {
+        const STEP: f64 = 1e-5;
+        let [above, below] = [STEP, -STEP].map(|step| self.period(&(at + Vector3::new(0.0, 0.0, step))));
+        let (above, below) = (above?.end, below?.end);
+        Some([0, 1].map(|index| (above[index] - below[index]) / (2.0 * STEP * self.sizes[index])))
+    }
+
+    /// The bordered matrix at a motion, with this last row.
+    fn bordered(&self, course: &Course, by_parameter: [f64; 2], row: &Scaled) -> Matrix3<f64> {
+        let [_, _, a, c, b, d] = course.end;
+        let ratio = self.sizes[1] / self.sizes[0];
+        Matrix3::new(
+            a - 1.0,
+            b * ratio,
+            by_parameter[0],
+            c / ratio,
+            d - 1.0,
+            by_parameter[1],
+            row[0],
+            row[1],
+            row[2],
+        )
+    }
+
+    /// Newton's method at right angles to a direction: the motion, its tangent turned as the direction.
+    fn corrected(&self, guess: &Scaled, direction: &Scaled) -> Option<Shot> {
+        const MOST: usize = 14;
+        const SETTLED: f64 = 1e-9;
+        let mut at = *guess;
+        let mut by_parameter = self.by_parameter(&at)?;
+        let mut before = f64::INFINITY;
+        for iteration in 0..MOST {
+            let course = self.period(&at)?;
+            let (start, _) = self.start(&at);
+            let missed = [0, 1].map(|index| (course.end[index] - start[index]) / self.sizes[index]);
+            let matrix = self.bordered(&course, by_parameter, direction);
+            let right = Vector3::new(-missed[0], -missed[1], -direction.dot(&(at - guess)));
+            let step = matrix.lu().solve(&right)?;
+            let moved = step.norm();
+            if !moved.is_finite() {
+                return None;
+            }
+            // What does not shrink any more has come as near as rounding lets it.
+            if moved <= SETTLED || moved <= 1e-6 && moved >= 0.5 * before {
+                let by_parameter = self.by_parameter(&at)?;
+                let matrix = self.bordered(&course, by_parameter, direction);
+                let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
+                let length = tangent.norm();
+                return (length > 0.0 && length.is_finite()).then(|| Shot {
+                    at,
+                    tangent: tangent / length,
+                    course,
+                });
+            }
+            before = moved;
+            at += step;
+            if iteration == MOST / 2 {
+                by_parameter = self.by_parameter(&at)?;
+            }
+        }
+        None
+    }
+
+    /// The motion at this parameter near a start, its tangent toward larger parameters.
+    fn at(&self, start: [f64; 2], parameter: f64) -> Option<Shot> {
+        self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
+    }
+
+    /// Motion after motion in the direction of the tangent, the first left out, and why there are no more. `met` says where motions of
+    /// another branch are met.
+    fn walk(&self, first: &Shot, met: &dyn Fn(&Node) -> bool, balance: &Balance) -> (Vec<Shot>, BranchEnd) {
+        const FIRST: f64 = 0.2;
+        const SHORTEST: f64 = 1e-7;
+        const MOST: usize = 500;
+        /// Cosine of the angle between tangents: a branch has a corner where a motion begins to stick.
+        const SHARPEST: f64 = 0.5;
+        /// Part of a period.
+        const ALL: f64 = 1.0 - 1e-9;
+        const NEARLY_ALL: f64 = 0.8;
+        let bounds = self.asked.question.range.map(|bound| bound / self.sizes[2]);
+        let mut shots: Vec<Shot> = Vec::new();
+        let mut step = FIRST * LONGEST_STEP;
+        loop {
+            if self.asked.question.interrupt.is_requested() {
+                return (shots, BranchEnd::Interrupted);
+            }
+            if shots.len() >= MOST {
+                return (shots, BranchEnd::Points);
+            }
+            let here = shots.last().unwrap_or(first);
+            let guess = here.at + here.tangent * step;
+            let found = self.corrected(&guess, &here.tangent).filter(|shot| {
+                let moved = (shot.at - here.at).norm();
+                shot.tangent.dot(&here.tangent) > SHARPEST && moved < 1.5 * step && shot.course.stuck() < ALL
+            });
+            let Some(shot) = found else {
+                step *= 0.5;
+                if step < SHORTEST {
+                    let end = match here.course.stuck() > NEARLY_ALL {
+                        true => BranchEnd::Held,
+                        false => BranchEnd::Lost,
+                    };
+                    return (shots, end);
+                }
+                continue;
+            };
+            if !(bounds[0]..=bounds[1]).contains(&shot.at[2]) {
+                let bound = if shot.at[2] < bounds[0] { bounds[0] } else { bounds[1] };
+                if (bound - here.at[2]).abs() <= 1e-9 {
+                    return (shots, BranchEnd::Range);
+                }
+                let part = (bound - here.at[2]) / (shot.at[2] - here.at[2]);
+                let mut guess = here.at + (shot.at - here.at) * part;
+                guess[2] = bound;
+                let direction = Vector3::new(0.0, 0.0, (shot.at[2] - here.at[2]).signum());
+                shots.extend(self.corrected(&guess, &direction));
+                return (shots, BranchEnd::Range);
+            }
+            if shots.len() > 8 && passes(&first.at, &here.at, &shot.at) {
+                return (shots, BranchEnd::Closed);
+            }
+            if shot.course.stuck() == 0.0 && self.asked.driven.is_balanced() && met(&self.node(balance, &shot)) {
+                return (shots, BranchEnd::Crossing);
+            }
+            shots.push(shot);
+            step = (1.4 * step).min(LONGEST_STEP);
+        }
+    }
+
+    /// A point of a branch with the harmonics of the motion.
+    fn node(&self, balance: &Balance, shot: &Shot) -> Node {
+        let (start, parameter) = self.start(&shot.at);
+        let frequency = std::f64::consts::TAU / shot.course.duration();
+        let self_excited = self.asked.driven.self_excited;
+        let [_, _, a, c, b, d] = shot.course.end;
+        let monodromy = match self_excited {
+            true => Matrix2::new(a, 0.0, 0.0, 1.0),
+            false => Matrix2::new(a, b, c, d),
+        };
+        let positions = shot.course.positions(SAMPLES);
+        let mut tangent = DVector::zeros(balance.size() + 1);
+        tangent[balance.size()] = shot.tangent[2];
+        Node {
+            coefficients: balance.unknowns_of(&positions, frequency),
+            parameter,
+            tangent,
+            orientation: 0.0,
+            truth: Some(TrueMotion {
+                start,
+                frequency,
+                floquet: Floquet {
+                    monodromy,
+                    self_excited,
+                },
+                first_harmonic: first_harmonic(&positions),
+                peak: half_of_peak_to_peak(&positions),
+                stuck: shot.course.stuck(),
+            }),
+        }
+    }
+}
+
+/// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears what drives it.
+fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
+    const NOTHING: f64 = 1e-5;
+    let moves = |node: &Node| balance.extent(&node.coefficients) > NOTHING * size;
+    let Some(first) = path.nodes.iter().position(moves) else {
+        path.nodes.clear();
+        return;
+    };
+    let last = path.nodes.iter().rposition(moves).unwrap_or(first);
+    if last + 1 < path.nodes.len() {
+        path.nodes.truncate(last + 1);
+        path.ends[1] = BranchEnd::Held;
+    }
+    if first > 0 {
+        path.nodes.drain(..first);
+        path.ends[0] = BranchEnd::Held;
+    }
+}
+
+/// Whether the way from one place to the next passes a third one in between.
+fn passes(target: &Scaled, from: &Scaled, to: &Scaled) -> bool {
+    let (way, offset) = (to - from, target - from);
+    let length = way.norm();
+    let along = offset.dot(&way) / length;
+    let across = (offset.norm_squared() - along * along).max(0.0).sqrt();
+    (0.0..=length).contains(&along) && across < 0.1 * length
+}
+
+impl Asked<'_> {
+    /// Follows every branch on from where harmonic balance has lost it because the motion begins to stick, and adds those on which it sticks
+    /// all along.
+    pub(super) fn follow_sticking(&self, balance: &Balance, seeds: &[Seed], paths: &mut Vec<Path>, size: f64) {
+        if self.driven.jumps() == 0 {
+            return;
+        }
+        for index in 0..paths.len() {
+            for side in 0..2 {
+                if paths[index].ends[side] == BranchEnd::Lost {
+                    self.follow_on(balance, paths, (index, side), size);
+                }
+            }
+        }
+        for path in paths.iter_mut() {
+            cut_rest(balance, path, size);
+        }
+        paths.retain(|path| path.nodes.len() > 1);
+        for seed in seeds {
+            let Some(start) = seed.start else { continue };
+            if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
+                return;
+            }
+            let map = PeriodMap::new(
+                self,
+                half_of_peak_to_peak(&seed.positions).max(0.1 * size),
+                seed.parameter,
+            );
+            let Some(shot) = map.at(start, seed.parameter) else {
+                continue;
+            };
+            let (start, _) = map.start(&shot.at);
+            let known = |path: &Path| self.lies_on(balance, path, start, seed.parameter, map.sizes[0]);
+            // What rests all the time is no motion.
+            let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
+            if own && shot.course.extent() > 1e-6 * size && !paths.iter().any(known) {
+                let found = self.stuck_branch(balance, &map, shot, paths);
+                paths.extend(found.map(|path| self.ended_at_rest(balance, seeds, path)));
+            }
+        }
+    }
+
+    /// A branch of self-excited motions with its end in the place where they are born from rest, if it has one: motions too small to be told
+    /// from rest are left out.
+    fn ended_at_rest(&self, balance: &Balance, seeds: &[Seed], mut path: Path) -> Path {
+        /// Of the largest motion.
+        const SMALL: f64 = 1e-3;
+        if !self.driven.self_excited {
+            return path;
+        }
+        let largest = largest(balance, &path);
+        for side in 0..2 {
+            if path.ends[side] != BranchEnd::Lost {
+                continue;
+            }
+            if side == 0 {
+                path.nodes.reverse();
+            }
+            let is_small = |node: &Node| balance.extent(&node.coefficients) <= SMALL * largest;
+            while path.nodes.len() > 2 && path.nodes.last().is_some_and(is_small) {
+                path.nodes.pop();
+            }
+            let walk = self.walk(seeds, largest);
+            let rest = path
+                .nodes
+                .last()
+                .and_then(|last| walk.rest_beside(balance, last, last.parameter));
+            if let Some(rest) = rest {
+                path.nodes.push(Node { truth: None, ..rest });
+                path.ends[side] = BranchEnd::Rest;
+            }
+            if side == 0 {
+                path.nodes.reverse();
+            }
+        }
+        path
+    }
+
+    /// The branch through a motion that sticks.
+    fn stuck_branch(&self, balance: &Balance, map: &PeriodMap, shot: Shot, paths: &[Path]) -> Option<Path> {
+        let met = |node: &Node| self.is_met(balance, paths, node);
+        let (behind, last) = map.walk(&shot, &met, balance);
+        let (before, first) = match last {
+            BranchEnd::Closed => (vec![], last),
+            _ => {
+                let backward = Shot {
+                    tangent: -shot.tangent,
+                    ..shot.clone()
+                };
+                map.walk(&backward, &met, balance)
+            }
+        };
+        let before = before.into_iter().rev().map(|shot| Shot {
+            tangent: -shot.tangent,
+            ..shot
+        });
+        let closing = (last == BranchEnd::Closed).then(|| shot.clone());
+        let shots = before.chain([shot]).chain(behind).chain(closing);
+        let nodes: Vec<Node> = shots.map(|shot| map.node(balance, &shot)).collect();
+        (nodes.len() > 1).then_some(Path {
+            nodes,
+            ends: [first, last],
+            mirrored: false,
+        })
+    }
+
+    /// Follows a branch on beyond one of its ends.
+    fn follow_on(&self, balance: &Balance, paths: &mut [Path], (index, side): (usize, usize), size: f64) {
+        /// Points at an end that harmonic balance may have led astray.
+        const ASTRAY: usize = 40;
+        let path = &paths[index];
+        let nodes: Vec<&Node> = match side {
+            0 => path.nodes.iter().collect(),
+            _ => path.nodes.iter().rev().collect(),
+        };
+        let truth = |node: &Node| Some(self.judged(balance, node).1?.start);
+        let good = (0..nodes.len().saturating_sub(1).min(ASTRAY))
+            .find_map(|skipped| Some((skipped, truth(nodes[skipped])?, truth(nodes[skipped + 1])?)));
+        let Some((skipped, last, inner)) = good else { return };
+        let [at, beside] = [nodes[skipped], nodes[skipped + 1]];
+        let map = PeriodMap::new(self, balance.extent(&at.coefficients).max(0.1 * size), at.parameter);
+        let (last, inner) = (map.scaled(last, at.parameter), map.scaled(inner, beside.parameter));
+        let direction = last - inner;
+        let length = direction.norm();
+        if length.is_nan() || length <= 0.0 {
+            return;
+        }
+        let Some(first) = map.corrected(&last, &(direction / length)) else {
+            return;
+        };
+        let others: Vec<Path> = (0..paths.len())
+            .filter(|other| *other != index)
+            .map(|other| paths[other].clone())
+            .collect();
+        let met = |node: &Node| self.is_met(balance, &others, node);
+        let (shots, end) = map.walk(&first, &met, balance);
+        let mut outward = shots.iter().map(|shot| map.node(balance, shot));
+        let path = &mut paths[index];
+        path.ends[side] = end;
+        match side {
+            0 => {
+                // Points are in the order of the branch, and so are their tangents.
+                let mut all: Vec<Node> = outward
+                    .by_ref()
+                    .map(|node| Node {
+                        tangent: -node.tangent,
+                        ..node
+                    })
+                    .collect();
+                all.reverse();
+                all.extend(path.nodes.drain(..).skip(skipped));
+                path.nodes = all;
+            }
+            _ => {
+                path.nodes.truncate(path.nodes.len() - skipped);
+                path.nodes.extend(outward);
+            }
+        }
+    }
+
+    /// Whether a motion that does not stick lies on one of these branches.
+    fn is_met(&self, balance: &Balance, paths: &[Path], node: &Node) -> bool {
+        let Some(truth) = node.truth else { return false };
+        let size = balance.extent(&node.coefficients);
+        paths
+            .iter()
+            .any(|path| self.lies_on(balance, path, truth.start, node.parameter, size))
+    }
+
+    /// Whether a motion with this start lies on a branch.
+    fn lies_on(&self, balance: &Balance, path: &Path, start: [f64; 2], parameter: f64, size: f64) -> bool {
+        /// Parts of a motion by which a guess between two points may be off, and by which motions that are one may differ.
+        const NEAR: f64 = 0.25;
+        const SAME: f64 = 1e-4;
+        let omega = self.driven.frequency_at(parameter);
+        let apart = |other: [f64; 2]| (other[0] - start[0]).hypot((other[1] - start[1]) / omega);
+        path.nodes.windows(2).any(|pair| {
+            let [one, other] = pair else { return false };
+            let way = other.parameter - one.parameter;
+            let part = if way == 0.0 {
+                0.0
+            } else {
+                (parameter - one.parameter) / way
+            };
+            if !(-1e-9..=1.0 + 1e-9).contains(&part) {
+                return false;
+            }
+            let starts = [one, other].map(|node| node.begins(balance));
+            let guess = [0, 1].map(|index| starts[0][index] + part * (starts[1][index] - starts[0][index]));
+            let map = PeriodMap::new(self, size, parameter);
+            let truth = || map.at(guess, parameter).map(|shot| map.start(&shot.at).0);
+            apart(guess) <= NEAR * size && truth().is_some_and(|truth| apart(truth) <= SAME * size)
+        })
+    }
+
+    /// A motion between two of a branch of which one is known by shooting, at this part of the way.
+    pub(super) fn stuck_between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
+        let size = balance.extent(&from.coefficients).max(balance.extent(&to.coefficients));
+        let map = PeriodMap::new(self, size, from.parameter);
+        let [start, end] = [from, to].map(|node| map.scaled(node.begins(balance), node.parameter));
+        let way = end - start;
+        let length = way.norm();
+        if length == 0.0 {
+            return Some(from.clone());
+        }
+        let shot = map.corrected(&(start + way * part), &(way / length))?;
+        Some(map.node(balance, &shot))
+    }
+}

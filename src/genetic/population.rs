@@ -322,26 +322,7 @@ pub fn search(
         let parents = stochastic_uniform(&expected, 2 * crossed + mutated, generator);
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| scored[*one].total_cmp(&scored[*other]));
-        let mut children: Vec<Vec<f64>> = Vec::with_capacity(crossed + mutated);
-        let (pairs, alone) = parents.split_at(2 * crossed);
-        for pair in pairs.chunks_exact(2) {
-            let (one, other) = (&population[pair[0]].genes, &population[pair[1]].genes);
-            children.push(match options.crossover {
-                Crossover::Heuristic(ratio) if scored[pair[0]] <= scored[pair[1]] => {
-                    heuristic(other, one, ratio, space)
-                }
-                Crossover::Heuristic(ratio) => heuristic(one, other, ratio, space),
-                Crossover::Scattered => scattered(one, other, generator),
-                Crossover::OnePoint => one_point(one, other, generator),
-            });
-        }
-        for parent in alone {
-            let genes = &population[*parent].genes;
-            children.push(match options.mutation {
-                Mutation::AdaptiveFeasible => adaptive_feasible(genes, step, space, generator),
-                Mutation::BitFlips(rate) => bit_flips(genes, rate, generator),
-            });
-        }
+        let children = children(&population, &scored, &parents, (space, options, step), generator);
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
         let elite = order.iter().take(options.elite);
         population = elite.filter_map(|index| places[*index].take()).collect();
@@ -370,6 +351,36 @@ pub fn search(
         evaluations,
         stop,
     }
+}
+
+/// The genes of the children: of two parents each first, then of one.
+fn children(
+    population: &[Member],
+    scored: &[f64],
+    parents: &[usize],
+    (space, options, step): (&Space, &Options, f64),
+    generator: &mut impl Rng,
+) -> Vec<Vec<f64>> {
+    let (crossed, mutated) = options.children();
+    let mut children: Vec<Vec<f64>> = Vec::with_capacity(crossed + mutated);
+    let (pairs, alone) = parents.split_at(2 * crossed);
+    for pair in pairs.chunks_exact(2) {
+        let (one, other) = (&population[pair[0]].genes, &population[pair[1]].genes);
+        children.push(match options.crossover {
+            Crossover::Heuristic(ratio) if scored[pair[0]] <= scored[pair[1]] => heuristic(other, one, ratio, space),
+            Crossover::Heuristic(ratio) => heuristic(one, other, ratio, space),
+            Crossover::Scattered => scattered(one, other, generator),
+            Crossover::OnePoint => one_point(one, other, generator),
+        });
+    }
+    for parent in alone {
+        let genes = &population[*parent].genes;
+        children.push(match options.mutation {
+            Mutation::AdaptiveFeasible => adaptive_feasible(genes, step, space, generator),
+            Mutation::BitFlips(rate) => bit_flips(genes, rate, generator),
+        });
+    }
+    children
 }
 
 #[cfg(test)]

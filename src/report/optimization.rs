@@ -6,7 +6,7 @@ use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest, Stop};
 use crate::impact::{Model, Parameter, REST_FRACTION};
-use crate::optimize::{Design, Objective, Role, Sensitivity, Spread, Study, WITHIN};
+use crate::optimize::{Design, Finalist, Objective, Question, Role, Sensitivity, Spread, Study, WITHIN};
 
 /// Rows of a front that are listed; JSON and tables of comma-separated values have all.
 const LISTED: usize = 24;
@@ -98,6 +98,32 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
     let Some(best) = study.best() else {
         return blocks;
     };
+    blocks.extend(equation(question, best));
+    blocks.extend(held_fixed(question));
+    blocks.push(Block::Note(format!(
+        "followed by closed forms until t = {}; rest: {} % of the amplitude of the first swing",
+        decimal(question.settings.duration),
+        decimal(100.0 * REST_FRACTION)
+    )));
+    if let Some(of) = question.main_mass {
+        blocks.push(Block::Note(format!(
+            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s with the pendulum hanging at rest; integrated",
+            decimal(of.mass),
+            decimal(of.stiffness),
+            decimal(of.damping),
+            decimal(of.displacement),
+            decimal(of.speed)
+        )));
+    }
+    for constraint in question.constraints() {
+        blocks.push(Block::Note(format!("constraint: {constraint}")));
+    }
+    blocks.extend(options(study).into_iter().map(Block::Sentence));
+    blocks
+}
+
+/// The equation of the best design, and its numbers.
+fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
     let Model {
         zeta,
         alpha,
@@ -111,11 +137,11 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
         Some((_, start)) => (start.x, start.velocity),
         None => (f64::NAN, f64::NAN),
     };
-    blocks.push(Block::Note(format!(
+    let mut blocks = vec![Block::Note(format!(
         "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
         decimal(x),
         decimal(velocity)
-    )));
+    ))];
     let value = |name: &str, value, source| Block::Value {
         name: name.into(),
         value,
@@ -130,6 +156,12 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
         unit: "m/s^2",
         words: "gravity",
     });
+    blocks
+}
+
+/// The parameters that the search leaves alone.
+fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
+    let mut blocks = vec![];
     let default = ", by default: the paper prints none";
     let said = |parameter| {
         if question.defaults.contains(&parameter) {
@@ -189,25 +221,6 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
             )));
         }
     }
-    blocks.push(Block::Note(format!(
-        "followed by closed forms until t = {}; rest: {} % of the amplitude of the first swing",
-        decimal(question.settings.duration),
-        decimal(100.0 * REST_FRACTION)
-    )));
-    if let Some(of) = question.main_mass {
-        blocks.push(Block::Note(format!(
-            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s with the pendulum hanging at rest; integrated",
-            decimal(of.mass),
-            decimal(of.stiffness),
-            decimal(of.damping),
-            decimal(of.displacement),
-            decimal(of.speed)
-        )));
-    }
-    for constraint in question.constraints() {
-        blocks.push(Block::Note(format!("constraint: {constraint}")));
-    }
-    blocks.extend(options(study).into_iter().map(Block::Sentence));
     blocks
 }
 

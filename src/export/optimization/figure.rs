@@ -2,7 +2,7 @@
 
 use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 use crate::decimal::{decimal, significant};
-use crate::optimize::{Objective, Study, WITHIN};
+use crate::optimize::{Objective, Study, Variable, WITHIN};
 
 /// Points of one curve.
 type Points = Vec<(f64, f64)>;
@@ -45,45 +45,9 @@ fn axis(objective: Objective) -> &'static str {
 
 fn search(study: &Study) -> Result<String, FigureError> {
     let objective = study.objective();
-    let population = study.question.genetic.population as f64;
-    let (crossed, mutated) = study.question.genetic.children();
-    let born = (crossed + mutated) as f64;
-    let finite = |points: Points| -> Points { points.into_iter().filter(|(_, value)| value.is_finite()).collect() };
-    // After so many evaluations.
-    let after = |curve: &[f64]| -> Points {
-        let place = |(index, value): (usize, &f64)| (population + born * index as f64, *value);
-        finite(curve.iter().enumerate().map(place).collect())
-    };
-    let runs: Vec<Points> = study
-        .runs
-        .iter()
-        .take(DRAWN)
-        .map(|run| after(&run.curve))
-        .filter(|points| points.len() > 1)
-        .collect();
-    let median = after(&study.median_curve());
-    let rivals: Vec<Points> = study
-        .rivals
-        .iter()
-        .map(|rival| {
-            let place = |(index, value): (usize, &f64)| (population * (index + 1) as f64, *value);
-            finite(rival.curve.iter().enumerate().map(place).collect())
-        })
-        .collect();
-    let mut curves: Vec<Curve> = runs
-        .iter()
-        .map(|points| curve("each run", points, CurveStyle::ONE_OF_MANY))
-        .collect();
-    let beside = [CurveStyle::SERIES[1], CurveStyle::SERIES[2]];
-    let rivals = study.rivals.iter().zip(&rivals).zip(beside);
-    curves.extend(
-        rivals
-            .filter(|((_, points), _)| points.len() > 1)
-            .map(|((rival, points), style)| curve(rival.name, points, style)),
-    );
-    if median.len() > 1 {
-        curves.push(curve("genetic algorithm, median", &median, CurveStyle::SERIES[0]));
-    }
+    let convergence = Convergence::of(study);
+    let designs = Designs::of(study);
+    let curves = convergence.curves(study);
     let mut panels = Vec::new();
     if !curves.is_empty() {
         panels.push(Panel {
@@ -95,83 +59,7 @@ fn search(study: &Study) -> Result<String, FigureError> {
             ..Panel::default()
         });
     }
-    let variables = &study.question.variables;
-    let labels: Vec<String> = variables
-        .iter()
-        .map(|variable| format!("{} ({})", variable.parameter.name(), variable.parameter.unit()))
-        .collect();
-    // Every variable once, two by two; the last one alone beside the first.
-    let mut pairs: Vec<[usize; 2]> = (0..variables.len())
-        .step_by(2)
-        .filter_map(|index| match (index + 1 < variables.len(), index) {
-            (true, _) => Some([index, index + 1]),
-            (false, 0) => None,
-            (false, _) => Some([0, index]),
-        })
-        .collect();
-    pairs.truncate(2);
-    let scale = |index: usize| match variables[index].upper / variables[index].lower > 30.0 {
-        true => Scale::Logarithmic,
-        false => Scale::Linear,
-    };
-    let near: Vec<Points> = pairs
-        .iter()
-        .map(|pair| {
-            let points = study.decision.iter().flat_map(|decision| &decision.points);
-            points
-                .take(1500)
-                .map(|point| (point[pair[0]], point[pair[1]]))
-                .collect()
-        })
-        .collect();
-    let bests: Vec<Points> = pairs
-        .iter()
-        .map(|pair| {
-            let found = study.runs.iter().filter_map(|run| run.found.first());
-            found
-                .map(|found| (found.point[pair[0]], found.point[pair[1]]))
-                .collect()
-        })
-        .collect();
-    let papers: Vec<Points> = pairs
-        .iter()
-        .map(|pair| {
-            let papers = study.papers.iter();
-            papers
-                .map(|papers| (papers.point[pair[0]], papers.point[pair[1]]))
-                .collect()
-        })
-        .collect();
-    let within = format!("within {} % of the best", decimal(100.0 * WITHIN));
-    for (place, pair) in pairs.iter().enumerate() {
-        let mut curves = Vec::new();
-        for (label, points, style) in [
-            (within.as_str(), &near[place], CurveStyle::POINTS),
-            ("best of each run", &bests[place], CurveStyle::MARKED_POINTS),
-            ("the paper's Table 5", &papers[place], CurveStyle::SECOND_MARKED_POINTS),
-        ] {
-            if !points.is_empty() {
-                curves.push(curve(label, points, style));
-            }
-        }
-        if curves.is_empty() {
-            continue;
-        }
-        let [x, y] = pair.map(|index| [variables[index].lower, variables[index].upper]);
-        panels.push(Panel {
-            title: "Where the good designs lie",
-            x_label: &labels[pair[0]],
-            y_label: &labels[pair[1]],
-            x_scale: scale(pair[0]),
-            y_scale: scale(pair[1]),
-            curves,
-            guides: x
-                .map(|at| Guide::X(at, "limits"))
-                .into_iter()
-                .chain(y.map(|at| Guide::Y(at, "limits")))
-                .collect(),
-        });
-    }
+    panels.extend(designs.panels(study));
     let best = study.best().map_or(String::new(), |best| {
         format!(
             "; the best design by integration: {} {}",
@@ -186,6 +74,127 @@ fn search(study: &Study) -> Result<String, FigureError> {
         objective.meaning()
     );
     figure(&panels, &caption)
+}
+
+/// What each search has after so many evaluations.
+struct Convergence {
+    runs: Vec<Points>,
+    median: Points,
+    rivals: Vec<Points>,
+}
+
+impl Convergence {
+    fn of(study: &Study) -> Self {
+        let population = study.question.genetic.population as f64;
+        let (crossed, mutated) = study.question.genetic.children();
+        let born = (crossed + mutated) as f64;
+        let finite = |points: Points| -> Points { points.into_iter().filter(|(_, value)| value.is_finite()).collect() };
+        let after = |curve: &[f64]| -> Points {
+            let place = |(index, value): (usize, &f64)| (population + born * index as f64, *value);
+            finite(curve.iter().enumerate().map(place).collect())
+        };
+        let drawn = study.runs.iter().take(DRAWN).map(|run| after(&run.curve));
+        let rival = |curve: &[f64]| -> Points {
+            let place = |(index, value): (usize, &f64)| (population * (index + 1) as f64, *value);
+            finite(curve.iter().enumerate().map(place).collect())
+        };
+        Self {
+            runs: drawn.filter(|points| points.len() > 1).collect(),
+            median: after(&study.median_curve()),
+            rivals: study.rivals.iter().map(|own| rival(&own.curve)).collect(),
+        }
+    }
+
+    fn curves<'a>(&'a self, study: &'a Study) -> Vec<Curve<'a>> {
+        let runs = self.runs.iter();
+        let mut curves: Vec<Curve> = runs
+            .map(|points| curve("each run", points, CurveStyle::ONE_OF_MANY))
+            .collect();
+        let beside = [CurveStyle::SERIES[1], CurveStyle::SERIES[2]];
+        let rivals = study.rivals.iter().zip(&self.rivals).zip(beside);
+        let drawn = rivals.filter(|((_, points), _)| points.len() > 1);
+        curves.extend(drawn.map(|((rival, points), style)| curve(rival.name, points, style)));
+        if self.median.len() > 1 {
+            curves.push(curve("genetic algorithm, median", &self.median, CurveStyle::SERIES[0]));
+        }
+        curves
+    }
+}
+
+/// Where designs lie in the box, two variables at a time.
+struct Designs {
+    pairs: Vec<[usize; 2]>,
+    labels: Vec<String>,
+    within: String,
+    /// For each pair: those near the best, the best of each run, the paper's.
+    points: Vec<[Points; 3]>,
+}
+
+impl Designs {
+    fn of(study: &Study) -> Self {
+        let variables = &study.question.variables;
+        // Every variable once, two by two; the last one alone beside the first.
+        let pairs = (0..variables.len()).step_by(2);
+        let pairs = pairs.filter_map(|index| match (index + 1 < variables.len(), index) {
+            (true, _) => Some([index, index + 1]),
+            (false, 0) => None,
+            (false, _) => Some([0, index]),
+        });
+        let pairs: Vec<[usize; 2]> = pairs.take(2).collect();
+        let points = |pair: &[usize; 2]| {
+            let at = |point: &[f64]| (point[pair[0]], point[pair[1]]);
+            let near = study.decision.iter().flat_map(|decision| &decision.points);
+            let best = study.runs.iter().filter_map(|run| run.found.first());
+            [
+                near.take(1500).map(|point| at(point)).collect(),
+                best.map(|found| at(&found.point)).collect(),
+                study.papers.iter().map(|papers| at(&papers.point)).collect(),
+            ]
+        };
+        let label = |variable: &Variable| format!("{} ({})", variable.parameter.name(), variable.parameter.unit());
+        Self {
+            points: pairs.iter().map(points).collect(),
+            pairs,
+            labels: variables.iter().map(label).collect(),
+            within: format!("within {} % of the best", decimal(100.0 * WITHIN)),
+        }
+    }
+
+    fn panels<'a>(&'a self, study: &Study) -> Vec<Panel<'a>> {
+        let variables = &study.question.variables;
+        let scale = |index: usize| match variables[index].upper / variables[index].lower > 30.0 {
+            true => Scale::Logarithmic,
+            false => Scale::Linear,
+        };
+        let panel = |(pair, points): (&[usize; 2], &'a [Points; 3])| {
+            let names = [&self.within, "best of each run", "the paper's Table 5"];
+            let styles = [
+                CurveStyle::POINTS,
+                CurveStyle::MARKED_POINTS,
+                CurveStyle::SECOND_MARKED_POINTS,
+            ];
+            let all = names.into_iter().zip(points).zip(styles);
+            let curves: Vec<Curve> = all
+                .filter(|((_, points), _)| !points.is_empty())
+                .map(|((name, points), style)| curve(name, points, style))
+                .collect();
+            let [x, y] = pair.map(|index| [variables[index].lower, variables[index].upper]);
+            (!curves.is_empty()).then(|| Panel {
+                title: "Where the good designs lie",
+                x_label: &self.labels[pair[0]],
+                y_label: &self.labels[pair[1]],
+                x_scale: scale(pair[0]),
+                y_scale: scale(pair[1]),
+                curves,
+                guides: x
+                    .map(|at| Guide::X(at, "limits"))
+                    .into_iter()
+                    .chain(y.map(|at| Guide::Y(at, "limits")))
+                    .collect(),
+            })
+        };
+        self.pairs.iter().zip(&self.points).filter_map(panel).collect()
+    }
 }
 
 fn front(study: &Study) -> Result<String, FigureError> {

@@ -6,7 +6,7 @@ use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest, Stop};
 use crate::impact::{Model, Parameter, REST_FRACTION};
-use crate::optimize::{Design, Finalist, Objective, Question, Role, Sensitivity, Spread, Study, WITHIN};
+use crate::optimize::{Decision, Design, Finalist, Objective, Question, Role, Sensitivity, Spread, Study, WITHIN};
 
 /// Rows of a front that are listed; JSON and tables of comma-separated values have all.
 const LISTED: usize = 24;
@@ -682,27 +682,7 @@ fn what_decides(study: &Study) -> Vec<String> {
     }
     let flat = of(Role::Flat);
     if !flat.is_empty() {
-        let changes: Vec<String> = flat
-            .iter()
-            .map(|sensitivity| match sensitivity.range {
-                Some([least, greatest]) => {
-                    format!(
-                        "{} {}",
-                        sensitivity.parameter.name(),
-                        percent((greatest - least) / least)
-                    )
-                }
-                None => sensitivity.parameter.name().to_owned(),
-            })
-            .collect();
-        let free = flat.iter().all(|sensitivity| sensitivity.alone == sensitivity.limits);
-        let but = if free { "" } else { " but where constraints end" };
-        sentences.push(format!(
-            "Flat directions: over the whole range, the others held, {objective} changes by less than 1 % ({}); what was found for {} says \
-             nothing{but}.",
-            changes.join(", "),
-            names(&flat)
-        ));
+        sentences.push(flat_directions(&flat, objective));
     }
     let trade = of(Role::Trade);
     if !trade.is_empty() {
@@ -724,6 +704,36 @@ fn what_decides(study: &Study) -> Vec<String> {
             decision.active.join("; ")
         ));
     }
+    sentences.push(near_the_best(study, decision));
+    sentences
+}
+
+fn flat_directions(flat: &[&Sensitivity], objective: &str) -> String {
+    let changes: Vec<String> = flat
+        .iter()
+        .map(|sensitivity| match sensitivity.range {
+            Some([least, greatest]) => {
+                format!(
+                    "{} {}",
+                    sensitivity.parameter.name(),
+                    percent((greatest - least) / least)
+                )
+            }
+            None => sensitivity.parameter.name().to_owned(),
+        })
+        .collect();
+    let free = flat.iter().all(|sensitivity| sensitivity.alone == sensitivity.limits);
+    let but = if free { "" } else { " but where constraints end" };
+    let names: Vec<&str> = flat.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
+    format!(
+        "Flat directions: over the whole range, the others held, {objective} changes by less than 1 % ({}); what was found for {} says \
+         nothing{but}.",
+        changes.join(", "),
+        listed(&names)
+    )
+}
+
+fn near_the_best(study: &Study, decision: &Decision) -> String {
     let share = match decision.share {
         0.0 => "too small a part of the box to be met by chance".to_owned(),
         share => format!("{} of the box", percent(share)),
@@ -743,12 +753,11 @@ fn what_decides(study: &Study) -> Vec<String> {
             )
         })
         .collect();
-    sentences.push(format!(
+    format!(
         "Designs within {} % of the best are {share}: {}.",
         decimal(100.0 * WITHIN),
         extents.join(", ")
-    ));
-    sentences
+    )
 }
 
 fn the_unit(study: &Study) -> Option<String> {

@@ -163,37 +163,7 @@ pub fn compare(
         });
         return Err(ComparisonError::NoMethod(refused.into()));
     }
-    let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
-    for options in variants(oscillator, small) {
-        let found = with_resonance_at(oscillator, &options, at).and_then(|options| solve(oscillator, &options));
-        match (found, options.method) {
-            // Slow equations are compared where their motion settles, as the others are.
-            (Ok(solution), _) if solution.slow().is_some() => match solution.on_cycle() {
-                Some(settled) => solutions.push(settled),
-                None => slow.push(solution),
-            },
-            // What nothing tells the start of is no motion to compare.
-            (Ok(solution), Some(method)) if solution.response.is_none() && super::periodic(&solution).is_err() => {
-                refused.push(Refused {
-                    method,
-                    reason: Unsuited::NoSteadyAmplitude.to(method),
-                })
-            }
-            (Ok(solution), _) => solutions.push(solution),
-            (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
-                refused.push(Refused { method, reason });
-            }
-            (Err(_), _) => {}
-        }
-    }
-    let applies = |method: Method| {
-        solutions
-            .iter()
-            .chain(&slow)
-            .any(|solution: &Solution| solution.method == method)
-    };
-    refused.retain(|refused: &Refused| !applies(refused.method));
-    solutions.dedup_by(|second, first| second.method == first.method && second.formula() == first.formula());
+    let (solutions, slow, mut refused) = answers(oscillator, at, small);
     let Some(first) = solutions.first() else {
         return match slow.is_empty() {
             true => Err(ComparisonError::NoMethod(refused)),
@@ -244,6 +214,42 @@ pub fn compare(
         refused,
         validity: validity.into_iter().map(|range| range.text).collect(),
     })
+}
+
+/// What every method says: periodic motions, slow ones that settle on none, and refusals of those that say nothing else.
+fn answers(oscillator: &Oscillator, at: &Values, small: Option<&str>) -> (Vec<Solution>, Vec<Solution>, Vec<Refused>) {
+    let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
+    for options in variants(oscillator, small) {
+        let found = with_resonance_at(oscillator, &options, at).and_then(|options| solve(oscillator, &options));
+        match (found, options.method) {
+            // Slow equations are compared where their motion settles, as the others are.
+            (Ok(solution), _) if solution.slow().is_some() => match solution.on_cycle() {
+                Some(settled) => solutions.push(settled),
+                None => slow.push(solution),
+            },
+            // What nothing tells the start of is no motion to compare.
+            (Ok(solution), Some(method)) if solution.response.is_none() && super::periodic(&solution).is_err() => {
+                refused.push(Refused {
+                    method,
+                    reason: Unsuited::NoSteadyAmplitude.to(method),
+                })
+            }
+            (Ok(solution), _) => solutions.push(solution),
+            (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
+                refused.push(Refused { method, reason });
+            }
+            (Err(_), _) => {}
+        }
+    }
+    let applies = |method: Method| {
+        solutions
+            .iter()
+            .chain(&slow)
+            .any(|solution: &Solution| solution.method == method)
+    };
+    refused.retain(|refused: &Refused| !applies(refused.method));
+    solutions.dedup_by(|second, first| second.method == first.method && second.formula() == first.formula());
+    (solutions, slow, refused)
 }
 
 /// The values with `A` as the amplitude of the first harmonic, which is its leading term, where no method measures `A` itself.

@@ -214,9 +214,6 @@ fn in_a_parameter(
     numbers: &BTreeMap<Symbol, f64>,
     small: Symbol,
 ) -> Option<Series> {
-    /// Longer products would cost more than the rest of the answer.
-    const MOST_TERMS: usize = 8;
-    const HIGHEST_POWER: u32 = 9;
     let cycle = solution.limit_cycle.as_ref();
     // The frequency of most limit cycles has even powers alone.
     let highest = if cycle.is_some() {
@@ -232,6 +229,47 @@ fn in_a_parameter(
         }
         None => *numbers.get(&solution.amplitude.symbol())?,
     };
+    let (terms, unit) = in_numbers(oscillator, numbers, (small, highest), amplitude)?;
+    let scheme = Scheme {
+        normalisation: AmplitudeConvention::Initial,
+        amplitude: match cycle {
+            Some(_) => Amplitude::Determined,
+            None => Amplitude::Free,
+        },
+        detuning: Detuning::Acceleration,
+    };
+    let expansion = expand(&Doubles, &terms, highest, &scheme).ok()?;
+    let mut coefficients: Vec<f64> = expansion
+        .frequency_squared
+        .iter()
+        .map(|constant| constant.mean().0)
+        .collect();
+    if cycle.is_some() {
+        forget_odd_noise(&mut coefficients);
+    }
+    Some(Series { coefficients, unit })
+}
+
+/// Of a limit cycle rounding leaves odd powers where there are none.
+fn forget_odd_noise(coefficients: &mut [f64]) {
+    let mut odd = (1..coefficients.len()).step_by(2);
+    if odd.all(|k| coefficients[k].abs() < 1e-9 * coefficients[k - 1].abs()) {
+        let odd = coefficients.iter_mut().skip(1).step_by(2);
+        odd.for_each(|value| *value = 0.0);
+    }
+}
+
+/// The terms of the force at an amplitude, in units of the linear frequency and of a value of the small parameter that makes the largest
+/// one; and that value. `None` where the force is none of a few powers.
+fn in_numbers(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, f64>,
+    (small, highest): (Symbol, usize),
+    amplitude: f64,
+) -> Option<(Vec<ForceTerm<Doubles>>, f64)> {
+    /// Longer products would cost more than the rest of the answer.
+    const MOST_TERMS: usize = 8;
+    const HIGHEST_POWER: u32 = 9;
     let numerical = with_numbers(oscillator, numbers, small)?;
     let centred = crate::equilibrium::centred(&numerical, None).ok()?;
     let expanded = centred
@@ -273,7 +311,7 @@ fn in_a_parameter(
     if !largest.is_normal() {
         return None;
     }
-    let terms: Vec<ForceTerm<Doubles>> = values
+    let terms = values
         .iter()
         .zip(&force.terms)
         .map(|(value, term)| ForceTerm {
@@ -283,34 +321,7 @@ fn in_a_parameter(
             coefficient: FourierSeries::constant(Doubles, value / largest.powi(term.order as i32)),
         })
         .collect();
-    let scheme = Scheme {
-        normalisation: AmplitudeConvention::Initial,
-        amplitude: match cycle {
-            Some(_) => Amplitude::Determined,
-            None => Amplitude::Free,
-        },
-        detuning: Detuning::Acceleration,
-    };
-    let expansion = expand(&Doubles, &terms, highest, &scheme).ok()?;
-    let mut coefficients: Vec<f64> = expansion
-        .frequency_squared
-        .iter()
-        .map(|constant| constant.mean().0)
-        .collect();
-    // Of a limit cycle rounding leaves odd powers where there are none.
-    let odd = || (1..coefficients.len()).step_by(2);
-    let noise = |k: usize| coefficients[k].abs() < 1e-9 * coefficients[k - 1].abs();
-    if cycle.is_some() && odd().all(noise) {
-        coefficients
-            .iter_mut()
-            .skip(1)
-            .step_by(2)
-            .for_each(|value| *value = 0.0);
-    }
-    Some(Series {
-        coefficients,
-        unit: 1.0 / largest,
-    })
+    Some((terms, 1.0 / largest))
 }
 
 /// The equation with exact numbers for all parameters but one.

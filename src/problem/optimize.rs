@@ -10,7 +10,7 @@ use super::{
     DesignError, MaterialsFileError, Objectives, PrimaryFileError, Problem, ProblemError, Reader, SimulateError,
     UnreadKey,
 };
-use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest};
+use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
 use crate::optimize::{Limit, Objective, OptimizeError, Question, TABLE_4, Variable};
 use crate::spelling::nearest;
@@ -330,19 +330,12 @@ impl Problem {
             named("objective", Some(name), Objective::RestTime, &known)
         };
         question.objectives = names.iter().map(objective).collect::<Result<_, _>>()?;
-        let needs = |key: &'static str, there: bool, other: &'static str| match self.gives(&format!("[genetic] {key}"))
-            && !there
-        {
-            true => Err(OptimizeFileError::NoEffect { key, other }),
-            false => Ok(()),
-        };
-        let constrained = question.density.is_some() || question.elastic || !question.limits.is_empty();
         let options = &mut question.genetic;
         let count = |given: Option<u32>, usual: usize| given.map_or(usual, |given| given as usize);
         options.population = count(section.population, options.population);
         options.generations = count(section.generations, options.generations);
         options.constraint_tolerance = section.constraint_tolerance.unwrap_or(options.constraint_tolerance);
-        needs("constraint_tolerance", question.density.is_some(), "[limits] density")?;
+        self.needs("constraint_tolerance", question.density.is_some(), "[limits] density")?;
         question.seed = section.seed.unwrap_or(question.seed);
         if question.objectives.len() > 1 {
             question.runs = count(section.runs, SEVERAL_RUNS);
@@ -359,11 +352,22 @@ impl Problem {
         options.crossover_fraction = section.crossover_fraction.unwrap_or(options.crossover_fraction);
         options.stall_generations = count(section.stall_generations, options.stall_generations);
         options.function_tolerance = section.function_tolerance.unwrap_or(options.function_tolerance);
+        self.operators(options)?;
+        self.penalty(question)?;
+        let tests = [("average", StallTest::Average), ("weighted", StallTest::Weighted)];
+        let usual = question.genetic.stall_test;
+        question.genetic.stall_test = named("stall_test", section.stall_test.as_ref(), usual, &tests)?;
+        Ok(())
+    }
+
+    /// How designs are written as genes, crossed and changed.
+    fn operators(&self, options: &mut Options) -> Result<(), OptimizeFileError> {
+        let section = &self.genetic;
         let bits = section.bits.unwrap_or(DEFAULT_BITS);
         let coding = [("real", Coding::Real), ("bits", Coding::Bits(bits))];
         options.coding = named("coding", section.coding.as_ref(), options.coding, &coding)?;
         let of_bits = options.coding != Coding::Real;
-        needs("bits", of_bits, "coding = \"bits\"")?;
+        self.needs("bits", of_bits, "coding = \"bits\"")?;
         let usual = match of_bits {
             true => (Crossover::Scattered, Mutation::BitFlips(DEFAULT_RATE)),
             false => (options.crossover, options.mutation),
@@ -380,7 +384,7 @@ impl Problem {
         };
         options.crossover = named("crossover", section.crossover.as_ref(), usual_crossover, &crossover)?;
         let heuristic = matches!(options.crossover, Crossover::Heuristic(_));
-        needs("crossover_ratio", heuristic, "crossover = \"heuristic\"")?;
+        self.needs("crossover_ratio", heuristic, "crossover = \"heuristic\"")?;
         let rate = section.mutation_rate.unwrap_or(DEFAULT_RATE);
         let mutation = [
             ("adaptive-feasible", Mutation::AdaptiveFeasible),
@@ -392,7 +396,14 @@ impl Problem {
         };
         options.mutation = named("mutation", section.mutation.as_ref(), usual_mutation, &mutation)?;
         let flips = matches!(options.mutation, Mutation::BitFlips(_));
-        needs("mutation_rate", flips, "mutation = \"bit-flip\"")?;
+        self.needs("mutation_rate", flips, "mutation = \"bit-flip\"")?;
+        Ok(())
+    }
+
+    /// What a design pays that breaks a constraint.
+    fn penalty(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+        let section = &self.genetic;
+        let constrained = question.density.is_some() || question.elastic || !question.limits.is_empty();
         let lagrangian = Penalty::AugmentedLagrangian {
             initial: section.initial_penalty.unwrap_or(10.0),
             factor: section.penalty_factor.unwrap_or(100.0),
@@ -407,18 +418,24 @@ impl Problem {
             Some(_) => lagrangian,
             None => Penalty::Death,
         };
-        options.penalty = named("penalty", section.penalty.as_ref(), usual, &penalty)?;
-        let is_lagrangian = matches!(options.penalty, Penalty::AugmentedLagrangian { .. });
-        needs(
+        question.genetic.penalty = named("penalty", section.penalty.as_ref(), usual, &penalty)?;
+        let is_lagrangian = matches!(question.genetic.penalty, Penalty::AugmentedLagrangian { .. });
+        self.needs(
             "penalty",
             constrained,
             "a constraint beyond the limits of the variables, in [limits]",
         )?;
-        needs("initial_penalty", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
-        needs("penalty_factor", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
-        let tests = [("average", StallTest::Average), ("weighted", StallTest::Weighted)];
-        options.stall_test = named("stall_test", section.stall_test.as_ref(), options.stall_test, &tests)?;
+        self.needs("initial_penalty", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
+        self.needs("penalty_factor", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
         Ok(())
+    }
+
+    /// An error where a key is given whose condition, named by `other`, is not there.
+    fn needs(&self, key: &'static str, there: bool, other: &'static str) -> Result<(), OptimizeFileError> {
+        match self.gives(&format!("[genetic] {key}")) && !there {
+            true => Err(OptimizeFileError::NoEffect { key, other }),
+            false => Ok(()),
+        }
     }
 }
 

@@ -50,8 +50,6 @@ impl Work for Expand<'_> {
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// More are as slow as polynomials.
         const MOST_POINTS: usize = 5000;
-        /// Residues that a prime has of all orders, 32 megabytes of them.
-        const MOST_RESIDUES: usize = 1 << 22;
         let Self(force, highest, scheme, extent) = self;
         let (terms, groups) = grouped(force)?;
         let base = groups.kinds.iter().position(|kind| kind.0 == 1)?;
@@ -67,12 +65,6 @@ impl Work for Expand<'_> {
             primes: Box::new(primes_below(A::BITS, plan.circle())),
             images: vec![],
         };
-        let residues: usize = (0..=highest)
-            .map(|order| lower_set.counts[order] * search.numbers(order))
-            .sum();
-        if residues > MOST_RESIDUES {
-            return None;
-        }
         let orders = search.orders()?;
         let monomials = lower_set.monomials(&groups.kinds, base);
         Some(expansion(&plan, &orders, &monomials, extent))
@@ -298,13 +290,18 @@ impl<A: Arithmetic> Search<'_, A> {
 
     /// All orders, by as many primes as their fractions need.
     fn orders(&mut self) -> Option<Vec<Order>> {
-        /// More than any expansion of so few points needs.
-        const MOST_PRIMES: usize = 300;
+        /// Residues kept at once, half a gigabyte of them.
+        const MOST_RESIDUES: usize = 1 << 26;
         let plan = self.plan;
         let mut recursion = Recursion::new(self.arithmetic, plan);
         let mut orders = Vec::with_capacity(plan.highest + 1);
+        let residues = (0..=plan.highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
+        let most = MOST_RESIDUES / residues.sum::<usize>().max(1);
         let mut count = 2;
         while orders.len() <= plan.highest {
+            if count >= most {
+                return None;
+            }
             // One prime more, to test.
             while self.images.len() <= count {
                 let prime = self.primes.next()?;
@@ -330,9 +327,6 @@ impl<A: Arithmetic> Search<'_, A> {
                 orders.push(found);
             }
             count += count.div_ceil(2);
-            if count > MOST_PRIMES {
-                return None;
-            }
         }
         Some(orders)
     }

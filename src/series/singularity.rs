@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use super::hermite_pade::{Field, HermitePade};
 use crate::decimal::plain_decimal;
 use crate::exact::big_float::BigFloat;
-use crate::exact::{Rational, Scaled};
+use crate::exact::{Rational, Scaled, to_f64};
 
 /// A number that was estimated.
 #[derive(Clone, Debug, PartialEq)]
@@ -613,25 +613,29 @@ impl fmt::Display for Estimate {
 const MOST_DECIMALS: usize = 400;
 
 impl Estimate {
-    /// Rounded to the last decimal of which the error leaves anything; without an error to twenty digits.
+    /// Rounded to the last decimal of which the error leaves anything, which adds to the error; without an error to twenty digits.
     pub fn rounded(value: &Rational, error: f64) -> Self {
         let digit = match error > 0.0 {
             true => (error.log10().ceil() as i32).max(-(MOST_DECIMALS as i32)),
             false => -20,
         };
         let ten = num_traits::Pow::pow(Rational::from_integer(10.into()), digit);
-        let value = match value.is_zero() {
+        let rounded = match value.is_zero() {
             true => value.clone(),
             false => (value / &ten).round() * ten,
         };
-        Self { value, error }
+        let error = match error > 0.0 {
+            true => error + to_f64(&(value - &rounded)).abs(),
+            false => error,
+        };
+        Self { value: rounded, error }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::rational::{ratio, to_f64};
+    use crate::exact::rational::ratio;
 
     /// `(1 - s/place)^power` to a degree.
     fn power(place: &Rational, power: &Rational, degree: usize) -> Vec<Rational> {

@@ -14,6 +14,8 @@
 //! `C -+ sqrt(Q)`, `C = tr H/2`, `Q = C^2 - det H`. C and Q are power series in what is small even where the curves are none, as
 //! at the tip of a tongue that damping has drawn back.
 
+use std::collections::BTreeMap;
+
 use num_traits::{One, Zero};
 
 use super::periodic::fraction;
@@ -281,6 +283,7 @@ impl Combined for Polynomial {
 }
 
 /// Power series in what is small, cut after an order.
+#[derive(Clone, Copy)]
 struct Powers<'a> {
     hill: &'a Hill,
     order: u32,
@@ -339,9 +342,11 @@ impl Powers<'_> {
                 let scale = self.first_square(tongue);
                 let mut square = scale.product(&self.hill.constant);
                 let rest = self.kept(eigenvalue, |degree| degree > 0);
-                for _ in 0..self.order {
-                    let rest = self.with_square(&rest, name, &square);
-                    square = self.cut(&scale.product(&self.hill.constant.less(&rest)), self.order.into());
+                // Each round is right to one order more, and keeps no other.
+                for order in 1..=self.order {
+                    let round = Powers { order, ..*self };
+                    let rest = round.with_square(&rest, name, &square);
+                    square = self.cut(&scale.product(&self.hill.constant.less(&rest)), order.into());
                 }
                 square
             }
@@ -367,7 +372,27 @@ impl Powers<'_> {
             let powers = if exponent < 0 { &below } else { &above };
             let term = Polynomial::term(monomial.without(name), number.clone());
             let power = &powers[exponent.unsigned_abs() as usize];
-            sum.accumulate(&self.cut(&term.product(power), self.highest()));
+            sum.accumulate(&self.product(&term, power, self.highest()));
+        }
+        sum
+    }
+
+    /// The product up to a degree; what is above is not made.
+    fn product(&self, left: &Polynomial, right: &Polynomial, highest: i64) -> Polynomial {
+        let by_degree = |polynomial: &Polynomial| {
+            let mut parts: BTreeMap<i64, Polynomial> = BTreeMap::new();
+            for (monomial, number) in polynomial.terms() {
+                let part = parts.entry(self.degree(monomial)).or_insert_with(Polynomial::zero);
+                part.add_term(monomial.clone(), number.clone());
+            }
+            parts
+        };
+        let (left, right) = (by_degree(left), by_degree(right));
+        let mut sum = Polynomial::zero();
+        for (degree, part) in &left {
+            for (_, other) in right.range(..=highest - degree) {
+                sum.accumulate(&part.product(other));
+            }
         }
         sum
     }
@@ -381,7 +406,7 @@ impl Powers<'_> {
     fn powers(&self, base: &Polynomial, highest: i32) -> Vec<Polynomial> {
         let mut powers = vec![Polynomial::constant(Rational::one())];
         for power in 0..highest as usize {
-            powers.push(self.cut(&powers[power].product(base), self.highest()));
+            powers.push(self.product(&powers[power], base, self.highest()));
         }
         powers
     }
@@ -398,8 +423,9 @@ impl Powers<'_> {
         let one = Polynomial::constant(Rational::one());
         let rest = series.less(&first).product(&inverse).scaled(&ratio(-1, 1));
         let mut sum = one.clone();
-        for _ in 0..=self.highest() {
-            sum = self.cut(&one.sum_with(&rest.product(&sum)), self.highest());
+        // Each round is right to one order more.
+        for order in 1..=self.highest() {
+            sum = one.sum_with(&self.product(&rest, &sum, order));
         }
         sum.product(&inverse)
     }
@@ -459,8 +485,8 @@ impl Powers<'_> {
         };
         let square = first.sum_with(&Polynomial::symbol(v));
         let distance = self.hill.constant.less(&power.with_square(middle, name, &square));
-        let function = distance
-            .product(&distance)
+        let function = power
+            .product(&distance, &distance, highest)
             .less(&power.with_square(root, name, &square));
         let function = power.cut(&function, highest);
         let split = |polynomial: &Polynomial| {
@@ -477,13 +503,15 @@ impl Powers<'_> {
         let unit = power.inverse(&high);
         let one = Polynomial::constant(Rational::one());
         let mut quotient = unit.clone();
-        for _ in 0..=self.order + 2 {
-            let [_, above] = split(&quotient.product(&low));
-            quotient = power.cut(&unit.product(&one.less(&above)), highest);
+        // Each round is right to one order more in what is small beside v, since that is what every term of lo(F) has.
+        for order in 1..=highest {
+            let [_, above] = split(&power.product(&quotient, &low, highest + 2));
+            let next = power.product(&unit, &one.less(&above), highest);
+            quotient = self.cut(&next, order);
         }
         // v^2 = q F + r
         let v_squared = Polynomial::term(Monomial::power_of(v, 2), Rational::one());
-        let [remainder, _] = split(&power.cut(&v_squared.less(&quotient.product(&function)), highest));
+        let [remainder, _] = split(&v_squared.less(&power.product(&quotient, &function, highest)));
         let at = |exponent: i32| {
             let mut part = Polynomial::zero();
             for (monomial, number) in remainder.terms().filter(|term| term.0.exponent(v) == exponent) {

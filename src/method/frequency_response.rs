@@ -6,6 +6,12 @@
 //! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/p = Q + Q_c cos(psi) + Q_s sin(psi)
 //! both zero, and cos^2 + sin^2 = 1:   P^2 + Q^2 = S^2 for one wave of size S
 //! ```
+//!
+//! Beyond the order of the waves that lead, cosine and sine follow in powers of what is small, and the relation is cut where the
+//! equations are: multiples of the phase may stand in them, which from the third order on they do, and there are no steady motions beside
+//! those that the equation has.
+
+use std::collections::BTreeMap;
 
 use num_traits::{Signed as _, Zero as _};
 
@@ -82,15 +88,125 @@ impl FrequencyResponse {
         }
     }
 
-    /// Without what holds only where no multiple of the phase stands in the equations.
-    pub(super) fn without_relation(self) -> Self {
-        Self {
-            relation: None,
-            folds: vec![],
-            jumps: None,
-            ..self
+    /// With a relation that is cut at the order of the rates, where there is one.
+    pub(super) fn cut(self, relation: Option<Polynomial>, a: Symbol) -> Self {
+        match relation {
+            None => self,
+            found => Self {
+                branches: self.branches,
+                peak: self.peak,
+                ..Self::of_relation(found, a)
+            },
         }
     }
+
+    /// From a relation alone.
+    pub(super) fn of_relation(relation: Option<Polynomial>, a: Symbol) -> Self {
+        let relation = relation.map(|relation| without_common_powers(&relation));
+        let (folds, jumps) = relation.as_ref().map_or((vec![], None), |relation| folds(relation, a));
+        Self {
+            relation,
+            branches: None,
+            peak: None,
+            folds,
+            jumps,
+        }
+    }
+}
+
+/// A rate as waves of the phase, by its multiple: what stands before the cosine and the sine.
+pub(super) type PhaseWaves = BTreeMap<u32, [Polynomial; 2]>;
+
+/// What stands before the cosine and the sine of the phase itself.
+pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
+    let zero = || [Polynomial::zero(), Polynomial::zero()];
+    rate.get(&1).cloned().unwrap_or_else(zero)
+}
+
+/// The relation between amplitude and detuning of two rates with multiples of the phase, in powers of a marker up to the order of the
+/// rates; `None` where multiples stand beside what leads, something comes before it, or nothing after it.
+///
+/// ```text
+/// M (c, s) = -(all else at c, s),   M the waves that lead:   c, s order by order,   c^2 + s^2 = 1
+/// ```
+pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, inverse: Symbol) -> Option<Polynomial> {
+    let lowest = |polynomial: &Polynomial| polynomial.exponent_range(marker).map(|range| range.0);
+    let earliest = |wanted: &dyn Fn(u32) -> bool| {
+        let waves = rates.iter().flat_map(|rate| rate.iter());
+        let waves = waves.filter(|(multiple, _)| wanted(**multiple));
+        waves.flat_map(|(_, waves)| waves.iter().filter_map(lowest)).min()
+    };
+    let leading = earliest(&|multiple| multiple == 1)?;
+    let after = |found: Option<i32>, least: i32| found.is_none_or(|found| found >= least);
+    if !after(earliest(&|multiple| multiple == 0), leading) || !after(earliest(&|multiple| multiple > 1), leading + 1) {
+        return None;
+    }
+    let highest = order - leading;
+    if highest == 0 {
+        return None;
+    }
+    let cut = |polynomial: &Polynomial| polynomial.truncated(marker, highest);
+    let minus = |polynomial: &Polynomial| polynomial.map(|number| -number);
+    // From here on the marker counts from the leading order.
+    let down = Monomial::power_of(marker, -leading);
+    let matrix = rates.map(|rate| turning(rate).map(|wave| wave.times_monomial(&down).truncated(marker, 0)));
+    let [[a, b], [c, d]] = &matrix;
+    let determinant = a.product(d) + minus(&b.product(c));
+    if determinant.is_zero() {
+        return None;
+    }
+    let over = Polynomial::symbol(inverse);
+    let (mut cosine, mut sine) = (Polynomial::zero(), Polynomial::zero());
+    for _ in 0..=highest {
+        let rest = |rate: &PhaseWaves, [by_cos, by_sin]: &[Polynomial; 2]| {
+            let mut sum = minus(&(by_cos.product(&cosine) + by_sin.product(&sine)));
+            for (multiple, waves) in rate {
+                for (wave, value) in waves.iter().zip(multiple_of(*multiple, [&cosine, &sine], &cut)) {
+                    sum.accumulate(&cut(&wave.times_monomial(&down).product(&value)));
+                }
+            }
+            cut(&sum)
+        };
+        let [one, other] = [rest(rates[0], &matrix[0]), rest(rates[1], &matrix[1])];
+        let solved = [
+            b.product(&other) + minus(&d.product(&one)),
+            c.product(&one) + minus(&a.product(&other)),
+        ];
+        [cosine, sine] = solved.map(|value| cut(&value.product(&over)));
+    }
+    let mut relation = cut(&(cosine.product(&cosine) + sine.product(&sine)));
+    relation.add_term(Monomial::one(), ratio(-1, 1));
+    // Times the determinant until it divides nothing.
+    let most = relation.exponent_range(inverse)?.1;
+    let mut whole = Polynomial::zero();
+    for (monomial, number) in relation.terms() {
+        let times = determinant.power(most - monomial.exponent(inverse))?;
+        let term = Polynomial::term(monomial.without(inverse), number.clone());
+        whole.accumulate(&term.product(&times));
+    }
+    // Of one wave of size S the determinant is S^2: once is enough for P^2 + Q^2 = S^2.
+    Some(match determinant.map(|number| number.abs()).power(1 - most) {
+        Some(less) => whole.product(&less),
+        None => whole,
+    })
+}
+
+/// Cosine and sine of a multiple of an angle, from those of the angle.
+fn multiple_of(
+    multiple: u32,
+    [cosine, sine]: [&Polynomial; 2],
+    cut: &dyn Fn(&Polynomial) -> Polynomial,
+) -> [Polynomial; 2] {
+    let mut found = [Polynomial::constant(ratio(1, 1)), Polynomial::zero()];
+    for _ in 0..multiple {
+        let [c, s] = &found;
+        let across = s.product(sine).map(|number| -number);
+        found = [
+            cut(&(c.product(cosine) + across)),
+            cut(&(s.product(cosine) + c.product(sine))),
+        ];
+    }
+    found
 }
 
 /// A relation with the powers that all terms have in common taken out.

@@ -11,6 +11,7 @@ pub(crate) mod amplitude_frequency;
 pub(crate) mod averaging;
 pub(crate) mod balance;
 mod drive;
+mod driven_answer;
 pub(crate) mod energy_balance;
 pub(crate) mod exact;
 mod exact_motion;
@@ -248,6 +249,8 @@ pub enum Unsuited {
         force: Expr,
         /// A term that drives or damps.
         term: Quotation,
+        /// Whether averaging takes the equation all the same.
+        averaged: bool,
     },
     /// A driving frequency far from every resonance that is known.
     #[error(
@@ -385,6 +388,8 @@ impl Unsuited {
                 Some(&(driving, linear)) => Advice::words("try ").choose(Setting::Resonance(driving, linear)),
                 None => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
             },
+            Self::NoLinearForce { averaged: true, .. } => Advice::words("the true motion of one power of the coordinate can be averaged: try ")
+                .choose(Setting::Method(Method::Averaging)),
             Self::NoLinearForce { .. } => Advice::words(
                 "in numbers `lindstedt simulate` follows the motion from any start; without the term try ",
             )
@@ -526,9 +531,14 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
         true => Method::Averaging,
         false => Method::MultipleScales,
     };
+    let by_averaging = Options {
+        method: Some(Method::Averaging),
+        ..Options::default()
+    };
     let refusal = Unsuited::NoLinearForce {
         force: force.clone(),
         term: first_term(other),
+        averaged: solve_as_asked(oscillator, &by_averaging).is_ok(),
     }
     .to(options.method.unwrap_or(otherwise));
     match centred(oscillator, None) {
@@ -607,6 +617,7 @@ fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool {
             OscillatorError::NotSmall { .. }
             | OscillatorError::NotPolynomial(_)
             | OscillatorError::Taylor(_)
+            | OscillatorError::NoRestoringForce(_)
             | OscillatorError::NoEquilibrium(_),
         ) => damped(),
         _ => false,

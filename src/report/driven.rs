@@ -149,6 +149,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         verification.steady_states.len(),
         verification.frequency.map_or_else(String::new, decimal)
     )));
+    blocks.extend(quality(verification).map(Block::Note));
     if count == 0 {
         blocks.push(Block::Note(format!(
             "verdict {verdict}: no steady motion is stable, so that there is none to be seen"
@@ -160,6 +161,19 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         solution.amplitude.symbol()
     )));
     blocks
+}
+
+/// How good the formula of the judged motion is: what it leaves of the equation, and the order of its error.
+fn quality(verification: &Verification) -> Option<String> {
+    let residual = verification.residual?;
+    let slope = match verification.slope {
+        Some(slope) => format!("vanishes with the power {slope:.2} of all that is small"),
+        None => "could not be measured for smaller values".to_owned(),
+    };
+    let residual = significant(100.0 * residual, 3);
+    Some(format!(
+        "residual of the judged motion {residual} % of the force (rms); its deviation {slope}"
+    ))
 }
 
 fn row(judged: &JudgedState) -> Vec<String> {

@@ -172,6 +172,11 @@ impl Solution {
             small_with: modulation.small_with.clone(),
         });
         periodic.modulation = None;
+        // What tells where a motion began is nothing of the cycle.
+        let start = AmplitudeConvention::Initial.symbol();
+        periodic
+            .definitions
+            .retain(|definition| !definition.meaning.contains(start));
         Some(periodic)
     }
 }

@@ -129,6 +129,11 @@ pub enum Note {
         /// What stands before the sign of the velocity.
         size: Expr,
     },
+    /// An average along the true motion without damping, whose shape is the same at every amplitude.
+    AlongTrueMotion {
+        /// The last harmonic that is written.
+        harmonic: usize,
+    },
     /// A motion that nothing drains.
     Grows,
     /// An order that a method chosen by default does not reach.
@@ -357,6 +362,10 @@ impl fmt::Display for Note {
             Self::Equilibrium { coordinate, position } => {
                 write!(formatter, "swings about the equilibrium {coordinate} = {position}")
             }
+            Self::AlongTrueMotion { harmonic } => write!(
+                formatter,
+                "averaged along the exact motion without damping, of any amplitude; its harmonics are rounded, and cut after the {harmonic}th"
+            ),
             Self::SlopeAtHalf => formatter.write_str(SLOPE_AT_HALF),
             Self::MotionOfSeries => formatter.write_str(MOTION_OF_SERIES),
             Self::Corners => formatter.write_str(CORNERS),
@@ -406,8 +415,8 @@ fn driven(
     let (p, q) = resonance;
     let name = match resonance {
         (2, 1) if parametric => "principal parametric resonance".to_owned(),
+        (p, q) if parametric => format!("parametric resonance {p}:{q}"),
         (1, 1) => "primary resonance".to_owned(),
-        (p, 1) if parametric => format!("parametric resonance {p}:1"),
         (1, q) => format!("superharmonic resonance 1:{q}"),
         (p, q) => format!("subharmonic resonance {p}:{q}"),
     };

@@ -82,6 +82,13 @@ impl SteadyState {
     pub fn is_stable(&self) -> bool {
         self.eigenvalues.iter().all(|value| value.0 < 0.0)
     }
+
+    /// Whether amplitude and phase are those of another one, up to rounding.
+    fn is_same(&self, other: &Self) -> bool {
+        const ROUNDING: f64 = 1e-8;
+        let apart = (self.amplitude - other.amplitude).abs();
+        apart <= ROUNDING * self.amplitude && wrapped(self.phase - other.phase).abs() <= ROUNDING
+    }
 }
 
 impl Solution {
@@ -119,8 +126,13 @@ impl Solution {
             eigenvalues: plane.eigenvalues([u, v]),
         };
         for amplitude in amplitudes(&relation) {
-            if let Some(place) = plane.at_rest_on(amplitude, times) {
-                states.push(state(place));
+            let exact = plane.at_rest_on(amplitude, times);
+            let near = || plane.at_rest_near(amplitude, times);
+            for place in exact.map_or_else(near, |place| vec![place]) {
+                let found = state(place);
+                if !states.iter().any(|known| known.is_same(&found)) {
+                    states.push(found);
+                }
             }
         }
         if plane.at([0.0, 0.0]).iter().all(|rate| rate.abs() < 1e-300) {
@@ -266,30 +278,67 @@ impl<'a> Field<'a> {
         both
     }
 
-    /// Where on the circle of this radius both rates vanish: they are waves `P + P_c cos(psi) + P_s sin(psi)` of the phase, so
-    /// three places tell all, and Newton's steps lead on from there.
+    /// `a'` and `a psi'/m` at a phase of the slow equations.
+    fn polar(&self, radius: f64, angle: f64) -> [f64; 2] {
+        let [u, v] = on_circle(radius, angle);
+        let [du, dv] = self.at([u, v]);
+        [(u * du + v * dv) / radius, (v * du - u * dv) / radius]
+    }
+
+    /// Where on the circle of this radius both rates vanish, if they are one wave `P + P_c cos(psi) + P_s sin(psi)` of the phase: three
+    /// places tell all, and Newton's steps lead on from there.
     fn at_rest_on(&self, radius: f64, times: f64) -> Option<[f64; 2]> {
-        const STEPS: usize = 40;
-        let on_circle = |phase: f64| {
-            let angle = phase / times;
-            [radius * angle.cos(), -radius * angle.sin()]
-        };
-        // a' and a psi'/m.
-        let polar = |phase: f64| {
-            let [u, v] = on_circle(phase);
-            let [du, dv] = self.at([u, v]);
-            [(u * du + v * dv) / radius, (v * du - u * dv) / radius]
-        };
-        let [ahead, across, behind] = [0.0, 0.5, 1.0].map(|part| polar(part * std::f64::consts::PI));
+        /// Neither a simple part of a turn nor near one.
+        const ELSEWHERE: [f64; 2] = [0.7, 2.2];
+        const ROUNDING: f64 = 1e-9;
+        let [ahead, across, behind] =
+            [0.0, 0.5, 1.0].map(|part| self.polar(radius, part * std::f64::consts::PI / times));
         let waves = |k: usize| {
             let mean = (ahead[k] + behind[k]) / 2.0;
             [mean, (ahead[k] - behind[k]) / 2.0, across[k] - mean]
         };
-        let ([rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]) = (waves(0), waves(1));
+        let both = [waves(0), waves(1)];
+        let one_wave = ELSEWHERE.into_iter().all(|phase: f64| {
+            let found = self.polar(radius, phase / times);
+            both.iter().zip(found).all(|([mean, cosine, sine], found)| {
+                let told = mean + cosine * phase.cos() + sine * phase.sin();
+                (told - found).abs() <= ROUNDING * (mean.abs() + cosine.abs() + sine.abs())
+            })
+        });
+        if !one_wave {
+            return None;
+        }
+        let [[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]] = both;
         let determinant = rate_cos * turn_sin - rate_sin * turn_cos;
         let cosine = (rate_sin * turn - rate * turn_sin) / determinant;
         let sine = (turn_cos * rate - rate_cos * turn) / determinant;
-        let start = on_circle(sine.atan2(cosine));
+        let found = self.at_rest_from(on_circle(radius, sine.atan2(cosine) / times))?;
+        let near = (found[0].hypot(found[1]) / radius - 1.0).abs() < 1e-6;
+        near.then_some(found)
+    }
+
+    /// Where both rates vanish near the circle of this radius, on which a relation that is cut at an order has them.
+    fn at_rest_near(&self, radius: f64, times: f64) -> Vec<[f64; 2]> {
+        /// Phases that are tried.
+        const STARTS: usize = 24;
+        /// By how much of itself the radius may be off.
+        const OFF: f64 = 0.2;
+        let phase = |k: usize| std::f64::consts::TAU * k as f64 / STARTS as f64;
+        let size = |k: usize| {
+            let [rate, turn] = self.polar(radius, phase(k % STARTS) / times);
+            rate.hypot(turn)
+        };
+        let lowest = (0..STARTS).filter(|&k| size(k) <= size(k + 1) && size(k) <= size(k + STARTS - 1));
+        let found = lowest.filter_map(|k| self.at_rest_from(on_circle(radius, phase(k) / times)));
+        found
+            .filter(|place| (place[0].hypot(place[1]) / radius - 1.0).abs() < OFF)
+            .collect()
+    }
+
+    /// Newton's steps from a place to one where both rates vanish.
+    fn at_rest_from(&self, start: [f64; 2]) -> Option<[f64; 2]> {
+        const STEPS: usize = 40;
+        let radius = start[0].hypot(start[1]);
         let mut place = start;
         for _ in 0..STEPS {
             let [u, v] = self.at(place);
@@ -299,7 +348,11 @@ impl<'a> Field<'a> {
                 break;
             }
         }
-        let near = (place[0].hypot(place[1]) / radius - 1.0).abs() < 1e-6;
-        (near && place.iter().all(|value| value.is_finite())).then_some(place)
+        place.iter().all(|value| value.is_finite()).then_some(place)
     }
+}
+
+/// `u` and `v` of a radius and an angle.
+fn on_circle(radius: f64, angle: f64) -> [f64; 2] {
+    [radius * angle.cos(), -radius * angle.sin()]
 }

@@ -102,8 +102,8 @@ pub enum ComparisonError {
     Verification(#[from] VerificationError),
 }
 
-/// The variants of each method that are compared: the defaults, both orders of averaging and of driven multiple scales and, for homotopy
-/// perturbation, the first order as well.
+/// The variants of each method that are compared: the defaults, both orders of averaging, the three of driven multiple scales and, for
+/// homotopy perturbation, the first order as well.
 fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
     let parts = oscillator.parts().ok();
     let driven = parts.as_ref().is_some_and(|parts| !parts.forcing.is_zero());
@@ -124,12 +124,15 @@ fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
                 ..default(method)
             });
         }
-        if method == Method::Averaging || driven && method == Method::MultipleScales {
-            variants.push(Options {
-                order: Some(2),
-                ..default(method)
-            });
-        }
+        let higher: &[u32] = match method {
+            Method::Averaging => &[2],
+            Method::MultipleScales if driven => &[2, 3],
+            _ => &[],
+        };
+        variants.extend(higher.iter().map(|order| Options {
+            order: Some(*order),
+            ..default(method)
+        }));
     }
     variants
 }

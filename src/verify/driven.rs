@@ -5,13 +5,20 @@
 //!
 //! ```text
 //! relative_error = a_formula / a_true - 1,   a = amplitude of the harmonic q of the period 2 pi p/Omega
+//! max_deviation  = max |x_formula(t) - x_true(t)|/max |x_true - x_eq|
+//! residual       = rms of x'' + f(t, x, x') along the formula / rms of f
+//! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, the detuning among it
 //! ```
+//!
+//! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by `delta^n`, which is the slope to expect. It may
+//! be more where a coefficient of the error vanishes.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::orbit::SAMPLES;
-use super::{Motions, Verdict, Verification, VerificationError, checked_numbers};
+use super::smaller::{is_small_in_amplitude, smaller};
+use super::{Motions, Verdict, Verification, VerificationError, checked_numbers, slopes_of};
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
@@ -88,6 +95,15 @@ impl<'a> Question<'a> {
     ) -> Result<Self, VerificationError> {
         let mut numbers = checked_numbers(solution, at)?;
         numbers.remove(&solution.amplitude.symbol());
+        Self::of_numbers(oscillator, solution, response, numbers)
+    }
+
+    fn of_numbers(
+        oscillator: &Oscillator,
+        solution: &'a Solution,
+        response: &Response,
+        numbers: BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
         let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
         let (p, q) = resonance.map_or((1, 1), |resonance| (resonance.times_linear, resonance.times_driving));
         let driving = resonance.map_or(Ok(1.0), |resonance| resonance.driving_frequency.evaluate(&numbers))?;
@@ -103,6 +119,19 @@ impl<'a> Question<'a> {
 
     fn states(&self) -> Vec<SteadyState> {
         self.solution.steady_states(&|name| self.numbers.get(&name).copied())
+    }
+
+    /// What the formula leaves of the equation, over the force.
+    fn residual(&self, state: SteadyState) -> Option<f64> {
+        let times = (0..SAMPLES).map(|k| self.truth.period * k as f64 / SAMPLES as f64);
+        let (mut defects, mut forces) = (0.0, 0.0);
+        for t in times {
+            let place = [t, self.motion.position(t, state), self.motion.velocity(t, state)];
+            let force = self.truth.force.call(&place);
+            defects += (self.motion.acceleration(t, state) + force).powi(2);
+            forces += force.powi(2);
+        }
+        Some((defects / forces).sqrt()).filter(|value: &f64| value.is_finite())
     }
 
     /// Every steady motion beside a true one; of two that lead to the same one, that which is nearer to it has it.
@@ -148,6 +177,46 @@ impl<'a> Question<'a> {
     }
 }
 
+/// All that is small is halved again and again, and the deviation of the same steady motion measured.
+fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> Option<f64> {
+    const HALVINGS: i32 = 3;
+    /// The truth is good to 1e-10, and a hundred times that is measured to a per cent.
+    const FLOOR: f64 = 1e-8;
+    /// By how much of itself the amplitude may have changed.
+    const OTHER: f64 = 0.5;
+    let deviation = |halvings: i32| {
+        if halvings == 0 {
+            return judged.max_deviation;
+        }
+        let smaller = smaller(oscillator, question.solution, &question.numbers, halvings)?;
+        let response = smaller.solution.response.as_ref()?;
+        let question = Question::of_numbers(&smaller.oscillator, &smaller.solution, response, smaller.numbers).ok()?;
+        let apart = |state: &SteadyState| (state.amplitude - judged.state.amplitude).abs();
+        let states = question.states().into_iter();
+        let alike = states.filter(|state| state.is_stable() == judged.state.is_stable());
+        let state = alike.min_by(|one, other| apart(one).total_cmp(&apart(other)))?;
+        if apart(&state) > OTHER * judged.state.amplitude {
+            return None;
+        }
+        let found = question.truth.near(&question.motion, state)?;
+        question
+            .truth
+            .beside(&question.motion, state, Some(&found))
+            .max_deviation
+    };
+    let errors: Vec<f64> = (0..HALVINGS)
+        .map_while(deviation)
+        .take_while(|error| *error >= FLOOR)
+        .collect();
+    // What is halved is the square of a small amplitude.
+    let power = if is_small_in_amplitude(question.solution) {
+        2.0
+    } else {
+        1.0
+    };
+    slopes_of(&errors).map(|slope| power * slope)
+}
+
 /// Judges the steady motions of a driven oscillator: the verdict is that on the largest stable one.
 pub(super) fn judge(
     oscillator: &Oscillator,
@@ -166,6 +235,7 @@ pub(super) fn judge(
         agrees && error.is_some_and(|error| error.abs() <= tolerance)
     });
     let symbols = symbol_values(oscillator, solution, &question.numbers, None);
+    let moving = judged.filter(|judged| judged.true_amplitude.is_some() && judged.max_deviation.is_some());
     Ok(Verification {
         at: at.clone(),
         frequency: Some(question.frequency),
@@ -175,8 +245,8 @@ pub(super) fn judge(
         judged_on: "amplitude",
         error_of_omega: None,
         max_deviation: judged.and_then(|judged| judged.max_deviation),
-        residual: None,
-        slope: None,
+        residual: moving.and_then(|judged| question.residual(judged.state)),
+        slope: moving.and_then(|judged| slope(oscillator, &question, judged)),
         ranges: vec![],
         chosen: vec![],
         values: symbols.values,
@@ -290,6 +360,7 @@ impl Truth {
 struct Formula {
     position: CompiledFunction,
     velocity: CompiledFunction,
+    acceleration: CompiledFunction,
     equilibrium: f64,
 }
 
@@ -307,9 +378,11 @@ impl Formula {
         let t = Symbol::new("t");
         let phase = solution.modulation.as_ref().map_or(t, |slow| slow.phase);
         let arguments = [t, solution.amplitude.symbol(), phase];
+        let velocity = motion.differentiate(t)?;
         Ok(Self {
             position: CompiledFunction::new(&motion, &arguments)?,
-            velocity: CompiledFunction::new(&motion.differentiate(t)?, &arguments)?,
+            velocity: CompiledFunction::new(&velocity, &arguments)?,
+            acceleration: CompiledFunction::new(&velocity.differentiate(t)?, &arguments)?,
             equilibrium: solution.equilibrium.evaluate(numbers)?,
         })
     }
@@ -320,6 +393,10 @@ impl Formula {
 
     fn velocity(&self, t: f64, state: SteadyState) -> f64 {
         self.velocity.call(&[t, state.amplitude, state.phase])
+    }
+
+    fn acceleration(&self, t: f64, state: SteadyState) -> f64 {
+        self.acceleration.call(&[t, state.amplitude, state.phase])
     }
 
     fn size(&self, period: f64, state: SteadyState) -> f64 {

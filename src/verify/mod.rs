@@ -25,6 +25,7 @@ mod free_motion;
 mod orbit;
 mod reach;
 mod slow_motion;
+mod smaller;
 mod transient;
 pub(crate) mod validity;
 pub(crate) mod well;

@@ -259,7 +259,16 @@ impl SlowMotion {
 
     /// When the amplitude comes down to a size.
     pub(super) fn falls_to(&self, size: f64, longest: f64) -> Option<f64> {
-        let excess = |t: f64| self.slow_at(t)[0].abs() - size;
+        self.falls_below(|t| self.slow_at(t)[0].abs(), size, longest)
+    }
+
+    /// When the turning points come down to a distance from the equilibrium.
+    pub(super) fn turns_at(&self, distance: f64, longest: f64) -> Option<f64> {
+        self.falls_below(|t| self.at_phase(t, 0.0).abs(), distance, longest)
+    }
+
+    fn falls_below(&self, measure: impl Fn(f64) -> f64, size: f64, longest: f64) -> Option<f64> {
+        let excess = |t: f64| measure(t) - size;
         let count = (8.0 * longest / self.period).ceil().max(1.0) as usize;
         let time = |k: usize| longest * k as f64 / count as f64;
         let place = (1..=count).find(|&k| excess(time(k)) <= 0.0)?;

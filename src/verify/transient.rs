@@ -22,15 +22,14 @@ use std::f64::consts::PI;
 
 use super::free_motion::{FreeMotion, Start};
 use super::slow_motion::{LOOKS, SlowMotion};
+use super::smaller::{is_small_in_amplitude, smaller};
 use super::validity::Range;
 use super::{Motions, Sample, Verdict, Verification, VerificationError, slopes_of};
 use crate::decimal::decimal;
-use crate::exact::Rational;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::averaging::action::falls_to;
 use crate::method::numbers::{NoNumbers, symbol_values};
-use crate::method::{Options, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Modulation, Solution};
 use crate::symbol::Symbol;
@@ -127,7 +126,7 @@ pub(super) fn judge(
             crossings: count,
             amplitude_error,
             amplitude_slope: slopes.amplitude,
-            tenth: slow.falls_to(start.abs() / 10.0, truth.end()),
+            tenth: slow.turns_at(start.abs() / 10.0, truth.end()),
             tenth_by_action: falls_to(oscillator, &solution.equilibrium, numbers, [*start, start / 10.0]),
             true_tenth: truth.falls_to(start.abs() / 10.0),
         }),
@@ -295,10 +294,10 @@ fn slopes(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbo
         if halving == 0 {
             return Some(judged.errors(first));
         }
-        let (oscillator, solution, numbers) = smaller(oscillator, solution, numbers, halving)?;
-        let slow = SlowMotion::new(&solution, solution.slow()?, &numbers).ok()?;
+        let smaller = smaller(oscillator, solution, numbers, halving)?;
+        let slow = SlowMotion::new(&smaller.solution, smaller.solution.slow()?, &smaller.numbers).ok()?;
         let until = first * 2.0_f64.powi(halving);
-        let judged = Judged::followed(&oscillator, &numbers, slow, (until, ""), until).ok()?;
+        let judged = Judged::followed(&smaller.oscillator, &smaller.numbers, slow, (until, ""), until).ok()?;
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];
@@ -323,57 +322,4 @@ fn slopes(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbo
         amplitude: measured(|errors| errors.amplitude),
         deviation: measured(|errors| errors.deviation),
     }
-}
-
-/// Whether the amplitude is what is small.
-fn is_small_in_amplitude(solution: &Solution) -> bool {
-    solution.small_parameter == solution.amplitude.symbol()
-}
-
-/// The question with all that is small halved so many times: letters in their values, numbers in the equation, for which the answer
-/// is derived again. Where the amplitude is small its square is halved, and a linear damping beside it.
-fn smaller(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-    halvings: i32,
-) -> Option<(Oscillator, Solution, BTreeMap<Symbol, f64>)> {
-    if solution.small_parameters().all(|small| numbers.contains_key(&small)) {
-        let mut numbers = numbers.clone();
-        for small in solution.small_parameters() {
-            *numbers.get_mut(&small)? *= 0.5_f64.powi(halvings);
-        }
-        return Some((oscillator.clone(), solution.clone(), numbers));
-    }
-    let (x, v) = (oscillator.coordinate, oscillator.velocity());
-    let parts = oscillator.parts().ok()?;
-    let (mut smaller, mut numbers) = (oscillator.clone(), numbers.clone());
-    let factor = Expr::number(Rational::new(1.into(), 2.into()).pow(halvings));
-    let mut options = Options {
-        method: Some(solution.method),
-        order: Some(solution.order),
-        ..Options::default()
-    };
-    if is_small_in_amplitude(solution) {
-        if !solution.equilibrium.is_zero() {
-            return None;
-        }
-        let damping = parts.damping.differentiate(v).ok()?.substitute(v, &Expr::zero()).ok()?;
-        let damping = damping.substitute(x, &Expr::zero()).ok()?;
-        let less = &(&factor - &Expr::one()) * &(&damping * &Expr::from(v));
-        smaller.force = (&oscillator.force + &less).expand().ok()?;
-        let start = AmplitudeConvention::Initial.symbol();
-        options.small = Some(start.to_string());
-        *numbers.get_mut(&start)? *= 0.5_f64.powf(f64::from(halvings) / 2.0);
-    } else {
-        let stiffness = parts.restoring.differentiate(x).ok()?;
-        let stiffness = stiffness.substitute(x, &solution.equilibrium).ok()?;
-        let linear = &stiffness * &(&Expr::from(x) - &solution.equilibrium);
-        let linear = linear.expand().ok()?;
-        let rest = (&oscillator.force - &linear).expand().ok()?;
-        smaller.force = &linear + &(&factor * &rest);
-        smaller.about = Some(solution.equilibrium.clone());
-    }
-    let answer = solve(&smaller, &options).ok()?;
-    Some((smaller, answer.off_cycle().unwrap_or(answer), numbers))
 }

@@ -552,6 +552,68 @@ fn driven(equation: &str, method: Method, resonance: (u32, u32)) -> Solution {
     solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation)
 }
 
+/// Away from 1:1, and to second order, averaging has the rates of multiple scales, with the motion to one order less: at every resonance
+/// that a polynomial has, the amplitudes of the true motion to that order (Bogoliubov and Mitropolsky, chapter 3).
+#[test]
+fn driven_motions_of_second_order() {
+    for (equation, resonance, at) in [
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
+            (1, 1),
+            "zeta = 1/80, eps = 1/80, F = 3/80, Omega = 81/80",
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
+            (1, 3),
+            "zeta = 1/500, eps = 1/100, F = 1, Omega = 17/50",
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
+            (3, 1),
+            "zeta = 1/2000, eps = 1/200, F = 10, Omega = 31/10",
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)",
+            (1, 2),
+            "zeta = 1/2000, eps = 1/200, F = 1, Omega = 2003/4000",
+        ),
+        (
+            "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0",
+            (2, 1),
+            "zeta = 1/200, h = 1/20, eps = 1/20, Omega = 81/40",
+        ),
+        ("x'' + x'/40 + x + x^3/80 = 3*cos(81*t/80)/80", (1, 1), ""),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let at: lindstedt::Values = at.parse().unwrap_or_default();
+        let errors = [1, 2].map(|order| {
+            let options = Options {
+                method: Some(Method::Averaging),
+                order: Some(order),
+                resonance: Some(resonance),
+                ..Options::default()
+            };
+            let solution = solve(&oscillator, &options).expect(equation);
+            let judged = judge(&oscillator, &solution, &at, 0.1).expect(equation);
+            assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {judged:?}");
+            let scales = Options {
+                method: Some(Method::MultipleScales),
+                ..options
+            };
+            if !solution.small_parameter.name().contains("delta") {
+                let scales = solve(&oscillator, &scales).expect(equation);
+                let [own, other] =
+                    [&solution, &scales].map(|solution| solution.modulation.as_ref().expect("slow equations"));
+                let same = |one: &Expr, other: &Expr| (one - other).expand().expect(equation).is_zero();
+                assert!(same(&own.amplitude_rate, &other.amplitude_rate), "{equation}");
+                assert!(same(&own.phase_rate, &other.phase_rate), "{equation}");
+            }
+            judged.relative_error.expect(equation).abs()
+        });
+        assert!(errors[1] < errors[0] / 4.0, "{equation}: {errors:?}");
+    }
+}
+
 /// Of polynomial forces both methods give the same first order.
 #[test]
 fn driven_motions_are_those_of_multiple_scales() {
@@ -735,7 +797,7 @@ fn no_help_leads_in_a_circle() {
 fn drives_that_averaging_refuses_by_name() {
     for (equation, resonance, words) in [
         (
-            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
+            "x'' + 2*zeta*x' + x + alpha*sgn(x') = F*cos(Omega*t)",
             Some((1, 3)),
             "at 1:3; it does at 1:1",
         ),

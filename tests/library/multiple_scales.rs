@@ -398,7 +398,7 @@ fn steady_motions_are_the_true_ones() {
 fn slopes_of_the_error_of_driven_motions() {
     let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
-    let orders = [1, 2].map(|order| driven(equation, (1, 1), order));
+    let orders = [1, 2, 3].map(|order| driven(equation, (1, 1), order));
     let largest = |solution: &Solution, d: u32| {
         let at = format!("zeta = 1/{d}, eps = 1/{d}, F = 3/{d}, Omega = {}/{d}", d + 1);
         let judged = judge(&oscillator, solution, &at.parse().expect("values"), 0.1).expect("a verdict");
@@ -408,7 +408,7 @@ fn slopes_of_the_error_of_driven_motions() {
         (state.state.amplitude, state.relative_error.expect("an error"))
     };
     let page = include_str!("../../docs/multiple-scales.md");
-    let mut errors: Vec<[f64; 2]> = Vec::new();
+    let mut errors: Vec<[f64; 3]> = Vec::new();
     for line in page
         .lines()
         .filter(|line| line.starts_with("| ") && line.ends_with(" % |"))
@@ -419,16 +419,194 @@ fn slopes_of_the_error_of_driven_motions() {
         let found = orders.each_ref().map(|solution| largest(solution, d));
         for (k, (amplitude, error)) in found.iter().enumerate() {
             assert!((amplitude - number(2 * k + 2)).abs() < 6e-5, "{line}: {amplitude}");
-            assert!((100.0 * error - number(2 * k + 3)).abs() < 6e-4, "{line}: {error}");
+            let digits = cells[2 * k + 3]
+                .trim_end_matches(" %")
+                .split('.')
+                .nth(1)
+                .map_or(0, str::len);
+            let last = 10.0_f64.powi(-i32::try_from(digits).expect("few digits"));
+            assert!(
+                (100.0 * error - number(2 * k + 3)).abs() < 0.6 * last,
+                "{line}: {error}"
+            );
         }
         errors.push(found.map(|(_, error)| error.abs()));
     }
     assert_eq!(errors.len(), 4);
     for pair in errors.windows(2) {
-        for (order, (before, after)) in [1.0, 2.0].iter().zip(pair[0].iter().zip(pair[1])) {
+        for ((order, off), (before, after)) in [(1.0, 0.1), (2.0, 0.1), (3.0, 0.15)]
+            .iter()
+            .zip(pair[0].iter().zip(pair[1]))
+        {
             let slope = (before / after).log2();
-            assert!((slope - order).abs() < 0.1, "order {order}: {slope}");
+            assert!((slope - order).abs() < *off, "order {order}: {slope}");
         }
+    }
+}
+
+/// The same at the other resonances of a cubic force, a drive far from resonance held as it is: stable and unstable motions alike.
+#[test]
+fn slopes_of_the_error_at_every_resonance() {
+    let forced = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
+    let quadratic = "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)";
+    let parametric = "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0";
+    let at = |values: &[(&str, f64)]| {
+        values
+            .iter()
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect::<Vec<_>>()
+    };
+    let superharmonic = |d: f64| {
+        at(&[
+            ("zeta", 0.2 / d),
+            ("eps", 1.0 / d),
+            ("F", 1.0),
+            ("Omega", (1.0 + 2.0 / d) / 3.0),
+        ])
+    };
+    let subharmonic = |d: f64| {
+        at(&[
+            ("zeta", 0.1 / d),
+            ("eps", 1.0 / d),
+            ("F", 10.0),
+            ("Omega", 3.0 + 20.0 / d),
+        ])
+    };
+    let of_square = |d: f64| {
+        at(&[
+            ("zeta", 0.1 / d),
+            ("eps", 1.0 / d),
+            ("F", 1.0),
+            ("Omega", (1.0 + 0.3 / d) / 2.0),
+        ])
+    };
+    let principal = |d: f64| {
+        at(&[
+            ("zeta", 0.1 / d),
+            ("eps", 1.0 / d),
+            ("h", 1.0 / d),
+            ("Omega", 2.0 + 0.5 / d),
+        ])
+    };
+    type At<'a> = &'a dyn Fn(f64) -> Vec<String>;
+    // Equation, resonance, values by d, the first d, how many motions swing.
+    type Case<'a> = (&'a str, (u32, u32), At<'a>, f64, usize);
+    let cases: [Case; 4] = [
+        (forced, (1, 3), &superharmonic, 100.0, 1),
+        (forced, (3, 1), &subharmonic, 200.0, 2),
+        (quadratic, (1, 2), &of_square, 200.0, 1),
+        (parametric, (2, 1), &principal, 20.0, 2),
+    ];
+    for (equation, resonance, at, d, count) in cases {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        for order in 1..=3 {
+            let solution = driven(equation, resonance, order);
+            let errors = [d, 2.0 * d].map(|d| {
+                let values = at(d).join(", ").parse().expect("values");
+                let judged = judge(&oscillator, &solution, &values, 0.1).expect(equation);
+                let moving = judged
+                    .steady_states
+                    .iter()
+                    .filter(|judged| judged.state.amplitude > 0.0);
+                let errors: Vec<f64> = moving
+                    .map(|judged| {
+                        assert_eq!(
+                            judged.true_stable,
+                            Some(judged.state.is_stable()),
+                            "{equation} {judged:?}"
+                        );
+                        judged.relative_error.expect(equation).abs()
+                    })
+                    .collect();
+                assert_eq!(errors.len(), count, "{equation} to order {order}: {judged:?}");
+                errors
+            });
+            for (before, after) in errors[0].iter().zip(&errors[1]) {
+                let slope = (before / after).log2();
+                assert!(
+                    slope > f64::from(order) - 0.2,
+                    "{equation} at {resonance:?} to order {order}: {slope}, {errors:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Where nothing drives, the slow equations of a driven motion are those of the free one, seen from the drive: psi' = Omega - theta'.
+#[test]
+fn without_a_drive_the_motion_is_free() {
+    let free = derive("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = 0", 3);
+    let driven = driven("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = F*cos(Omega*t)", (1, 1), 3);
+    let [free, driven] = [&free, &driven].map(|solution| solution.modulation.as_ref().expect("slow equations"));
+    let still = |rate: &Expr| rate.substitute(Symbol::new("F"), &Expr::zero()).expect("a rate");
+    let turning = &(&Expr::symbol("sigma") + &Expr::one()) - &still(&driven.phase_rate);
+    for (one, other) in [
+        (free.amplitude_rate.clone(), still(&driven.amplitude_rate)),
+        (free.phase_rate.clone(), turning),
+    ] {
+        let difference = (&one - &other).expand().expect("short");
+        assert!(difference.is_zero(), "{one} and {other}");
+    }
+}
+
+/// What first order says nothing about is found by the second: the second tongue of Mathieu's equation, whose edges are known
+/// (C. M. Bender, S. A. Orszag, *Advanced Mathematical
+/// Methods for Scientists and Engineers*, McGraw-Hill 1978, section 11.4: delta = 1 - eps^2/12 and 1 + 5 eps^2/12), and the motions that a cubic force holds there.
+#[test]
+fn the_second_tongue_needs_the_second_order() {
+    for method in [Method::MultipleScales, Method::Averaging] {
+        let asked = Options {
+            method: Some(method),
+            resonance: Some((1, 1)),
+            ..Options::default()
+        };
+        let mathieu = Oscillator::parse("x'' + (delta + eps*cos(t))*x = 0").expect("an oscillator");
+        let solution = solve(&mathieu, &asked).expect("an answer");
+        assert_eq!(solution.order, 2);
+        let relation = solution
+            .response
+            .as_ref()
+            .and_then(|response| response.relation.as_ref());
+        let relation = relation.expect("a relation");
+        let value = |eps: f64, delta: f64| {
+            let value_of = |name: Symbol| match name.name() {
+                "eps" => Some(eps),
+                "delta" => Some(delta),
+                _ => None,
+            };
+            solution.evaluate(relation, &value_of).expect("a value")
+        };
+        for eps in [0.1, 0.05] {
+            for part in [-1.0 / 12.0, 5.0 / 12.0] {
+                let edge = 1.0 + part * eps * eps;
+                let [below, above] = [-1.0, 1.0].map(|side| value(eps, edge + side * 0.5 * eps.powi(3)));
+                assert!(
+                    below * above < 0.0,
+                    "{method:?}, eps = {eps}: {below}, {above} beside {edge}"
+                );
+            }
+        }
+        let equation = "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0";
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let solution = solve(&oscillator, &asked).expect("an answer");
+        let error = |d: f64| {
+            let square = d * d;
+            let at = format!(
+                "zeta = {}, h = {}, eps = {}, Omega = {}",
+                0.0125 / square,
+                1.0 / d,
+                0.5 / square,
+                1.0 + 0.025 / square
+            );
+            let judged = judge(&oscillator, &solution, &at.parse().expect("values"), 0.1).expect("a verdict");
+            let stable = judged.steady_states.iter().filter(|judged| judged.state.is_stable());
+            let errors: Vec<f64> = stable.filter_map(|judged| judged.relative_error).collect();
+            // x(t) and -x(t) both.
+            assert_eq!(errors.len(), 2, "{judged:?}");
+            errors[0].abs()
+        };
+        let slope = (error(10.0) / error(20.0)).log2();
+        assert!((slope - 2.0).abs() < 0.1, "{method:?}: {slope}");
     }
 }
 
@@ -802,11 +980,17 @@ fn driven_motions_are_compared() {
     let kinds: Vec<_> = rows.iter().map(|row| (row.0, row.1)).collect();
     let expected = [
         (Method::Averaging, 1),
+        (Method::Averaging, 2),
         (Method::MultipleScales, 1),
         (Method::MultipleScales, 2),
+        (Method::MultipleScales, 3),
     ];
     assert_eq!(kinds, expected);
-    assert!(rows[0].2 < 6e-3 && rows[2].2 < rows[1].2, "{rows:?}");
+    assert!(rows[0].2 < 6e-3, "{rows:?}");
+    assert!(
+        rows[1].2 < rows[0].2 && rows[3].2 < rows[2].2 && rows[4].2 < rows[3].2,
+        "{rows:?}"
+    );
     let friction = "x'' + 2*zeta*x' + alpha*sgn(x') + x = F*cos(Omega*t)";
     let rows = compared(friction, "zeta = 1/200, alpha = 1/200, F = 1/40, Omega = 201/200");
     assert!(

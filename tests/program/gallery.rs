@@ -599,7 +599,7 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 57] = [
+    const COMMANDS: [&str; 58] = [
         "int",
         "Rightarrow",
         "hbar",
@@ -657,6 +657,7 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "sigma",
         "tau",
         "phi",
+        "chi",
     ];
     for (name, document) in latex_documents() {
         let lines: Vec<&str> = document.lines().filter(|line| !line.starts_with('%')).collect();

@@ -394,7 +394,8 @@ pub struct Verification {
     /// The root mean square of what the formula leaves of the equation, over that of the force; null where it is not known.
     pub residual: Option<f64>,
     /// The exponent with which the error of the frequency vanishes as the small parameter does; of a motion followed from its start
-    /// that of `max_deviation`, over times that grow as the small parameter becomes less. Null where rounding hides it.
+    /// that of `max_deviation`, over times that grow as the small parameter becomes less, and of a steady driven motion that of
+    /// `max_deviation`. Null where rounding hides it.
     pub slope: Option<f64>,
     /// Where the formula holds at these values, in words and numbers.
     pub ranges: Vec<Range>,

@@ -1,4 +1,5 @@
-//! Averaging of driven motions to first order, for every force whose projections have a closed form.
+//! Averaging of driven motions: to first order for every force whose projections have a closed form, to second order, and at
+//! superharmonic and subharmonic resonances, for polynomials.
 //!
 //! References: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1 and 5.7; J. P. Den Hartog, *Forced
 //! vibrations with combined Coulomb and viscous friction*, Trans. ASME 53 (1931) 107-115, for the least force that moves a mass held
@@ -10,23 +11,28 @@
 //! F cos(Omega t) near 1:1      a' gains F sin(psi)/(2 omega0), psi' gains F cos(psi)/(2 omega0 a)
 //! ```
 //!
-//! A drive reaches the motion where its wave has a first harmonic beside the powers of `x` and `x'` that stand before it.
+//! A drive reaches the motion where its wave has a first harmonic beside the powers of `x` and `x'` that stand before it. Elsewhere,
+//! and to second order, the amplitude of the first harmonic and its phase are expanded as those of multiple scales are: with that
+//! amplitude both methods have the same series, here with the motion to one order less than the rates. What an order says nothing about,
+//! such as the parametric resonance 1:1, is left to the next one.
 
-use num_traits::{ToPrimitive as _, Zero as _};
+use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
 use super::small_terms::SmallTerms;
-use super::{Letters, Projected, Series, small_in_words};
+use super::{HIGHEST, Letters, Projected, Series, small_in_words};
 use crate::derivation::{Formula, Line};
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::method::drive::{Drive, Driven, Quadrature};
+use crate::method::driven_answer::DrivenMotion;
 use crate::method::frequency_response::FrequencyResponse;
+use crate::method::multiple_scales::driven::{Asked, is_of_resonance};
+use crate::method::multiple_scales::scaling::{Scaling, bounded};
 use crate::method::resonance::{RESONANCES, by_distance, is_near, ratio_of};
-use crate::method::{Options, Refusal, Unsuited};
-use crate::oscillator::{Oscillator, Parts};
-use crate::solution::modulation::Resonance;
+use crate::method::{Options, Refusal, Unsuited, not_polynomial};
+use crate::oscillator::{Oscillator, OscillatorError, Parts};
 use crate::solution::response::{ClosedRelation, Response};
-use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Solution};
+use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
 /// The highest power of the coordinate or the velocity before a wave.
@@ -35,13 +41,14 @@ const HIGHEST_POWER: u32 = 24;
 /// The slow equations of a driven motion and its steady amplitudes.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have at this order, a term without a closed projection.
+/// A drive that is no single wave, a resonance that the equation does not have, a term without a closed projection, or to second order
+/// one that is no polynomial.
 pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
     let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
-    match options.order.unwrap_or(1) {
-        1 => {}
-        0 => return refuse(Unsuited::LowestOrder { lowest: 1 }),
-        _ => return refuse(Unsuited::HighestOrder { highest: 1 }),
+    match options.order {
+        Some(0) => return refuse(Unsuited::LowestOrder { lowest: 1 }),
+        Some(order) if order > HIGHEST => return refuse(Unsuited::HighestOrder { highest: HIGHEST }),
+        _ => {}
     }
     if options.amplitude == Some(AmplitudeConvention::Initial) {
         return refuse(Unsuited::ConventionOfFirstHarmonic);
@@ -49,46 +56,125 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
     let drive = Drive::of(parts, &oscillator.names(), Method::Averaging)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
-    let small = SmallTerms::of(&free, options)?;
-    let a = AmplitudeConvention::FirstHarmonic.symbol();
-    let projected = Projected::of(&free, &small, &Expr::from(a))?;
-    let near = match options.resonance {
-        Some(_) => None,
-        None => ratio_of(&drive.frequency, &small.linear_part()?.linear_in_full()),
+    let averaged = UnderDrive {
+        oscillator,
+        free: &free,
+        small: SmallTerms::of(&free, options)?,
+        asked: Asked {
+            method: Method::Averaging,
+            oscillator,
+            drive: &drive,
+            resonance: options.resonance,
+        },
     };
-    let forces = drive.terms.iter().any(|driven| driven.is_force(oscillator.coordinate));
-    let candidates = match (options.resonance, near) {
-        (Some(asked), _) => vec![asked],
-        (None, Some(ratio)) => by_distance(ratio),
-        (None, None) if forces => vec![(1, 1)],
-        (None, None) => vec![(2, 1), (1, 1)],
-    };
-    let waves_at = |(p, q): (u32, u32)| match q {
-        1 => waves(&drive, oscillator, &projected.omega0, p).map(Some),
-        _ => Ok(None),
-    };
-    for resonance in candidates.iter().copied() {
-        let Some(waves) = waves_at(resonance)?.filter(Waves::reach) else {
-            continue;
+    if let Some(order @ HIGHEST) = options.order {
+        return averaged.asked.answer(&averaged.scaling(order)?);
+    }
+    let projected = averaged.first_order();
+    if !projected.as_ref().is_err_and(is_of_resonance) {
+        return projected;
+    }
+    // What the projections do not reach, an expansion of a polynomial may, of second order too where none is asked for.
+    for order in 1..=options.order.unwrap_or(HIGHEST) {
+        let Ok(scaling) = averaged.scaling(order) else {
+            break;
         };
-        if let Some(ratio) = near {
-            is_near(resonance, ratio, Method::Averaging)?;
-        }
-        let undamped = projected.terms.is_zero() && drive.frequency == projected.omega0;
-        if let (true, Some(driven)) = (undamped, drive.terms.first()) {
-            let term = driven.term.clone().into();
-            return refuse(Unsuited::ResonanceWithoutDamping { term });
-        }
-        return Question::new(oscillator, &small, &drive, projected, resonance.0).answer(&waves);
-    }
-    let mut others = vec![];
-    for resonance in RESONANCES {
-        if waves_at(resonance)?.is_some_and(|waves| waves.reach()) {
-            others.push(resonance);
+        if let Some(found) = averaged.asked.answer_near(&scaling) {
+            return found;
         }
     }
-    let asked = candidates.first().copied().unwrap_or((1, 1));
-    refuse(Unsuited::NoResonance { asked, others })
+    projected
+}
+
+/// A driven motion that is to be averaged.
+struct UnderDrive<'a> {
+    oscillator: &'a Oscillator,
+    /// Without its drive.
+    free: &'a Oscillator,
+    small: SmallTerms,
+    asked: Asked<'a>,
+}
+
+impl UnderDrive<'_> {
+    /// All that is small as terms of an expansion.
+    ///
+    /// # Errors
+    /// A term that is no polynomial, nothing restores, powers that are too high.
+    fn scaling(&self, order: u32) -> Result<Scaling, Refusal> {
+        let force = match self.small.expand(order) {
+            Ok(force) => force,
+            Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_)) => {
+                self.small.linear_part()?;
+                let reason = not_polynomial(&self.small.without_linear()?, self.free.coordinate);
+                return Err(reason.to(Method::Averaging));
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let powers = force.terms.iter().map(|term| term.position + term.velocity);
+        bounded(powers, order)?;
+        let (small, small_with, _) = small_in_words(&self.small, order);
+        Ok(Scaling {
+            force,
+            marker: Some(self.small.delta()),
+            marks: Some(Rational::one()),
+            small,
+            small_with,
+            bookkeeping: None,
+            damping: None,
+            order,
+        })
+    }
+
+    /// The first order by projections.
+    fn first_order(&self) -> Result<Solution, Refusal> {
+        let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
+        let (oscillator, drive) = (self.oscillator, self.asked.drive);
+        let a = AmplitudeConvention::FirstHarmonic.symbol();
+        let projected = Projected::of(self.free, &self.small, &Expr::from(a))?;
+        let near = match self.asked.resonance {
+            Some(_) => None,
+            None => ratio_of(&drive.frequency, &self.small.linear_part()?.linear_in_full()),
+        };
+        let forces = drive.terms.iter().any(|driven| driven.is_force(oscillator.coordinate));
+        let candidates = match (self.asked.resonance, near) {
+            (Some(asked), _) => vec![asked],
+            (None, Some(ratio)) => by_distance(ratio),
+            (None, None) if forces => vec![(1, 1)],
+            (None, None) => vec![(2, 1), (1, 1)],
+        };
+        let waves_at = |(p, q): (u32, u32)| match q {
+            1 => waves(drive, oscillator, &projected.omega0, p).map(Some),
+            _ => Ok(None),
+        };
+        for resonance in candidates.iter().copied() {
+            let Some(waves) = waves_at(resonance)?.filter(Waves::reach) else {
+                continue;
+            };
+            if let Some(ratio) = near {
+                is_near(resonance, ratio, Method::Averaging)?;
+            }
+            let undamped = projected.terms.is_zero() && drive.frequency == projected.omega0;
+            if let (true, Some(driven)) = (undamped, drive.terms.first()) {
+                let term = driven.term.clone().into();
+                return refuse(Unsuited::ResonanceWithoutDamping { term });
+            }
+            return Question::new(oscillator, &self.small, drive, projected, resonance.0).answer(&waves);
+        }
+        let scaling = self.scaling(1).ok();
+        let mut others = vec![];
+        for resonance in RESONANCES {
+            let projected = waves_at(resonance)?.is_some_and(|waves| waves.reach());
+            if projected
+                || scaling
+                    .as_ref()
+                    .is_some_and(|scaling| self.asked.reaches(resonance, scaling))
+            {
+                others.push(resonance);
+            }
+        }
+        let asked = candidates.first().copied().unwrap_or((1, 1));
+        refuse(Unsuited::NoResonance { asked, others })
+    }
 }
 
 /// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of cos(psi) and sin(psi).
@@ -233,50 +319,28 @@ impl<'a> Question<'a> {
         let mut definitions = self.projected.definitions.clone();
         definitions.extend(self.drive.definitions.iter().cloned());
         definitions.push(sigma.clone());
-        Ok(Solution {
-            equation: self.oscillator.equation(),
+        let motion = DrivenMotion {
             method: Method::Averaging,
             order: 1,
-            degrees: None,
-            small_parameter: first,
-            amplitude: AmplitudeConvention::FirstHarmonic,
-            parameters: self.oscillator.parameters.clone(),
+            small: (first, small_with),
             definitions,
-            equilibrium: Expr::zero(),
-            law: match backbone.to_polynomial(&mut |_| None)? {
+            backbone: match backbone.to_polynomial(&mut |_| None)? {
                 Some(frequency) => Law::Frequency(frequency),
                 None => Law::Closed(ClosedForm {
                     squared: false,
                     value: backbone,
                 }),
             },
-            displacement: Series::cos(POLYNOMIALS, 1)
-                .product(&Series::constant(POLYNOMIALS, Polynomial::symbol(self.a))),
-            limit_cycle: None,
-            modulation: Some(Modulation {
-                amplitude: self.a,
-                phase: self.phase,
-                amplitude_rate,
-                phase_rate,
-                small_with,
-                resonance: Some(Resonance {
-                    driving_frequency: self.drive.frequency.clone(),
-                    times_driving: 1,
-                    times_linear: self.p,
-                    detuning: sigma,
-                }),
-                release: None,
-                transient: None,
-                steady: vec![],
-                motion: None,
-            }),
-            response: Some(response),
-            numerical: false,
-            convergence: None,
+            rates: [amplitude_rate, phase_rate],
+            phase: self.phase,
+            drive: self.drive,
+            resonance: (self.p, 1),
+            detuning: sigma,
+            response,
             validity: std::iter::once(cut).chain(notes).collect(),
-            steps: vec![],
             derivation,
-        })
+        };
+        Ok(motion.into_solution(self.oscillator))
     }
 
     /// The steady motions of `P`, `Q` and the waves beside them.
@@ -373,7 +437,7 @@ impl<'a> Question<'a> {
             .any(|driven| driven.is_force(self.oscillator.coordinate));
         let driven = Note::Driven {
             resonance: (self.p, 1),
-            parametric: !forces && self.p != 1,
+            parametric: !forces,
             small: std::iter::once(Expr::from(self.sigma)).chain(factors).collect(),
             power: 1,
         };

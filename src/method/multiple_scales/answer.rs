@@ -1,4 +1,4 @@
-//! What a derivation by multiple scales found, as an answer.
+//! What a derivation by multiple scales found of a free motion, as an answer.
 
 use super::scaling::Scaling;
 use crate::derivation::Line;
@@ -6,16 +6,15 @@ use crate::exact::Polynomials;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Response, Solution};
+use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Solution};
 
-/// What differs between a free motion, one on a limit cycle and a driven one.
+/// What differs between a free motion and one on a limit cycle.
 pub(super) struct Found {
     pub(super) definitions: Vec<Definition>,
     pub(super) law: Law,
     pub(super) displacement: FourierSeries<Polynomials>,
     pub(super) limit_cycle: Option<LimitCycle>,
     pub(super) modulation: Modulation,
-    pub(super) response: Option<Response>,
     pub(super) validity: Vec<Note>,
     pub(super) derivation: Vec<Line>,
 }
@@ -36,7 +35,7 @@ pub(super) fn solution(oscillator: &Oscillator, scaling: &Scaling, found: Found)
         displacement: found.displacement,
         limit_cycle: found.limit_cycle,
         modulation: Some(found.modulation),
-        response: found.response,
+        response: None,
         numerical: false,
         convergence: None,
         validity: found.validity,

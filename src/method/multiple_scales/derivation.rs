@@ -2,16 +2,19 @@
 
 use num_traits::Zero as _;
 
+use super::driven::Question;
 use super::names::Names;
 use super::scaling::Scaling;
 use super::slow_times::{Complex, Expansion, Wave};
+use super::slow_waves::{Slow, motion};
 use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Expr, ExprError};
+use crate::method::Refusal;
 use crate::series::FourierSeries;
 use crate::solution::Response;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh_stem};
 
 /// What an order adds to the motion, in `theta`, with `B = a/2`.
 pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeries<Polynomials> {
@@ -94,10 +97,42 @@ pub(super) fn derivation(
     };
     lines.push(Line::equation(a.derivative(), amplitude_rate).because(polar));
     lines.push(Line::equation(phase.derivative(), phase_rate));
-    if let Some(relation) = response.and_then(|response| response.relation.as_ref()) {
-        let zero = Formula::from(Expr::zero());
-        let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
-        lines.push(Line::equal([zero, Formula::from(Expr::from(relation))]).because(steady));
+    lines.extend(response.and_then(elimination));
+    Ok(lines)
+}
+
+/// The relation of steady motions.
+fn elimination(response: &Response) -> Option<Line> {
+    let relation = Formula::from(Expr::from(response.relation.as_ref()?));
+    let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
+    Some(Line::equal([Formula::from(Expr::zero()), relation]).because(steady))
+}
+
+/// The same expansion in the words of averaging: what each order adds to the rates and to the motion.
+pub(super) fn averaged_lines(
+    question: &Question,
+    expansion: &Expansion,
+    [amplitude_rate, phase_rate]: &[Expr; 2],
+    response: &Response,
+) -> Result<Vec<Line>, Refusal> {
+    let names = &question.names;
+    let [correction, rate, turn] = ["u", "A", "B"].map(|letter| fresh_stem(letter, &question.taken));
+    let numbered = |stem: &str, order: usize| Symbol::new(&format!("{stem}{order}"));
+    let leading = motion(question, expansion, |k| k == 0)?;
+    let mut lines = vec![Line::equation(question.oscillator.coordinate, leading).because("along")];
+    for k in 1..=question.scaling.order as usize {
+        let [own_rate, own_turn] = Slow::of_orders(expansion, question, |order| order == k).rates(question)?;
+        lines.push(
+            Line::equation(numbered(&rate, k), own_rate).because(format!("no resonant wave is left at order {k}")),
+        );
+        lines.push(Line::equation(numbered(&turn, k), own_turn));
+        if k < question.scaling.order as usize {
+            let rest = motion(question, expansion, |order| order == k)?;
+            lines.push(Line::equation(numbered(&correction, k), rest).because("what that leaves over"));
+        }
     }
+    lines.push(Line::equation(names.amplitude.derivative(), amplitude_rate.clone()).because("both together"));
+    lines.push(Line::equation(names.phase.derivative(), phase_rate.clone()));
+    lines.extend(elimination(response));
     Ok(lines)
 }

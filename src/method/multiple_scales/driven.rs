@@ -15,72 +15,165 @@
 //! Where the motion is steady both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which leaves the frequency-response
 //! equation. To first order it is `P^2 + Q^2 = S^2`, with `S` what the drive does.
 
-use super::answer::{Found, solution};
-use super::derivation::derivation;
+use super::derivation::{averaged_lines, derivation};
 use super::names::Names;
 use super::scaling::{Scaling, bounded, scaling};
 use super::slow_times::{Complex, DrivenTerm, Expansion, Scaled};
 use super::slow_waves::{Slow, backbone, response};
 use super::undriven;
-use crate::exact::polynomial::Monomial;
+use crate::exact::Polynomial;
 use crate::exact::rational::ratio;
-use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::drive::{Drive, Driven, Quadrature};
+use crate::method::driven_answer::DrivenMotion;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::resonance::{RESONANCES, by_distance, is_near, ratio_of};
 use crate::method::{Options, Refusal, Unsuited};
 use crate::oscillator::{Oscillator, OscillatorError, Parts};
-use crate::series::FourierSeries;
-use crate::solution::modulation::Resonance;
-use crate::solution::{Definition, Law, Method, Modulation, Note, Solution};
+use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
 /// The highest order of a driven motion in a parameter; twice that in the amplitude.
-const HIGHEST: u32 = 2;
+const HIGHEST: u32 = 3;
 
 /// The slow equations of a driven motion, its frequency-response equation and what follows from it.
 ///
 /// # Errors
 /// A drive that is no single wave, a resonance that the equation does not have, or what stops an expansion.
 pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
-    let method = Method::MultipleScales;
-    let drive = Drive::of(parts, &oscillator.names(), method)?;
+    let drive = Drive::of(parts, &oscillator.names(), Method::MultipleScales)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
-    let scaling = scaling(&free, &free.parts()?, options, [1, 2], [HIGHEST, 2 * HIGHEST])?;
-    let scaling = scaling.spelt_out(&oscillator.names());
-    let force = drive.terms.iter().find(|driven| driven.is_force(oscillator.coordinate));
-    let near = match options.resonance {
-        Some(_) => None,
-        None => ratio_of(&drive.frequency, &scaling.force.linear_in_full()),
+    let parts = free.parts()?;
+    let scaling_of = |order: Option<u32>| -> Result<Scaling, Refusal> {
+        let options = Options {
+            order,
+            ..options.clone()
+        };
+        let scaling = scaling(&free, &parts, &options, [1, 2], [HIGHEST, 2 * HIGHEST])?;
+        Ok(scaling.spelt_out(&oscillator.names()))
     };
-    let candidates = match (options.resonance, near) {
-        (Some(asked), _) => vec![asked],
-        (None, Some(ratio)) => by_distance(ratio),
-        (None, None) if force.is_none() => vec![(2, 1), (1, 1)],
-        (None, None) => vec![(1, 1)],
+    let asked = Asked {
+        method: Method::MultipleScales,
+        oscillator,
+        drive: &drive,
+        resonance: options.resonance,
     };
-    let first = candidates.first().copied().unwrap_or((1, 1));
-    let reaches = |candidate: &(u32, u32)| resonates_at(*candidate, oscillator, &scaling, &drive);
-    let resonance = candidates.iter().copied().find(reaches).unwrap_or(first);
-    if resonance == (1, 1) && grows(&scaling, &drive) {
-        let term = force.map_or(&parts.forcing, |driven| &driven.term).clone();
-        return Err(Unsuited::ResonanceWithoutDamping { term: term.into() }.to(method));
+    let scaling = scaling_of(options.order)?;
+    let answer = asked.answer(&scaling);
+    if options.order.is_some() || !answer.as_ref().is_err_and(is_of_resonance) {
+        return answer;
     }
-    let question = Question::new(oscillator, &scaling, &drive, resonance)?;
-    let expansion = question.expand(false)?;
-    let slow = Slow::new(&expansion, &question);
-    if !slow.is_resonant() {
-        let others = RESONANCES.into_iter().filter(reaches).collect();
-        let asked = resonance;
-        return Err(Unsuited::NoResonance { asked, others }.to(method));
+    // What one order says nothing about, a higher one may.
+    let highest = if scaling.marker.is_some() { HIGHEST } else { 2 * HIGHEST };
+    for order in scaling.order + 1..=highest {
+        if let Some(found) = asked.answer_near(&scaling_of(Some(order))?) {
+            return found;
+        }
     }
-    if let Some(ratio) = near {
-        is_near(resonance, ratio, method)?;
+    answer
+}
+
+/// Whether a refusal is that of a resonance which is not there, or far away.
+pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
+    let Refusal::Unsuited { reason, .. } = refusal else {
+        return false;
+    };
+    matches!(reason, Unsuited::NoResonance { .. } | Unsuited::FarFromResonance { .. })
+}
+
+/// A driven motion that is to be expanded, by the method that asks.
+pub(in crate::method) struct Asked<'a> {
+    pub(in crate::method) method: Method,
+    pub(in crate::method) oscillator: &'a Oscillator,
+    pub(in crate::method) drive: &'a Drive,
+    /// Omega : omega0, where one is asked for.
+    pub(in crate::method) resonance: Option<(u32, u32)>,
+}
+
+impl Asked<'_> {
+    /// The ratio of the frequencies, where they are numbers and no resonance is asked for.
+    fn near(&self, scaling: &Scaling) -> Option<f64> {
+        match self.resonance {
+            Some(_) => None,
+            None => ratio_of(&self.drive.frequency, &scaling.force.linear_in_full()),
+        }
     }
-    let still = question.expand(true)?;
-    answer(&question, &expansion, &slow, &Slow::new(&still, &question))
+
+    fn force(&self) -> Option<&Driven> {
+        let mut terms = self.drive.terms.iter();
+        terms.find(|driven| driven.is_force(self.oscillator.coordinate))
+    }
+
+    /// The resonances that may be meant, the likeliest first.
+    fn candidates(&self, scaling: &Scaling) -> Vec<(u32, u32)> {
+        match (self.resonance, self.near(scaling)) {
+            (Some(asked), _) => vec![asked],
+            (None, Some(ratio)) => by_distance(ratio),
+            (None, None) if self.force().is_none() => vec![(2, 1), (1, 1)],
+            (None, None) => vec![(1, 1)],
+        }
+    }
+
+    /// Whether the drive reaches the motion at a resonance.
+    pub(in crate::method) fn reaches(&self, resonance: (u32, u32), scaling: &Scaling) -> bool {
+        let Ok(question) = Question::new(self, scaling, resonance) else {
+            return false;
+        };
+        let expansion = question.expand(false);
+        expansion.is_ok_and(|expansion| Slow::new(&expansion, &question).is_resonant())
+    }
+
+    /// The answer at the likeliest resonance.
+    ///
+    /// # Errors
+    /// The drive reaches the motion at none, or at none that is near; nothing damps what it drives.
+    pub(in crate::method) fn answer(&self, scaling: &Scaling) -> Result<Solution, Refusal> {
+        let candidates = self.candidates(scaling);
+        let first = candidates.first().copied().unwrap_or((1, 1));
+        let reaches = |candidate: &(u32, u32)| self.reaches(*candidate, scaling);
+        let resonance = candidates.iter().copied().find(reaches).unwrap_or(first);
+        if resonance == (1, 1) && grows(scaling, self.drive) {
+            let term = self.force().or(self.drive.terms.first());
+            let term = term.map_or_else(Expr::zero, |driven| driven.term.clone());
+            return Err(Unsuited::ResonanceWithoutDamping { term: term.into() }.to(self.method));
+        }
+        let found = self.at(resonance, scaling)?.ok_or_else(|| {
+            let others = RESONANCES.into_iter().filter(reaches).collect();
+            let asked = resonance;
+            Unsuited::NoResonance { asked, others }.to(self.method)
+        })?;
+        if let Some(ratio) = self.near(scaling) {
+            is_near(resonance, ratio, self.method)?;
+        }
+        Ok(found)
+    }
+
+    /// The answer at the likeliest resonance that is not far away; `None` where the drive reaches none.
+    pub(in crate::method) fn answer_near(&self, scaling: &Scaling) -> Option<Result<Solution, Refusal>> {
+        let near = self.near(scaling);
+        let is_near = |resonance| near.is_none_or(|ratio| is_near(resonance, ratio, self.method).is_ok());
+        let mut candidates = self.candidates(scaling).into_iter();
+        let found = candidates.find(|candidate| is_near(*candidate) && self.reaches(*candidate, scaling))?;
+        self.at(found, scaling).transpose()
+    }
+
+    /// The answer at a resonance; `None` where the drive does not reach the motion there.
+    pub(in crate::method) fn at(&self, resonance: (u32, u32), scaling: &Scaling) -> Result<Option<Solution>, Refusal> {
+        let question = Question::new(self, scaling, resonance)?;
+        let expansion = question.expand(false)?;
+        let slow = Slow::new(&expansion, &question);
+        if !slow.is_resonant() {
+            return Ok(None);
+        }
+        let still = question.expand(true)?;
+        let found = Found {
+            still: Slow::new(&still, &question),
+            slow,
+            expansion,
+        };
+        question.answer(&found).map(Some)
+    }
 }
 
 /// Whether a linear force without damping is driven at its own frequency.
@@ -95,7 +188,8 @@ fn grows(scaling: &Scaling, drive: &Drive) -> bool {
 
 /// A question to the expansion.
 pub(super) struct Question<'a> {
-    oscillator: &'a Oscillator,
+    method: Method,
+    pub(super) oscillator: &'a Oscillator,
     pub(super) scaling: &'a Scaling,
     pub(super) drive: &'a Drive,
     /// Omega : omega0.
@@ -111,12 +205,8 @@ pub(super) struct Question<'a> {
 }
 
 impl<'a> Question<'a> {
-    fn new(
-        oscillator: &'a Oscillator,
-        scaling: &'a Scaling,
-        drive: &'a Drive,
-        resonance: (u32, u32),
-    ) -> Result<Self, Refusal> {
+    fn new(asked: &Asked<'a>, scaling: &'a Scaling, resonance: (u32, u32)) -> Result<Self, Refusal> {
+        let (oscillator, drive) = (asked.oscillator, asked.drive);
         let LinearPart {
             frequency: linear_frequency,
             root,
@@ -124,6 +214,7 @@ impl<'a> Question<'a> {
             taken,
         } = LinearPart::of(&scaling.force, oscillator);
         Ok(Self {
+            method: asked.method,
             oscillator,
             scaling,
             drive,
@@ -250,87 +341,81 @@ impl<'a> Question<'a> {
     }
 }
 
-/// Whether a drive reaches the motion at a resonance.
-fn resonates_at(resonance: (u32, u32), oscillator: &Oscillator, scaling: &Scaling, drive: &Drive) -> bool {
-    let Ok(question) = Question::new(oscillator, scaling, drive, resonance) else {
-        return false;
-    };
-    let expansion = question.expand(false);
-    expansion.is_ok_and(|expansion| Slow::new(&expansion, &question).is_resonant())
-}
-
-fn answer(question: &Question, expansion: &Expansion, slow: &Slow, still: &Slow) -> Result<Solution, Refusal> {
-    let (p, q) = question.resonance;
-    let (names, scaling, drive) = (&question.names, question.scaling, question.drive);
-    let a = names.amplitude;
-    let unmarked = |polynomial: &Polynomial| question.unmarked(polynomial);
-    let amplitude_rate = Slow::expression(&slow.amplitude, names.phase, &unmarked)?;
-    let over = Polynomial::term(Monomial::power_of(a, -1), Rational::from_integer(p.into()));
-    let phase_rate = Slow::expression(&slow.phase, names.phase, &|part| unmarked(&part.product(&over)))?;
-    let (p_rational, q_rational) = (ratio(p.into(), 1), ratio(q.into(), 1));
-    let linear = Expr::from(&question.linear_frequency);
-    let detuning =
-        (&(&Expr::number(q_rational) * &drive.frequency) - &(&Expr::number(p_rational) * &linear)).expand()?;
-    let mut definitions = question.definitions.clone();
-    let sigma = Definition {
-        symbol: question.sigma,
-        meaning: detuning,
-    };
-    definitions.push(sigma.clone());
-    let forced = question.forced_sizes()?;
-    let parametric = forced.is_empty() && p != q;
-    definitions.extend(drive.definitions.iter().cloned());
-    definitions.extend(forced);
-    definitions.extend(scaling.bookkeeping.clone());
-    let backbone = unmarked(&backbone(&Slow::still(&still.phase), question));
-    let response = response(question, expansion, slow)?;
-    let mut validity = vec![scaling.cut_note()];
-    validity.push(Note::Driven {
-        resonance: question.resonance,
-        parametric,
-        small: question.counted_small(),
-        power: question.small_order(),
-    });
-    validity.extend(question.root.clone().map(Note::Positive));
-    let derivation = derivation(
-        expansion,
-        scaling,
-        names,
-        &question.linear_frequency,
-        &[amplitude_rate.clone(), phase_rate.clone()],
-        Some(&response),
-    )?;
-    let wave = FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, Polynomial::symbol(a)));
-    let found = Found {
-        definitions,
-        law: Law::Frequency(backbone),
-        displacement: wave,
-        limit_cycle: None,
-        modulation: Modulation {
-            amplitude: a,
-            phase: names.phase,
-            amplitude_rate,
-            phase_rate,
-            small_with: scaling.small_with.clone(),
-            resonance: Some(Resonance {
-                driving_frequency: drive.frequency.clone(),
-                times_driving: q,
-                times_linear: p,
-                detuning: sigma,
-            }),
-            release: None,
-            transient: None,
-            steady: vec![],
-            motion: None,
-        },
-        response: Some(response),
-        validity,
-        derivation,
-    };
-    Ok(solution(question.oscillator, scaling, found))
+/// What an expansion of a driven motion found.
+struct Found {
+    expansion: Expansion,
+    slow: Slow,
+    /// Without damping and drive.
+    still: Slow,
 }
 
 impl Question<'_> {
+    fn answer(&self, found: &Found) -> Result<Solution, Refusal> {
+        let Found { expansion, slow, still } = found;
+        let (p, q) = self.resonance;
+        let (names, scaling, drive) = (&self.names, self.scaling, self.drive);
+        let rates = slow.rates(self)?;
+        let (p_rational, q_rational) = (ratio(p.into(), 1), ratio(q.into(), 1));
+        let linear = Expr::from(&self.linear_frequency);
+        let detuning =
+            (&(&Expr::number(q_rational) * &drive.frequency) - &(&Expr::number(p_rational) * &linear)).expand()?;
+        let mut definitions = self.definitions.clone();
+        let sigma = Definition {
+            symbol: self.sigma,
+            meaning: detuning,
+        };
+        definitions.push(sigma.clone());
+        let forced = self.forced_sizes()?;
+        let no_force = drive
+            .terms
+            .iter()
+            .all(|driven| !driven.is_force(self.oscillator.coordinate));
+        let parametric = forced.is_empty() && (p != q || no_force);
+        definitions.extend(drive.definitions.iter().cloned());
+        definitions.extend(forced);
+        definitions.extend(scaling.bookkeeping.clone());
+        let backbone = self.unmarked(&backbone(&Slow::still(&still.phase), self));
+        let averaged = self.method == Method::Averaging;
+        // Averaging has its motion to one order less than its rates.
+        let highest = if averaged { scaling.order - 1 } else { scaling.order };
+        let response = response(self, expansion, slow, highest as usize)?;
+        let mut validity = vec![scaling.cut_note()];
+        validity.push(Note::Driven {
+            resonance: self.resonance,
+            parametric,
+            small: self.counted_small(),
+            power: self.small_order(),
+        });
+        validity.extend(self.root.clone().map(Note::Positive));
+        let derivation = match averaged {
+            true => averaged_lines(self, expansion, &rates, &response)?,
+            false => derivation(
+                expansion,
+                scaling,
+                names,
+                &self.linear_frequency,
+                &rates,
+                Some(&response),
+            )?,
+        };
+        let motion = DrivenMotion {
+            method: self.method,
+            order: scaling.order,
+            small: (scaling.small, scaling.small_with.clone()),
+            definitions,
+            backbone: Law::Frequency(backbone),
+            rates,
+            phase: names.phase,
+            drive,
+            resonance: self.resonance,
+            detuning: sigma,
+            response,
+            validity,
+            derivation,
+        };
+        Ok(motion.into_solution(self.oscillator))
+    }
+
     /// What counts as small beside the small parameters of the answer: the detuning, and drives without such a parameter.
     fn counted_small(&self) -> Vec<Expr> {
         let mut small = vec![Expr::from(self.sigma)];

@@ -65,7 +65,6 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
         displacement: free.written_motion(&free.motion),
         limit_cycle: None,
         modulation: free.modulation(rates),
-        response: None,
         validity: vec![scaling.cut_note()],
         derivation,
     };

@@ -26,11 +26,11 @@
 
 mod answer;
 mod derivation;
-mod driven;
+pub(super) mod driven;
 mod free;
 mod names;
 mod release;
-mod scaling;
+pub(super) mod scaling;
 mod slow_equations;
 mod slow_times;
 mod slow_waves;

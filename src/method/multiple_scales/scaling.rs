@@ -18,21 +18,21 @@ use crate::solution::{AmplitudeConvention, Definition, Method, Note};
 use crate::symbol::{Symbol, fresh};
 
 /// A force with its orders.
-pub(super) struct Scaling {
-    pub(super) force: PerturbedForce,
+pub(in crate::method) struct Scaling {
+    pub(in crate::method) force: PerturbedForce,
     /// What marks the orders; `None` where it is the amplitude.
-    pub(super) marker: Option<Symbol>,
+    pub(in crate::method) marker: Option<Symbol>,
     /// What stands for the marker in the answer, where the equation does not have it.
-    pub(super) marks: Option<Rational>,
+    pub(in crate::method) marks: Option<Rational>,
     /// The small parameter of the answer.
-    pub(super) small: Symbol,
+    pub(in crate::method) small: Symbol,
     /// Parameters that are small together with it.
-    pub(super) small_with: Vec<Symbol>,
+    pub(in crate::method) small_with: Vec<Symbol>,
     /// The value of a small parameter that the equation does not have.
-    pub(super) bookkeeping: Option<Definition>,
+    pub(in crate::method) bookkeeping: Option<Definition>,
     /// A linear damping that counts as the square of the amplitude.
-    pub(super) damping: Option<Expr>,
-    pub(super) order: u32,
+    pub(in crate::method) damping: Option<Expr>,
+    pub(in crate::method) order: u32,
 }
 
 /// The order at which a linear damping enters an expansion in the amplitude.
@@ -81,10 +81,13 @@ impl Scaling {
     /// How the expansion is cut.
     pub(super) fn cut_note(&self) -> Note {
         let together = self.small_with.iter().copied();
+        let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
+        // The marker itself is the small parameter where no letter is one.
+        let marker = || self.marks.clone().filter(|_| self.marker == Some(self.small));
         Note::Cut(Cut::Truncated {
             small: std::iter::once(self.small).chain(together).collect(),
             order: self.order,
-            marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
+            marks: bookkeeping.or_else(|| marker().map(Expr::number)),
         })
     }
 }
@@ -221,7 +224,7 @@ fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::Secul
 }
 
 /// As [`within_reach`], for the powers alone.
-pub(super) fn bounded(powers: impl Iterator<Item = u32>, order: u32) -> Result<(), secular::SecularError> {
+pub(in crate::method) fn bounded(powers: impl Iterator<Item = u32>, order: u32) -> Result<(), secular::SecularError> {
     /// Every harmonic of a power has coefficients in `B` and its conjugate, which grow with the order.
     const MOST: u32 = 200;
     let degree = powers.max().unwrap_or(0);

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use num_integer::Integer as _;
 use num_traits::Zero;
 
 use super::driven::Question;
@@ -11,24 +12,30 @@ use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::Refusal;
-use crate::method::frequency_response::FrequencyResponse;
+use crate::method::frequency_response::{FrequencyResponse, PhaseWaves, eliminated, turning};
 use crate::solution::Response;
 use crate::solution::response::Plane;
 use crate::symbol::{Symbol, fresh};
 
 /// `a'` and `a psi'/p` as waves of the slow phase, by its multiple: cosines and sines.
 pub(super) struct Slow {
-    pub(super) amplitude: BTreeMap<u32, [Polynomial; 2]>,
-    pub(super) phase: BTreeMap<u32, [Polynomial; 2]>,
+    pub(super) amplitude: PhaseWaves,
+    pub(super) phase: PhaseWaves,
 }
 
 impl Slow {
     pub(super) fn new(expansion: &Expansion, question: &Question) -> Self {
+        Self::of_orders(expansion, question, |_| true)
+    }
+
+    /// What some of the orders add.
+    pub(super) fn of_orders(expansion: &Expansion, question: &Question, wanted: impl Fn(usize) -> bool) -> Self {
         let zero = || [Polynomial::zero(), Polynomial::zero()];
         let (mut amplitude, mut phase) = (BTreeMap::new(), BTreeMap::new());
         let names = &question.names;
         let p = i64::from(question.resonance.0);
-        for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
+        let orders = expansion.rates.iter().enumerate().skip(1);
+        for (k, rate) in orders.filter(|(k, _)| wanted(*k)) {
             let mark = names.mark(k);
             for (part, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
                 for (monomial, number) in part.terms() {
@@ -65,30 +72,43 @@ impl Slow {
     }
 
     pub(super) fn is_resonant(&self) -> bool {
-        let moving = self.amplitude.iter().chain(&self.phase).filter(|entry| *entry.0 > 0);
-        moving
-            .into_iter()
-            .any(|(_, waves)| waves.iter().any(|wave| !wave.is_zero()))
+        self.multiple() > 0
+    }
+
+    /// The multiple of the phase of which all that turns is a multiple: one, unless a symmetry makes it more; zero where nothing turns.
+    fn multiple(&self) -> u32 {
+        let moving = self.amplitude.iter().chain(&self.phase);
+        let moving = moving.filter(|(_, waves)| !waves.iter().all(Zero::is_zero));
+        moving.fold(0, |common, (multiple, _)| common.gcd(multiple))
+    }
+
+    /// The rates as waves of that multiple.
+    fn by_multiple(&self) -> [PhaseWaves; 2] {
+        let common = self.multiple().max(1);
+        [&self.amplitude, &self.phase].map(|rate| {
+            let own = rate.iter().filter(|(multiple, _)| *multiple % common == 0);
+            own.map(|(multiple, waves)| (multiple / common, waves.clone()))
+                .collect()
+        })
     }
 
     /// What does not turn with the phase: `P` or `Q`.
-    pub(super) fn still(waves: &BTreeMap<u32, [Polynomial; 2]>) -> Polynomial {
+    pub(super) fn still(waves: &PhaseWaves) -> Polynomial {
         waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
     }
 
-    pub(super) fn turning(waves: &BTreeMap<u32, [Polynomial; 2]>) -> [Polynomial; 2] {
-        let zero = || [Polynomial::zero(), Polynomial::zero()];
-        waves.get(&1).cloned().unwrap_or_else(zero)
+    /// `a'` and `psi'`.
+    pub(super) fn rates(&self, question: &Question) -> Result<[Expr; 2], Refusal> {
+        let names = &question.names;
+        let times = Rational::from_integer(question.resonance.0.into());
+        let over = Polynomial::term(Monomial::power_of(names.amplitude, -1), times);
+        let amplitude = Self::expression(&self.amplitude, names.phase, &|part| question.unmarked(part))?;
+        let by_amplitude = |part: &Polynomial| question.unmarked(&part.product(&over));
+        Ok([amplitude, Self::expression(&self.phase, names.phase, &by_amplitude)?])
     }
 
-    /// Whether no multiple of the phase stands in them.
-    pub(super) fn is_simple(&self) -> bool {
-        let moving = self.amplitude.iter().chain(&self.phase).filter(|entry| *entry.0 > 1);
-        moving.into_iter().all(|(_, waves)| waves.iter().all(Zero::is_zero))
-    }
-
-    pub(super) fn expression(
-        waves: &BTreeMap<u32, [Polynomial; 2]>,
+    fn expression(
+        waves: &PhaseWaves,
         phase: Symbol,
         change: &dyn Fn(&Polynomial) -> Polynomial,
     ) -> Result<Expr, Refusal> {
@@ -138,25 +158,34 @@ pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
     frequency
 }
 
-/// Everything that follows from the slow equations of a steady motion.
-pub(super) fn response(question: &Question, expansion: &Expansion, slow: &Slow) -> Result<Response, Refusal> {
+/// Everything that follows from the slow equations of a steady motion, which is itself written to an order of its own.
+pub(super) fn response(
+    question: &Question,
+    expansion: &Expansion,
+    slow: &Slow,
+    highest: usize,
+) -> Result<Response, Refusal> {
     let a = question.names.amplitude;
     let unmarked = |polynomial: Polynomial| question.unmarked(&polynomial);
-    let (rate, phase) = (
-        unmarked(Slow::still(&slow.amplitude)),
-        unmarked(Slow::still(&slow.phase)),
-    );
-    let turning = [Slow::turning(&slow.amplitude), Slow::turning(&slow.phase)];
-    let waves = turning.map(|waves| waves.map(unmarked));
-    let found = FrequencyResponse::of([&rate, &phase], &waves, question.sigma, a);
-    let found = if slow.is_simple() {
-        found
-    } else {
-        found.without_relation()
+    let rates = slow.by_multiple();
+    let order = question.scaling.order as i32;
+    let inverse = fresh("D", &question.taken);
+    let cut = eliminated(rates.each_ref(), question.names.marker, order, inverse).map(unmarked);
+    let is_simple = |rate: &PhaseWaves| {
+        let mut above = rate.iter().filter(|(multiple, _)| **multiple > 1);
+        above.all(|(_, waves)| waves.iter().all(Zero::is_zero))
+    };
+    let found = match rates.iter().all(is_simple) {
+        true => {
+            let still = rates.each_ref().map(|waves| unmarked(Slow::still(waves)));
+            let waves = rates.each_ref().map(|waves| turning(waves).map(unmarked));
+            FrequencyResponse::of(still.each_ref(), &waves, question.sigma, a).cut(cut, a)
+        }
+        false => FrequencyResponse::of_relation(cut, a),
     };
     let [u, v] = ["u", "v"].map(|name| fresh(name, &question.taken));
     Ok(Response {
-        motion: motion(question, expansion)?,
+        motion: motion(question, expansion, |k| k <= highest)?,
         relation: found.relation,
         branches: found.branches,
         peak: found.peak,
@@ -170,14 +199,19 @@ pub(super) fn response(question: &Question, expansion: &Expansion, slow: &Slow) 
     })
 }
 
-/// `x(t)` in `t`, the amplitude and the phase.
-fn motion(question: &Question, expansion: &Expansion) -> Result<Expr, Refusal> {
+/// What some of the orders add to `x(t)`, in `t`, the amplitude and the phase.
+pub(super) fn motion(
+    question: &Question,
+    expansion: &Expansion,
+    wanted: impl Fn(usize) -> bool,
+) -> Result<Expr, Refusal> {
     let names = &question.names;
     let p = i64::from(question.resonance.0);
     let omega_t = question.drive.angle();
     let psi = Expr::from(names.phase);
     let mut waves: BTreeMap<(i64, i64), [Polynomial; 2]> = BTreeMap::new();
-    for (k, wave) in expansion.displacement.iter().enumerate() {
+    let orders = expansion.displacement.iter().enumerate();
+    for (k, wave) in orders.filter(|(k, _)| wanted(*k)) {
         for (m, value) in wave.iter().filter(|entry| *entry.0 >= 0) {
             for (part, imaginary) in [(&value.real, false), (&value.imaginary, true)] {
                 for (monomial, number) in part.terms() {

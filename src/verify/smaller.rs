@@ -1,0 +1,236 @@
+//! The same question with all that is small halved again and again, by which the order of an error is measured.
+//!
+//! ```text
+//! small letters            their values halved, among them those of a drive that counts as small, and the detuning
+//! small terms in numbers   the equation seen from the equilibrium, all but its linear force halved
+//! small amplitude          x = x_eq + s y, s^2 halved:   y'' + f(x_eq + s y, s y')/s = 0, in which the amplitude stays as it is
+//! ```
+//!
+//! Numbers in an equation are no letters, so that the answer to the smaller question is derived again. A drive far from resonance is not
+//! small and stays; time in a drive runs by the frequency with half of the detuning.
+
+use std::collections::BTreeMap;
+
+use num_traits::ToPrimitive as _;
+
+use crate::exact::rational::{from_f64, ratio};
+use crate::expr::{Expr, ExprError};
+use crate::method::{Options, solve};
+use crate::oscillator::Oscillator;
+use crate::solution::modulation::Resonance;
+use crate::solution::{AmplitudeConvention, Note, Solution};
+use crate::symbol::Symbol;
+
+/// A question and its answer.
+pub(super) struct Smaller {
+    pub(super) oscillator: Oscillator,
+    pub(super) solution: Solution,
+    pub(super) numbers: BTreeMap<Symbol, f64>,
+}
+
+/// All that is small halved so many times; `None` where that cannot be done.
+pub(super) fn smaller(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    halvings: i32,
+) -> Option<Smaller> {
+    let factor = 0.5_f64.powi(halvings);
+    by_letters(oscillator, solution, numbers, factor).or_else(|| by_numbers(oscillator, solution, numbers, factor))
+}
+
+/// Whether the amplitude is what is small.
+pub(super) fn is_small_in_amplitude(solution: &Solution) -> bool {
+    solution.small_parameter == solution.amplitude.symbol()
+}
+
+fn resonance(solution: &Solution) -> Option<&Resonance> {
+    solution.modulation.as_ref()?.resonance.as_ref()
+}
+
+/// What counts as small beside the small parameters of a driven motion, the detuning aside.
+fn small_drives<'a>(solution: &'a Solution, resonance: &Resonance) -> Vec<&'a Expr> {
+    let detuning = Expr::from(resonance.detuning.symbol);
+    let notes = solution.validity.iter();
+    let small = notes.filter_map(|note| match note {
+        Note::Driven { small, .. } => Some(small),
+        _ => None,
+    });
+    small.flatten().filter(|small| **small != detuning).collect()
+}
+
+/// The driving frequency with so much of its detuning left.
+fn retuned(
+    solution: &Solution,
+    resonance: &Resonance,
+    numbers: &BTreeMap<Symbol, f64>,
+    factor: f64,
+) -> Option<[f64; 2]> {
+    let mut known = numbers.clone();
+    known.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
+    let driving = resonance.driving_frequency.evaluate(&known).ok()?;
+    let detuning = resonance.detuning.meaning.evaluate(&known).ok()?;
+    let less = driving - (1.0 - factor) * detuning / f64::from(resonance.times_driving);
+    Some([driving, less])
+}
+
+/// Small letters by their values.
+fn by_letters(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    factor: f64,
+) -> Option<Smaller> {
+    let mut small: Vec<Symbol> = solution.small_parameters().collect();
+    let mut smaller = numbers.clone();
+    if let Some(resonance) = resonance(solution) {
+        for drive in small_drives(solution, resonance) {
+            let letters = drive
+                .symbols()
+                .into_iter()
+                .filter(|name| oscillator.parameters.contains(name));
+            let letters: Vec<Symbol> = letters.collect();
+            let [letter] = letters.as_slice() else { return None };
+            // Halved with the letter: a multiple of it.
+            let zero = drive.substitute(*letter, &Expr::zero()).ok()?;
+            let slope = drive.differentiate(*letter).ok()?;
+            if !zero.is_zero() || slope.contains(*letter) {
+                return None;
+            }
+            small.push(*letter);
+        }
+        let [_, less] = retuned(solution, resonance, numbers, factor)?;
+        *smaller.get_mut(&resonance.driving_frequency.as_symbol()?)? = less;
+    }
+    small.sort();
+    small.dedup();
+    for name in small {
+        if solution.equilibrium.contains(name) {
+            return None;
+        }
+        *smaller.get_mut(&name)? *= factor;
+    }
+    Some(Smaller {
+        oscillator: oscillator.clone(),
+        solution: solution.clone(),
+        numbers: smaller,
+    })
+}
+
+/// Numbers in the equation, seen from the equilibrium.
+fn by_numbers(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    factor: f64,
+) -> Option<Smaller> {
+    let in_amplitude = is_small_in_amplitude(solution);
+    let number = |value: f64| from_f64(value).map(Expr::number);
+    let (factor_number, root) = (number(factor)?, number(factor.sqrt())?);
+    let known: Option<BTreeMap<Symbol, Expr>> = numbers
+        .iter()
+        .map(|(name, value)| Some((*name, number(*value)?)))
+        .collect();
+    let place = number(solution.equilibrium.evaluate(numbers).ok()?)?;
+    let mut question = oscillator.clone();
+    question.parameters = vec![];
+    question.force = oscillator.force.substitute_all(&known?).ok()?;
+    let parts = question.parts().ok()?;
+    let (x, v) = (oscillator.coordinate, oscillator.velocity());
+    let scale = if in_amplitude { root } else { Expr::one() };
+    // f(x_eq + s y, s y')/s.
+    let seen = |part: &Expr| -> Result<Expr, ExprError> {
+        let position = &place + &(&scale * &Expr::from(x));
+        let moved = part.substitute(x, &position)?;
+        let moved = moved.substitute(v, &(&scale * &Expr::from(v)))?;
+        Expr::divide(&moved, &scale)?.expand()
+    };
+    let at_rest = |part: &Expr| part.substitute(v, &Expr::zero())?.substitute(x, &Expr::zero());
+    let restoring = seen(&parts.restoring).ok()?;
+    let restoring = &restoring - &at_rest(&restoring).ok()?;
+    // A force that has no linear part restores as a whole.
+    let stiffness = restoring.differentiate(x).and_then(|slope| at_rest(&slope)).ok();
+    let linear = match stiffness.filter(|stiffness| !stiffness.is_zero()) {
+        Some(stiffness) => &stiffness * &Expr::from(x),
+        None => restoring.clone(),
+    };
+    let damping = seen(&parts.damping).ok()?;
+    let inertia = seen(&parts.inertia).ok()?;
+    let force = match in_amplitude {
+        true => {
+            // A linear damping counts as the square of the amplitude.
+            let viscous = &at_rest(&damping.differentiate(v).ok()?).ok()? * &Expr::from(v);
+            let less = &(&factor_number - &Expr::one()) * &viscous;
+            Expr::sum([restoring, damping, inertia, less])
+        }
+        false => {
+            let rest = Expr::sum([restoring, damping, inertia]) - &linear;
+            &linear + &(&factor_number * &rest)
+        }
+    };
+    let mut options = Options {
+        method: Some(solution.method),
+        order: Some(solution.order),
+        small: in_amplitude.then(|| AmplitudeConvention::Initial.symbol().to_string()),
+        ..Options::default()
+    };
+    question.force = force;
+    question.about = Some(Expr::zero());
+    if let Some(resonance) = resonance(solution) {
+        options.resonance = Some((resonance.times_linear, resonance.times_driving));
+        let [driving, less] = retuned(solution, resonance, numbers, factor)?;
+        let t = Symbol::new("t");
+        let slower = &number(less / driving)? * &Expr::from(t);
+        let forcing = seen(&parts.forcing).ok()?;
+        let scale = in_amplitude.then_some(factor.sqrt());
+        let drives = forcing.terms().iter().map(|term| {
+            let left = number(drive_left(term, [x, v], options.resonance, factor, scale)?)?;
+            Some(&left * &term.substitute(t, &slower).ok()?)
+        });
+        let drives: Option<Vec<Expr>> = drives.collect();
+        question.force = &question.force + &Expr::sum(drives?);
+    }
+    question.force = question.force.expand().ok()?;
+    let answer = solve(&question, &options).ok()?;
+    let start = AmplitudeConvention::Initial.symbol();
+    let numbers = numbers.get(&start).map(|value| (start, *value)).into_iter().collect();
+    Some(Smaller {
+        oscillator: question,
+        solution: answer.off_cycle().unwrap_or(answer),
+        numbers,
+    })
+}
+
+/// What is left of a driven term in the smaller question: a force far from resonance counts as the amplitude does, any other as what it
+/// has to balance.
+fn drive_left(
+    term: &Expr,
+    own: [Symbol; 2],
+    resonance: Option<(u32, u32)>,
+    factor: f64,
+    scale: Option<f64>,
+) -> Option<f64> {
+    let degree = degree(term, own)?;
+    let hard = degree == 0 && resonance.is_some_and(|(p, q)| p != q);
+    let Some(scale) = scale else {
+        return Some(if hard { 1.0 } else { factor });
+    };
+    // The scale has its power of the degree less one already.
+    let wanted = if hard { 0 } else { i32::max(degree - 1, 2) };
+    Some(scale.powi(wanted - (degree - 1)))
+}
+
+/// The power of the coordinate and the velocity together; `None` where they stand elsewhere.
+fn degree(term: &Expr, own: [Symbol; 2]) -> Option<i32> {
+    let (_, factors) = term.factors();
+    let mut sum = ratio(0, 1);
+    for factor in factors {
+        let (base, exponent) = factor.base_and_exponent();
+        match base.as_symbol().is_some_and(|name| own.contains(&name)) {
+            true => sum += exponent.as_number()?,
+            false if own.iter().any(|&name| factor.contains(name)) => return None,
+            false => {}
+        }
+    }
+    sum.is_integer().then(|| sum.to_integer())?.to_i32()
+}

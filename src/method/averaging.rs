@@ -19,7 +19,8 @@
 //! Order 1 is `a cos(psi)` with `A_1` and `B_1`, for every force whose projections have a [closed form](projections); order 2
 //! adds `u_1`, `A_2` and `B_2`, for polynomials in `x` and `x'`. The error of either is one power more of `delta` over times of
 //! `1/delta`. Everything but the linear restoring force is small: the letters whose vanishing leaves that alone, or else all
-//! other terms together.
+//! other terms together. Where nothing linear restores, but one power of the coordinate, the true motion of [that](pure_power) is averaged
+//! along.
 //!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
@@ -33,10 +34,12 @@
 pub(crate) mod action;
 mod driven;
 mod projections;
+mod pure_power;
 mod small_terms;
 
 use num_traits::Zero;
 
+use self::pure_power::PurePower;
 use self::small_terms::SmallTerms;
 use super::limit_cycle::{AmplitudeEquation, Units};
 use super::secular::bounded;
@@ -73,6 +76,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if options.resonance.is_some() {
         let choice = super::table::Choice::Resonance;
         return refuse(Unsuited::NoSuchChoice { choice });
+    }
+    if let Some(restoring) = PurePower::of(&parts, oscillator.coordinate) {
+        return pure_power::solve(oscillator, &parts, &restoring, options);
     }
     let order = match options.order.unwrap_or(1) {
         0 => return refuse(Unsuited::LowestOrder { lowest: 1 }),

@@ -199,7 +199,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
 }
 
 /// `sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))`.
-fn of_power(coefficient: &Expr, n: &Rational) -> Result<Expr, ExprError> {
+pub(super) fn of_power(coefficient: &Expr, n: &Rational) -> Result<Expr, ExprError> {
     let next = n + Rational::one();
     let gamma = |argument: Rational| Expr::function(Function::Gamma, vec![Expr::number(argument)]);
     let scale = Expr::pi().sqrt()? * (coefficient * &Expr::number(&next / ratio(2, 1))).sqrt()?;

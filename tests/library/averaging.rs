@@ -769,6 +769,78 @@ fn a_barrier_at_a_letter() {
     }
 }
 
+/// Nothing linear restores: the mean work of the damping along the true motion, here by the midpoint rule over its energy, is the rate of
+/// the amplitude, and a viscous one is 2 c/(n + 3) whatever the stiffness.
+#[test]
+fn a_force_of_one_power_is_averaged_along_its_motion() {
+    for (equation, n, k, damping) in [
+        ("x'' + 3*x^3 + c*x' = 0", 3.0, 3.0, [0.0, 1.0]),
+        ("x'' + x*abs(x)/2 + c*x' = 0", 2.0, 0.5, [0.0, 1.0]),
+        ("x'' + 2*sgn(x)*abs(x)^(1/2) + c*x' = 0", 0.5, 2.0, [0.0, 1.0]),
+        ("x'' + x^5 + c*x'*abs(x') = 0", 5.0, 1.0, [0.0, 2.0]),
+        ("x'' + 3*x^3 + c*sgn(x') = 0", 3.0, 3.0, [0.0, 0.0]),
+        ("x'' + 3*x^3 + c*x^2*x'^3 = 0", 3.0, 3.0, [2.0, 3.0]),
+        ("x'' + x^3 + c*abs(x')^(1/2)*sgn(x') = 0", 3.0, 1.0, [0.0, 0.5]),
+    ] {
+        let solution = averaged(equation, 1);
+        let slow = solution.slow().expect(equation);
+        let chi = solution.defined_values(&|_| Some(1.0)).expect(equation);
+        let chi = chi.iter().find(|(name, _)| name.name() == "chi").expect("chi").1;
+        let (r, c): (f64, f64) = (1.3, 0.1);
+        // x = r sin(u): dx/v and |x|^p |v|^q dx are smooth in u.
+        let (mut time, mut work) = (0.0, 0.0);
+        const STEPS: usize = 200_000;
+        for step in 0..STEPS {
+            let u = PI / 2.0 * (step as f64 + 0.5) / STEPS as f64;
+            let x = r * u.sin();
+            let speed = (2.0 * k / (n + 1.0) * (r.powf(n + 1.0) - x.powf(n + 1.0))).sqrt();
+            let dx = r * u.cos();
+            time += dx / speed;
+            work += c * x.powf(damping[0]) * speed.powf(damping[1]) * dx;
+        }
+        let expected = -chi * work / time / (k * r.powf(n));
+        let numbers = [("a", chi * r), ("c", c), ("chi", chi)].map(|(name, value)| (Symbol::new(name), value));
+        let found = slow.amplitude_rate.evaluate(&numbers.into()).expect(equation);
+        assert!((found / expected - 1.0).abs() < 1e-5, "{equation}: {found}, {expected}");
+        if damping == [0.0, 1.0] {
+            assert!(
+                (found / (-2.0 * c * chi * r / (n + 3.0)) - 1.0).abs() < 1e-14,
+                "{equation}"
+            );
+        }
+        let frequency = slow.phase_rate.evaluate(&numbers.into()).expect(equation);
+        let expected = PI / 2.0 / (time * PI / 2.0 / STEPS as f64);
+        assert!(
+            (frequency / expected - 1.0).abs() < 1e-5,
+            "{equation}: {frequency}, {expected}"
+        );
+    }
+}
+
+/// The same against the true motion: over times of 1/small the error vanishes with its first power, and what is fed comes to its cycle.
+#[test]
+fn motions_where_nothing_linear_restores() {
+    for (equation, at) in [
+        ("x'' + 0.05*x' + x^3 = 0", "A = 1"),
+        ("x'' + c*x' + k*x*abs(x) = 0", "c = 1/50, k = 2, A = 1/2"),
+        ("x'' + alpha*sgn(x') + x^3 = 0", "alpha = 1/200, A = 1"),
+        ("x'' + c*x'*abs(x') + x^5 = 0", "c = 1/20, A = 1"),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let solution = solve(&oscillator, &Options::default()).expect(equation);
+        assert_eq!(solution.method, Method::Averaging, "{equation}");
+        let verdict = judge(&oscillator, &solution, &at.parse().expect(at), 0.02).expect(equation);
+        assert_eq!(verdict.verdict, Verdict::Pass, "{equation}: {verdict:?}");
+        let slope = verdict.slope.expect(equation);
+        assert!((slope - 1.0).abs() < 0.15, "{equation}: {slope}");
+    }
+    let equation = "x'' + x^3 - mu*(1 - x^2)*x' = 0";
+    let oscillator = Oscillator::parse(equation).expect(equation);
+    let cycle = averaged(equation, 1).on_cycle().expect("a cycle");
+    let verdict = judge(&oscillator, &cycle, &"mu = 1/50".parse().expect("values"), 0.001).expect(equation);
+    assert_eq!(verdict.verdict, Verdict::Pass, "{verdict:?}");
+}
+
 /// Where nothing linear restores and something damps no method is named that refuses as well.
 #[test]
 fn no_help_leads_in_a_circle() {
@@ -777,14 +849,21 @@ fn no_help_leads_in_a_circle() {
             method,
             ..Options::default()
         };
-        let refusal = solve(
-            &Oscillator::parse("x'' + 0.1*x' + x^3 = 0").expect("an equation"),
-            &options,
-        );
-        let refusal = refusal.expect_err("refused");
-        assert_eq!(refusal.term(), Some("0.1*x'"), "{refusal}");
-        let help = refusal.help().expect("help").to_string();
+        let refused = |equation: &str| {
+            let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+            assert_eq!(refusal.term(), Some("0.1*x'"), "{refusal}");
+            refusal.help().expect("help").to_string()
+        };
+        let help = refused("x'' + 0.1*x' + x^3 + x^5 = 0");
         assert!(help.contains("lindstedt simulate") && help.contains("exact"), "{help}");
+        // One power alone is averaged, as whoever asked for another method is told.
+        if method == Some(Method::MultipleScales) {
+            let help = refused("x'' + 0.1*x' + x^3 = 0");
+            assert!(
+                help.contains("--method averaging") || help.contains("averaging"),
+                "{help}"
+            );
+        }
     }
     let undamped = Options {
         method: Some(Method::Exact),

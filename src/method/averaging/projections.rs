@@ -76,13 +76,13 @@ pub(super) fn of_term(term: &Expr, coordinate: Symbol, amplitude: &Expr, omega0:
 }
 
 /// `|y|^exponent`, times `sgn(y)` where odd. The exponent may be a symbol, which is taken to be above -1.
-struct Power {
-    exponent: Expr,
-    odd: bool,
+pub(super) struct Power {
+    pub(super) exponent: Expr,
+    pub(super) odd: bool,
 }
 
 impl Power {
-    fn one() -> Self {
+    pub(super) fn one() -> Self {
         Self {
             exponent: Expr::zero(),
             odd: false,
@@ -90,7 +90,7 @@ impl Power {
     }
 
     /// Takes a factor in, where it is a power of the variable, its size or its sign.
-    fn takes(&mut self, factor: &Expr, variable: Symbol) -> bool {
+    pub(super) fn takes(&mut self, factor: &Expr, variable: Symbol) -> bool {
         let (base, exponent) = factor.base_and_exponent();
         let number = exponent.as_number();
         let of_variable = |arguments: &[Expr]| arguments.first().and_then(Expr::as_symbol) == Some(variable);

@@ -148,7 +148,7 @@ fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
 
 /// Letters that are factors of all small terms and of no linear one, `first` among them: always the one next that takes most of
 /// what is left, of equally good ones the first in the alphabet. The error is a term that none takes.
-fn letters(
+pub(super) fn letters(
     linear: &[&Expr],
     others: &[&Expr],
     parameters: &[Symbol],

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Beyond the order of the waves that lead, cosine and sine follow in powers of what is small, and the relation is cut where the
-//! equations are: multiples of the phase may stand in them, which from the third order on they do, and there are no steady motions beside
-//! those that the equation has.
+//! equations are: multiples of the phase may stand in them, which from the third order on they do, and of the steady motions that
+//! truncated equations have far from what is small most are gone.
 
 use std::collections::BTreeMap;
 

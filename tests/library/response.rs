@@ -547,7 +547,7 @@ fn slow_equations_come_nearer_with_their_order() {
         assert!(slow.points > 20 && slow.states.len() > 240);
         slow.error.expect("an error")
     };
-    for (order, least) in [(1, 0.7), (2, 1.6)] {
+    for (order, least) in [(1, 0.7), (2, 1.6), (3, 2.5)] {
         let (large, small) = (error(order, 20), error(order, 40));
         let slope = (large / small).log2();
         assert!(slope > least, "order {order}: {large} and {small}, slope {slope}");

@@ -61,11 +61,10 @@ pub const FEWEST: usize = 16;
 /// use lindstedt::exact::ratio;
 /// use lindstedt::series::singularity::nearest;
 ///
-/// // sqrt(1 - s/3): c_k = c_(k-1) (2k - 3)/(6k)
-/// let root = |last: &_, k: i64| last * ratio(2 * k - 3, 6 * k);
-/// let mut coefficients = vec![ratio(1, 1)];
-/// for k in 1..=24 {
-///     coefficients.push(root(&coefficients[k - 1], k as i64));
+/// // 2 - sqrt(1 - s/3): c_k = c_(k-1) (2k - 3)/(6k) from c_1 = 1/6 on
+/// let mut coefficients = vec![ratio(1, 1), ratio(1, 6)];
+/// for k in 2..=24 {
+///     coefficients.push(&coefficients[k as usize - 1] * ratio(2 * k - 3, 6 * k));
 /// }
 /// let found = nearest(&coefficients).expect("a branch point");
 /// assert_eq!(found.radius.value, ratio(3, 1));

@@ -824,6 +824,13 @@ fn slopes_of_motions_from_a_start() {
         ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 3, "zeta = 1/20, eps = 1/10, A = 1"),
         ("x'' - mu*(1 - x^2)*x' + x = 0", 3, "mu = 1/10, A = 1/2"),
         ("x'' + x'/50 + sin(x) = 0", 4, "A = 1/2"),
+        // About 0.92, a root in numbers and one in letters.
+        ("x'' + x'/50 + x + x^2/10 - 1 = 0", 4, "A = 1/5"),
+        (
+            "x'' + 2*zeta*x' + x + k*x^2 - 1 = 0",
+            4,
+            "zeta = 1/100, k = 1/10, A = 1/5",
+        ),
     ] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let at: Values = at.parse().expect("values");
@@ -941,6 +948,42 @@ fn drives_about_an_equilibrium() {
             lindstedt::Verdict::Pass,
             "{equation}: {:?}",
             judged.steady_states
+        );
+    }
+}
+
+/// The verdict on a steady motion measures the order of its error and what it leaves of the equation, letters and numbers alike, a drive
+/// far from resonance, in a coefficient, about an equilibrium that is not zero; in the amplitude the order counts its powers.
+#[test]
+fn verdicts_measure_the_order_of_steady_motions() {
+    let forced = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
+    for (equation, order, at, slope) in [
+        (forced, 1, "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40", 1.0),
+        (forced, 3, "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40", 3.0),
+        (forced, 2, "zeta = 1/500, eps = 1/100, F = 1, Omega = 17/50", 2.0),
+        ("x'' + x'/20 + x + x^3/40 = 3*cos(41*t/40)/40", 4, "", 4.0),
+        ("x'' + x'/20 + x + x^3/40 = 3*cos(41*t/40)/40", 6, "", 6.0),
+        (
+            "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0",
+            2,
+            "zeta = 1/400, h = 1/40, eps = 1/40, Omega = 161/80",
+            2.0,
+        ),
+        ("x'' + x'/50 + x + x^2/10 - 1 = cos(11*t/10)/200", 4, "", 4.0),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let at: Values = at.parse().unwrap_or_default();
+        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at).expect(equation);
+        let judged = judge(&oscillator, &solve(&oscillator, &asked).expect(equation), &at, 0.1).expect(equation);
+        let measured = judged.slope.expect(equation);
+        assert!(
+            (measured - slope).abs() < 0.3,
+            "{equation} to order {order}: {measured}"
+        );
+        assert!(
+            judged.residual.is_some_and(|residual| residual < 0.05),
+            "{equation}: {:?}",
+            judged.residual
         );
     }
 }

@@ -28,7 +28,7 @@ use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Integrator, Options, Path, System, SystemError};
+use crate::system::{End, Event, Integrator, Options, Path, System, SystemError};
 
 pub use section::{Crossing, MOST_CROSSINGS, Section};
 pub use sweep::{SweptMotion, sweep};
@@ -332,17 +332,41 @@ impl Course {
         };
         let events = self.section.as_ref();
         let events = events.map_or(vec![], |section| section.events(&moving));
+        let equations = (&system, right.as_slice(), &values, critical.as_slice());
+        let (pieces, reason) = self.pieces(equations, start, &events, &options)?;
+        let mut motion = Trajectory {
+            course: self,
+            integrator,
+            balance: None,
+            pieces,
+            on_section: OnSection::default(),
+            reason,
+        };
+        motion.balance = motion.account();
+        motion.on_section = motion.find_on_section()?;
+        Ok(motion)
+    }
+
+    /// The motion piece by piece, each as the equations say or held by friction, and why it ends. The equations are a system with their
+    /// right sides, those of the works behind those of the states, their numbers and the times that no step crosses.
+    fn pieces(
+        &self,
+        (system, right, values, critical): (&System, &[Expr], &BTreeMap<Symbol, f64>, &[f64]),
+        start: Vec<f64>,
+        events: &[Event],
+        options: &Options,
+    ) -> Result<(Vec<Piece>, End), TrajectoryError> {
         let mut pieces = Vec::new();
         let (mut from, mut state) = (0.0, start);
         let reason = loop {
-            let path = system.solve(from, &state, self.duration, &events, &options)?;
+            let path = system.solve(from, &state, self.duration, events, options)?;
             let (end, reason) = (path.end(), path.reason());
             let last = path.at(end);
             pieces.push(Piece::Moving(path));
             let (End::Sticks, Some(last)) = (reason, last) else {
                 break reason;
             };
-            let held = self.held(end, &last, (&right, &values), &critical, &options)?;
+            let held = self.held(end, &last, (right, values), critical, options)?;
             let Some(hold) = held else { break reason };
             let until = hold.until;
             state = hold.at(until);
@@ -357,17 +381,7 @@ impl Course {
             }
             from = until;
         };
-        let mut motion = Trajectory {
-            course: self,
-            integrator,
-            balance: None,
-            pieces,
-            on_section: OnSection::default(),
-            reason,
-        };
-        motion.balance = motion.account();
-        motion.on_section = motion.find_on_section()?;
-        Ok(motion)
+        Ok((pieces, reason))
     }
 }
 

@@ -210,30 +210,31 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
         )));
     }
     blocks.extend(sticking(response, branch));
-    for (end, point) in branch.ends.iter().zip([branch.points.first(), branch.points.last()]) {
-        let Some(point) = point else { continue };
-        let place = format!("{name} = {}", significant(point.parameter, 4));
-        let words = match end {
-            BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
-            BranchEnd::Slow => format!(
-                "No true motion was found beyond {place}, where its period is {}: it grows without bound beside a place of rest, or the \
-                 motion has more waves than are kept.",
-                significant(std::f64::consts::TAU / point.frequency, 4)
-            ),
-            BranchEnd::Held => format!("It comes to rest at {place}: beyond, friction bears what drives it."),
-            BranchEnd::Lost if response.jumps => format!(
-                "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
-            ),
-            BranchEnd::Lost => {
-                format!("It could not be followed beyond {place}: the force has a jump or no value there.")
-            }
-            BranchEnd::Points => format!("It was followed no farther than {place}: it has too many points."),
-            BranchEnd::Interrupted => format!("It was followed no farther than {place}: interrupted."),
-            BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing | BranchEnd::Rest => continue,
-        };
-        blocks.push(Block::Sentence(words));
-    }
+    let ends = branch.ends.iter().zip([branch.points.first(), branch.points.last()]);
+    let ends = ends.filter_map(|(end, point)| end_in_words(response, *end, point?));
+    blocks.extend(ends.map(Block::Sentence));
     blocks
+}
+
+/// Why a branch ends at a point, where that is worth saying.
+fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<String> {
+    let place = format!("{} = {}", response.question.parameter, significant(point.parameter, 4));
+    Some(match end {
+        BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
+        BranchEnd::Slow => format!(
+            "No true motion was found beyond {place}, where its period is {}: it grows without bound beside a place of rest, or the \
+             motion has more waves than are kept.",
+            significant(std::f64::consts::TAU / point.frequency, 4)
+        ),
+        BranchEnd::Held => format!("It comes to rest at {place}: beyond, friction bears what drives it."),
+        BranchEnd::Lost if response.jumps => format!(
+            "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
+        ),
+        BranchEnd::Lost => format!("It could not be followed beyond {place}: the force has a jump or no value there."),
+        BranchEnd::Points => format!("It was followed no farther than {place}: it has too many points."),
+        BranchEnd::Interrupted => format!("It was followed no farther than {place}: interrupted."),
+        BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing | BranchEnd::Rest => return None,
+    })
 }
 
 /// Where dry friction holds the motion on its way.

@@ -41,6 +41,7 @@ pub mod slow;
 pub mod stability;
 mod sticking;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use num_complex::Complex;
@@ -175,8 +176,18 @@ pub enum ResponseError {
         undamped: bool,
     },
     /// Somebody asked it to end before there was anything.
-    #[error("interrupted without a result")]
-    Interrupted,
+    #[error(
+        "interrupted before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
+        .tried.starts,
+        .tried.values,
+        .tried.motions
+    )]
+    Interrupted {
+        /// The parameter.
+        parameter: Symbol,
+        /// What was done until then.
+        tried: Tried,
+    },
     /// The equation has no such values.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
@@ -186,6 +197,17 @@ pub enum ResponseError {
     /// A name that stands for nothing.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
+}
+
+/// The search for motions to begin with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tried {
+    /// Values of the parameter.
+    pub values: usize,
+    /// Starts of simulations at them.
+    pub starts: usize,
+    /// Motions that they led to.
+    pub motions: usize,
 }
 
 fn list(symbols: &[Symbol]) -> String {
@@ -365,7 +387,12 @@ const MOST_BRANCHES: usize = 12;
 pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     const FIRST: usize = 8;
     let asked = Asked::new(question)?;
-    let first = question.harmonics.unwrap_or(FIRST);
+    // Of the map of a period harmonics are only read off: as many as there may be.
+    let automatic = match asked.driven.is_balanced() {
+        true => FIRST,
+        false => MOST_HARMONICS,
+    };
+    let first = question.harmonics.unwrap_or(automatic);
     let (seeds, elsewhere) = asked.seeds(first)?;
     let mut harmonics = first;
     let mut before = (f64::INFINITY, usize::MAX);
@@ -452,6 +479,8 @@ struct Asked<'a> {
     /// The equation with all values but one.
     oscillator: Oscillator,
     driven: Driven,
+    /// How the search for motions to begin with gets on.
+    tried: Cell<Tried>,
 }
 
 impl<'a> Asked<'a> {
@@ -510,6 +539,7 @@ impl<'a> Asked<'a> {
             question,
             oscillator,
             driven,
+            tried: Cell::default(),
         };
         asked.has_frequency()
     }
@@ -727,11 +757,24 @@ impl<'a> Asked<'a> {
         found
     }
 
+    /// Counts what the search for motions to begin with has done.
+    fn count(&self, [values, starts]: [usize; 2], motions: usize) {
+        let before = self.tried.get();
+        self.tried.set(Tried {
+            values: before.values + values,
+            starts: before.starts + starts,
+            motions,
+        });
+    }
+
     /// Why there is nothing.
     fn nothing(&self) -> ResponseError {
         let Question { parameter, range, .. } = *self.question;
         match (self.question.interrupt.is_requested(), self.driven.self_excited) {
-            (true, _) => ResponseError::Interrupted,
+            (true, _) => ResponseError::Interrupted {
+                parameter,
+                tried: self.tried.get(),
+            },
             (false, true) => ResponseError::NoCycle { parameter, range },
             (false, false) => ResponseError::NoMotion {
                 parameter,

@@ -26,7 +26,6 @@ impl Asked<'_> {
         /// Values of the parameter at which simulations begin.
         const VALUES: u32 = 5;
         const RINGS: [f64; 2] = [0.5, 1.3];
-        const SAMPLES: usize = 256;
         if self.driven.self_excited {
             return Ok((self.cycles()?, vec![]));
         }
@@ -44,6 +43,7 @@ impl Asked<'_> {
         let mut budget = MOST_EVALUATIONS;
         let mut size = 0.0_f64;
         for parameter in &values {
+            self.count([1, 0], seeds.len());
             let mut places = places_of_rest(&self.driven, *parameter, size.max(1.0));
             // Between two wells there is a motion as well, though it does not last.
             if !places.contains(&0.0) {
@@ -51,21 +51,9 @@ impl Asked<'_> {
             }
             for place in places {
                 // Beside the motion that a balance finds from rest, if it does.
-                let mut still = DVector::zeros(balance.size());
-                still[0] = place;
-                let found = self.driven.is_balanced().then(|| balance.solve(&still, *parameter));
-                if let Some(found) = found.flatten() {
-                    size = size.max(balance.extent(&found));
-                    let positions = (0..SAMPLES).map(|sample| {
-                        let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
-                        balance.at(&found, *parameter, phase)[0]
-                    });
-                    seeds.push(Seed {
-                        parameter: *parameter,
-                        frequency: self.driven.frequency_at(*parameter),
-                        positions: positions.collect(),
-                        start: None,
-                    });
+                if let Some((seed, extent)) = self.balanced_from_rest(&balance, place, *parameter) {
+                    size = size.max(extent);
+                    seeds.push(seed);
                 }
                 elsewhere.extend(self.settled([place, 0.0], *parameter, &mut seeds, &mut budget));
             }
@@ -108,6 +96,28 @@ impl Asked<'_> {
         Ok((seeds, elsewhere))
     }
 
+    /// The motion that a balance finds from rest at a place, and its extent; nothing where it finds none.
+    fn balanced_from_rest(&self, balance: &Balance, place: f64, parameter: f64) -> Option<(Seed, f64)> {
+        const SAMPLES: usize = 256;
+        if !self.driven.is_balanced() {
+            return None;
+        }
+        let mut still = DVector::zeros(balance.size());
+        still[0] = place;
+        let found = balance.solve(&still, parameter)?;
+        let positions = (0..SAMPLES).map(|sample| {
+            let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
+            balance.at(&found, parameter, phase)[0]
+        });
+        let seed = Seed {
+            parameter,
+            frequency: self.driven.frequency_at(parameter),
+            positions: positions.collect(),
+            start: None,
+        };
+        Some((seed, balance.extent(&found)))
+    }
+
     /// Adds where a simulation settles, or says that it does not repeat itself.
     fn settled(&self, start: [f64; 2], parameter: f64, seeds: &mut Vec<Seed>, budget: &mut usize) -> Option<Elsewhere> {
         const PERIODS: usize = 250;
@@ -115,6 +125,7 @@ impl Asked<'_> {
         if self.driven.undamped {
             return None;
         }
+        self.count([0, 1], seeds.len());
         let settled = settle(&self.driven, start, parameter, (PERIODS, CLOSELY), budget)?;
         if settled.returns_after != Some(1) {
             return Some(Elsewhere {

@@ -36,7 +36,9 @@ impl Asked<'_> {
                     break;
                 }
                 let parameter = low + (high - low) * f64::from(index) / f64::from(count - 1);
+                self.count([1, 0], seeds.len());
                 for place in self.places(parameter) {
+                    self.count([0, 2 * RINGS as usize + 1], seeds.len());
                     match self.driven.is_balanced() {
                         true => self.cycles_about(place, parameter, &mut seeds),
                         false => self.cycles_across_jumps(place, parameter, &mut seeds),

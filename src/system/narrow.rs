@@ -163,7 +163,13 @@ pub(super) fn end_by_values(kind: Kind, coarse: [f64; 5], value: impl Fn(f64) ->
     let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
     let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
     let wide = match kind {
-        Kind::Power(_) => least * most > 0.0 && least.abs().max(most.abs()) < 1.5 * least.abs().min(most.abs()),
+        Kind::Power(exponent) => {
+            let bent = coarse
+                .windows(3)
+                .map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
+            // Four times as wide as need be: sqrt(2 |u|/(e |u''|)), in quarters of the step.
+            least * most > 0.0 && 2.0 * least.abs().min(most.abs()) > exponent * bent.fold(0.0, f64::max)
+        }
         _ => most - least < 0.25 * TIMES,
     };
     let cell = 1.0 / CELLS as f64;

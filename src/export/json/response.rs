@@ -239,6 +239,39 @@ pub struct ResponseVerification {
     pub verdict: String,
 }
 
+fn point(point: &response::Point) -> ResponsePoint {
+    ResponsePoint {
+        parameter: point.parameter,
+        frequency: point.frequency,
+        amplitude: point.amplitude,
+        phase: point.phase,
+        peak: point.peak,
+        stable: point.stable,
+        multipliers: point.multipliers.map(|both| both.map(|one| [one.re, one.im])),
+        start: point.start,
+        error: point.error,
+    }
+}
+
+fn bifurcation(found: &response::Bifurcation) -> ResponseBifurcation {
+    ResponseBifurcation {
+        kind: found.kind.name().to_owned(),
+        branch: found.branch,
+        parameter: found.parameter,
+        frequency: found.frequency,
+        amplitude: found.amplitude,
+        peak: found.peak,
+    }
+}
+
+/// The part of a period that each point of a branch sticks; nothing for one that never does.
+fn stuck(branch: &response::Branch) -> Vec<f64> {
+    match branch.points.iter().any(|point| point.stuck > 0.0) {
+        true => branch.points.iter().map(|point| point.stuck).collect(),
+        false => vec![],
+    }
+}
+
 /// The document of kind `response`.
 ///
 /// ```
@@ -251,17 +284,6 @@ pub struct ResponseVerification {
 /// ```
 pub fn response(response: &Response) -> ResponseDocument {
     let asked = &response.question;
-    let point = |point: &response::Point| ResponsePoint {
-        parameter: point.parameter,
-        frequency: point.frequency,
-        amplitude: point.amplitude,
-        phase: point.phase,
-        peak: point.peak,
-        stable: point.stable,
-        multipliers: point.multipliers.map(|both| both.map(|one| [one.re, one.im])),
-        start: point.start,
-        error: point.error,
-    };
     ResponseDocument {
         schema: Kind::Response.schema().to_owned(),
         equation: asked.oscillator.equation().to_string(),
@@ -288,26 +310,8 @@ pub fn response(response: &Response) -> ResponseDocument {
             .map(|branch| branch.points.iter().map(point).collect())
             .collect(),
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
-        stuck: response
-            .branches
-            .iter()
-            .map(|branch| match branch.points.iter().any(|point| point.stuck > 0.0) {
-                true => branch.points.iter().map(|point| point.stuck).collect(),
-                false => vec![],
-            })
-            .collect(),
-        bifurcations: response
-            .bifurcations
-            .iter()
-            .map(|found| ResponseBifurcation {
-                kind: found.kind.name().to_owned(),
-                branch: found.branch,
-                parameter: found.parameter,
-                frequency: found.frequency,
-                amplitude: found.amplitude,
-                peak: found.peak,
-            })
-            .collect(),
+        stuck: response.branches.iter().map(stuck).collect(),
+        bifurcations: response.bifurcations.iter().map(bifurcation).collect(),
         backbone: response
             .backbone
             .iter()

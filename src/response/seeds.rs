@@ -122,7 +122,7 @@ impl Asked<'_> {
     fn settled(&self, start: [f64; 2], parameter: f64, seeds: &mut Vec<Seed>, budget: &mut usize) -> Option<Elsewhere> {
         const PERIODS: usize = 250;
         const CLOSELY: f64 = 1e-4;
-        if self.driven.undamped {
+        if self.driven.undamped || self.question.interrupt.is_requested() {
             return None;
         }
         self.count([0, 1], seeds.len());

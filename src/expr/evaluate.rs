@@ -433,10 +433,12 @@ impl Compiler<'_> {
     }
 }
 
-/// The bits of the longest number before a term of a sum.
+/// The bits before the point of the largest number before a term of a sum; of a fraction of two long numbers they are few.
 fn longest_number(sum: &Expr) -> u64 {
     let bits = sum.terms().iter().map(|term| match term.node() {
-        Node::Number(number) | Node::Product(number, _) => number.numer().bits(),
+        Node::Number(number) | Node::Product(number, _) => {
+            (number.numer().bits() + 1).saturating_sub(number.denom().bits())
+        }
         _ => 1,
     });
     bits.max().unwrap_or(0)

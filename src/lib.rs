@@ -114,7 +114,7 @@ pub mod report;
 
 pub mod export;
 
-pub use interrupt::Interrupt;
+pub use interrupt::{Counter, Interrupt, Progress, Supervision};
 pub use method::motion::{Motion, NoMotion};
 pub use method::{Options, solve};
 pub use oscillator::Oscillator;

@@ -122,7 +122,7 @@ pub fn long_fraction(value: &Expr) -> Option<&Rational> {
 /// The limit cycle that a solution describes, among those of its equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitCycle {
-    /// The amplitude, in the convention of the solution.
+    /// The amplitude, in the convention of the solution; to leading order where the motion is left out.
     pub amplitude: Polynomial,
     /// Which of the cycles it is, counted from one.
     pub number: usize,

@@ -1,7 +1,11 @@
 //! `lindstedt derive PROBLEM`.
 
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{json, latex, text};
@@ -9,12 +13,12 @@ use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal};
 use lindstedt::problem::{self, Formula, Problem, Reader};
-use lindstedt::solution::{AmplitudeConvention, Method, Solution};
+use lindstedt::solution::{AmplitudeConvention, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
-use lindstedt::{Oscillator, Symbol};
+use lindstedt::{Counter, Interrupt, Oscillator, Progress, Supervision, Symbol};
 
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, json_text, tolerance, whole};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -52,6 +56,9 @@ pub struct Arguments {
     /// The frequency without the motion, of lindstedt-poincare: orders up to 2000, in less time
     #[arg(long)]
     omega_only: bool,
+    /// Threads of a long expansion; all cores without it. The result is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
@@ -127,19 +134,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let values = exact_values(&arguments.at, &problem)?;
-    if arguments.omega_only && values.is_some() {
-        return Err(Failure::Usage(
-            "the values in the file ask for a verdict on the motion, which --omega-only leaves out".to_owned(),
-        ));
-    }
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
             .map_err(|refusal| refused(&oscillator, &refusal))?,
         None => options,
     };
-    let (oscillator, values, mut solution) = solve_at(oscillator, values, &options)?;
-    solution.convergence = verify::converges(&solution);
+    let derived = with_progress(|| {
+        on_threads(arguments.jobs, || {
+            let mut derived = solve_at(oscillator, values, &options)?;
+            derived.2.convergence = verify::converges(&derived.2);
+            Ok(derived)
+        })
+    });
+    let (oscillator, values, solution) = derived?;
     let tolerance = tolerance(&arguments.common);
     let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
     let verification = match judged {
@@ -187,13 +195,70 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at))),
         _ => None,
     };
+    let asked = solution.validity.iter().find_map(|note| match note {
+        Note::Stopped { asked } => Some(asked),
+        _ => None,
+    });
     Ok(Outcome {
         result: whole(text),
         picture,
-        note: None,
+        note: asked.map(|asked| {
+            format!(
+                "warning: stopped early, what there is is kept: order {} of {asked}",
+                solution.order
+            )
+        }),
         verdict: verification.map(|verification| verification.verdict),
-        partial: false,
+        partial: asked.is_some(),
     })
+}
+
+/// How far an expansion has come.
+static PROGRESS: Counter = Counter::new();
+
+/// Does long work with a bar on standard error, where that is a terminal.
+fn with_progress<T>(work: impl FnOnce() -> T) -> T {
+    /// Work that is done before this needs no bar.
+    const SOON: Duration = Duration::from_millis(500);
+    const EVERY: Duration = Duration::from_millis(100);
+    let (done, waits) = channel::<()>();
+    let watcher = std::thread::spawn(move || {
+        let is_done = |wait: Duration| waits.recv_timeout(wait) != Err(RecvTimeoutError::Timeout);
+        if is_done(SOON) {
+            return;
+        }
+        let bar = ProgressBar::new(0);
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} % of the calculation, {eta} left") {
+            bar.set_style(style);
+        }
+        while !is_done(EVERY) {
+            let (position, length) = PROGRESS.read();
+            bar.set_length(length);
+            bar.set_position(position);
+        }
+        bar.finish_and_clear();
+    });
+    let result = work();
+    drop(done);
+    let _ = watcher.join();
+    result
+}
+
+/// Does the work on so many threads, or on all.
+fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> T {
+    let pool = threads.and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count.into()).build().ok());
+    match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
+}
+
+/// How long to wait for what there is, once the time is up: an expansion that has begun has orders.
+pub(super) fn patience() -> Duration {
+    match PROGRESS.read() {
+        (_, 0) => Duration::ZERO,
+        _ => Duration::from_secs(60),
+    }
 }
 
 /// The solution; where a limit cycle depends on the values of parameters and they are given, that of the equation with those
@@ -314,14 +379,10 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
     }
     let of_motion = [
         ("--steps", arguments.steps),
-        ("--at", !arguments.at.is_empty()),
         ("--plot", arguments.common.plot.is_some()),
-        ("--tolerance", arguments.common.tolerance.is_some()),
     ];
     if let Some((option, _)) = of_motion.iter().find(|(_, given)| arguments.omega_only && *given) {
-        return usage(format!(
-            "{option} asks for the motion or a verdict on it, which --omega-only leaves out"
-        ));
+        return usage(format!("{option} asks for the motion, which --omega-only leaves out"));
     }
     if arguments.omega_only && !entry.takes(Choice::FrequencyAlone) {
         return without("--omega-only", &that_take(Choice::FrequencyAlone));
@@ -366,6 +427,10 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
         cycle: arguments.cycle,
         resonance: arguments.resonance,
         frequency_alone: arguments.omega_only,
+        supervision: Supervision {
+            interrupt: Interrupt::by(&STOP),
+            progress: Progress::by(&PROGRESS),
+        },
     })
 }
 

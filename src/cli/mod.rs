@@ -227,12 +227,13 @@ impl Command {
         }
     }
 
-    /// How long to wait for what there is, once the time is up. Only a simulation has parts worth waiting for; to add up what a
-    /// long one did takes a while.
-    fn patience(&self) -> Duration {
+    /// How long to wait for what there is, once the time is up. Only a simulation, a search and an expansion have parts worth waiting
+    /// for; to add up what a long one did takes a while.
+    fn patience(&self) -> fn() -> Duration {
         match self {
-            Self::Simulate(_) | Self::Materials(_) | Self::Optimize(_) => Duration::from_secs(60),
-            _ => Duration::ZERO,
+            Self::Simulate(_) | Self::Materials(_) | Self::Optimize(_) => || Duration::from_secs(60),
+            Self::Derive(_) => derive::patience,
+            _ => || Duration::ZERO,
         }
     }
 
@@ -326,18 +327,18 @@ fn within_limits(command: Command, timeout: Option<f64>) -> (Option<Worked>, Opt
         Some(limit) => receiver.recv_timeout(limit),
     };
     // A whole result that comes too late is too late, however soon it was taken from the channel.
-    let late = patience.is_zero() && limit.is_some_and(|limit| started.elapsed() > limit);
+    let late = limit.is_some_and(|limit| started.elapsed() > limit) && patience().is_zero();
     let found = match first {
         Ok(Message::Done(outcome)) if !late => (Some(outcome), None),
         Ok(Message::Interrupt) => (
-            wait_for_part(&receiver, patience),
+            wait_for_part(&receiver, patience()),
             Some((INTERRUPTED, "interrupted without a result".to_owned())),
         ),
         Ok(Message::Done(_)) | Err(_) => {
             let seconds = timeout.unwrap_or_default();
             let message =
                 format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout");
-            (wait_for_part(&receiver, patience), Some((1, message)))
+            (wait_for_part(&receiver, patience()), Some((1, message)))
         }
     };
     if let (Some(None), _) | (None, None) = found {

@@ -10,14 +10,15 @@ use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::secular::{
-    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError, expand_from_root, expand_numbers,
-    expand_polynomials,
+    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError, expand_numbers_supervised,
+    expand_polynomials, expand_supervised,
 };
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rational, Ring};
 use crate::expr::Expr;
+use crate::interrupt::Supervision;
 use crate::oscillator::Term;
 use crate::series::FourierSeries;
 use crate::solution::AmplitudeConvention;
@@ -33,6 +34,8 @@ pub struct ExactSeries {
     pub displacement: FourierSeries<Polynomials>,
     /// Each order by itself, the unperturbed one first.
     pub steps: Vec<Step>,
+    /// The highest order, below the one asked for where the expansion was stopped.
+    pub highest: u32,
 }
 
 impl ExactSeries {
@@ -58,7 +61,7 @@ impl ExactSeries {
 }
 
 /// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
-/// term of the result, `inverse_slope` is as for [`expand_from_root`], and no name in `taken` is used for anything new. Of the
+/// term of the result, `inverse_slope` is as for [`expand_from_root`](super::secular::expand_from_root), and no name in `taken` is used for anything new. Of the
 /// frequency alone, motion and steps are empty.
 ///
 /// # Errors
@@ -70,6 +73,7 @@ pub fn expand_exactly(
     delta: Option<Symbol>,
     inverse_slope: Option<&Polynomial>,
     (taken, extent): (&[Symbol], Extent),
+    supervision: Supervision,
 ) -> Result<ExactSeries, SecularError> {
     let scales = scales(terms);
     let reduced: Vec<Term> = terms
@@ -96,7 +100,7 @@ pub fn expand_exactly(
             let constant =
                 |number: Rational| FourierSeries::constant(Integers, number.numer().clone()).over(number.denom());
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
-            let expansion = expand_numbers(&force, order as usize, scheme, extent)?;
+            let expansion = expand_numbers_supervised(&force, order as usize, scheme, extent, supervision)?;
             Ok(collect(&expansion, scheme, over::<Integer>, restore, taken))
         }
         _ => {
@@ -106,7 +110,8 @@ pub fn expand_exactly(
                 Some(inverse) => {
                     let inverse = over_integers(&without(inverse, &scales));
                     let ring = Polynomials(Integers);
-                    let mut expansion = expand_from_root(&ring, &force, order as usize, scheme, Some(inverse))?;
+                    let mut expansion =
+                        expand_supervised(&ring, &force, order as usize, scheme, Some(inverse), supervision)?;
                     if extent == Extent::Frequency {
                         expansion.forget_motion();
                     }
@@ -261,6 +266,7 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
         frequency_squared: sum(&orders(&expansion.frequency_squared)).constant_term(),
         steps: (0..displacement.len()).map(step).collect(),
         displacement: sum(&displacement),
+        highest: expansion.frequency.len().saturating_sub(1) as u32,
     }
 }
 

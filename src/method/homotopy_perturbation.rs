@@ -34,6 +34,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
+use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, SmallParameter, Term};
 use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Root, Solution};
@@ -84,6 +85,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         None,
         None,
         (&oscillator.names(), Extent::Motion),
+        Supervision::default(),
     )?;
 
     let explicit = explicit_terms(&series.frequency_squared, &force.linear, omega);

@@ -38,6 +38,7 @@ use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
+use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
 use crate::solution::note::Cut;
@@ -54,7 +55,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let term = first_term(&parts.forcing);
         return Err(Unsuited::Forcing { term }.by(Refuser::Expansion));
     }
-    let perturbation = match perturbation(oscillator, &parts, options) {
+    let mut perturbation = match perturbation(oscillator, &parts, options) {
         Err(Refusal::Oscillator(refusal @ OscillatorError::NotPolynomial(_))) => {
             return in_a_parameter(oscillator, &parts, options)?.ok_or(refusal.into());
         }
@@ -83,7 +84,17 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         false => Extent::Motion,
     };
     let names = (taken.as_slice(), extent);
-    let series = expanded(&perturbation, excited.as_ref(), &units, &parts, convention, names)?;
+    let supervision = options.supervision;
+    let series = expanded(
+        &perturbation,
+        excited.as_ref(),
+        &units,
+        &parts,
+        convention,
+        (names, supervision),
+    )?;
+    let asked = perturbation.order;
+    perturbation.order = asked.min(series.highest);
 
     let in_numbers = |polynomial: Polynomial| match (&root, force.linear.as_number()) {
         (Some(root), Some(square)) => with_square(&polynomial, root.symbol, &square),
@@ -95,18 +106,23 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     });
     // In powers of the amplitude, the small parameter is the symbol that stands for it.
     let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
-    let amplitude = amplitude_of(&displacement, convention);
+    let amplitude = match extent {
+        Extent::Motion => amplitude_of(&displacement, convention),
+        // To leading order: the rest of it belongs to the motion.
+        Extent::Frequency => in_numbers(unit.clone()),
+    };
     let limit_cycle = excited
         .as_ref()
         .map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
     let mut validity = vec![perturbation.cut(small)];
+    if perturbation.order < asked {
+        validity.push(Note::Stopped { asked });
+    }
     if let (Some(excited), Some(limit_cycle)) = (&excited, &limit_cycle) {
         let own = &limit_cycle.cycles[excited.number - 1];
         validity.push(Note::Stability(own.clone()));
         validity.extend(excited.cycle().remark.clone());
     }
-    // Its amplitude belongs to the motion.
-    let limit_cycle = limit_cycle.filter(|_| extent == Extent::Motion);
     validity.extend(root.iter().cloned().chain(of_cycle).map(Note::Positive));
     let squared = series
         .frequency_squared
@@ -273,7 +289,7 @@ fn expanded(
     units: &Units,
     parts: &Parts,
     convention: AmplitudeConvention,
-    names: (&[Symbol], Extent),
+    (names, supervision): ((&[Symbol], Extent), Supervision),
 ) -> Result<ExactSeries, Refusal> {
     let cycle = excited.map(SelfExcitation::cycle);
     let scheme = Scheme {
@@ -294,7 +310,8 @@ fn expanded(
         .collect();
     let delta = perturbation.delta(convention);
     let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
-    let series = expand_exactly(&terms, perturbation.order, &scheme, Some(delta), inverse_slope, names);
+    let order = perturbation.order;
+    let series = expand_exactly(&terms, order, &scheme, Some(delta), inverse_slope, names, supervision);
     let mut series = series.map_err(|error| match error {
         SecularError::Growth { .. } | SecularError::Degenerate { .. } if !parts.damping.is_zero() => {
             damping_or_excitation(parts)

@@ -59,6 +59,7 @@ use table::{Choice, Entry, that_take};
 use crate::equilibrium::{Centred, centred};
 use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::{Expr, ExprError, Quotation};
+use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
@@ -95,6 +96,8 @@ pub struct Options {
     pub resonance: Option<(u32, u32)>,
     /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less time.
     pub frequency_alone: bool,
+    /// Who may stop a long expansion, which then ends with the orders that there are.
+    pub supervision: Supervision,
 }
 
 /// Why a method does not answer, and what to do instead.

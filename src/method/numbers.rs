@@ -166,6 +166,8 @@ pub fn evaluate(
     let motion = match Entry::of(solution.method).motion {
         Motion::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).ok().map(|found| found.1),
         Motion::Exact => None,
+        // The frequency alone.
+        Motion::Formula if solution.displacement.is_zero() => None,
         _ => formula_motion(oscillator, solution, &numbers, squared),
     };
     Ok(Numbers {

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! `L = M + 1` suits a hardening spring, whose omega^2 grows like s; `L = M` one that saturates. The coefficients are those
-//! of [Lindstedt and Poincare](super::lindstedt_poincare), exact.
+//! of [Lindstedt and Poincare](super::lindstedt_poincare), exact. High degrees are worked out
+//! [modulo many primes](crate::series::hermite_pade::by_primes), from the frequency alone.
 //!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
@@ -27,20 +28,27 @@ use num_traits::{One, Zero};
 use super::power_series::{PowerSeries, scaled};
 use super::{Options, Refusal, Unsuited, lindstedt_poincare};
 use crate::derivation::{Formula, Line};
+use crate::exact::big_float::BigFloat;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
-use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
+use crate::exact::{Integer, POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
+use crate::series::hermite_pade::by_primes::exact;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::Poles};
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::Pade;
 
-/// The largest degrees.
-const LARGEST_NUMERATOR: u32 = 40;
-const LARGEST_DENOMINATOR: u32 = 20;
+/// The largest degree, of numerator and denominator.
+const LARGEST_DEGREE: u32 = 60;
+
+/// Beyond this sum of the degrees the series is derived without its motion, of which the first correction is all that is used.
+const LONG: u32 = 24;
+
+/// Beyond this degree of the denominator fractions are long, and primes faster.
+const LARGEST_BY_FRACTIONS: usize = 12;
 
 /// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums of `2^degree` products of
 /// polynomials.
@@ -57,31 +65,37 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         denominator: denominator_degree,
         reason,
     };
-    if numerator_degree > LARGEST_NUMERATOR || denominator_degree > LARGEST_DENOMINATOR {
-        return Err(refused("degrees go up to [40/20]"));
+    if numerator_degree > LARGEST_DEGREE || denominator_degree > LARGEST_DEGREE {
+        return Err(refused("degrees go up to [60/60]"));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Unsuited::Convention.to(METHOD));
     }
     let order = numerator_degree + denominator_degree;
     let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
-    let series_to = |highest: u32| {
+    let series_to = |highest: u32, frequency_alone: bool| {
         let options = Options {
             order: Some(highest),
+            frequency_alone,
             ..options.clone()
         };
         lindstedt_poincare::solve(oscillator, &options)
     };
-    let mut solution = series_to(if in_amplitude { 2 * order } else { order })?;
+    let long = order > LONG;
+    let mut solution = series_to(if in_amplitude { 2 * order } else { order }, long)?;
     // The frequency of a limit cycle is mostly the same for both signs of what is small.
     let of_cycle = solution.limit_cycle.is_some() && order > 0;
     if of_cycle {
-        let further = series_to(2 * order)?;
+        let further = series_to(2 * order, long)?;
         if PowerSeries::of(&further, true).step == 2 {
             solution = further;
         }
     }
     let series = PowerSeries::of(&solution, in_amplitude || of_cycle);
+    if long {
+        let first = series_to(u32::try_from(series.step).unwrap_or(1), false)?;
+        (solution.displacement, solution.limit_cycle) = (first.displacement, first.limit_cycle);
+    }
     let quotient = quotient(&series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);
     let value = Expr::divide(&Expr::from(&series.with_powers(&quotient.above)), &Expr::from(&below))?;
@@ -110,7 +124,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Note::MotionOfSeries,
     ];
     let letters = ["p", "q"].map(|letter| fresh_stem(letter, &solution.names()));
-    solution.derivation = linear_system(&series, &quotient, &letters);
+    solution.derivation = match long {
+        // Equations by the dozen, with coefficients of thousands of digits.
+        true => vec![Line::words(format!(
+            "the {denominator_degree} linear equations for the denominator are solved modulo many primes, and put together"
+        ))],
+        false => linear_system(&series, &quotient, &letters),
+    };
     Ok(solution)
 }
 
@@ -127,6 +147,11 @@ fn quotient(
 ) -> Result<Quotient, &'static str> {
     let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
     let coefficients: Vec<Polynomial> = (0..=l + m as i64).map(|power| series.coefficient(power)).collect();
+    if m > LARGEST_BY_FRACTIONS
+        && let Some((unit, numbers)) = scaled(&coefficients)
+    {
+        return by_primes(&coefficients[0], &unit, numbers, (numerator_degree as usize, m));
+    }
     let below = denominator(&coefficients, l, m)?;
     let entry = |i: i64| {
         let mut sum = Polynomial::zero();
@@ -140,6 +165,40 @@ fn quotient(
         below,
     })
 }
+
+/// The quotient of a series `c_k = c_0 unit^k n_k` in numbers, modulo many primes.
+fn by_primes(
+    first: &Polynomial,
+    unit: &Monomial,
+    numbers: Vec<Rational>,
+    (above, below): (usize, usize),
+) -> Result<Quotient, &'static str> {
+    if numbers.iter().skip(1).all(Zero::is_zero) {
+        return Err(CONSTANT);
+    }
+    let mut minus_one = vec![Rational::zero(); numbers.len()];
+    minus_one[0] = -Rational::one();
+    let lists = exact(&[(numbers, below), (minus_one, above)]).ok_or(SINGULAR)?;
+    let [below, above] = lists.as_slice() else {
+        return Err(SINGULAR);
+    };
+    let (symbols, _) = first.single_term().ok_or(SINGULAR)?;
+    let polynomials = |numbers: &[Integer], start: &Monomial| -> Vec<Polynomial> {
+        let term = |(power, number): (i32, &Integer)| {
+            let value = Rational::new(number.clone(), below[0].clone());
+            Polynomial::term(start.product(&unit.power(power)), value)
+        };
+        (0..).zip(numbers).map(term).collect()
+    };
+    Ok(Quotient {
+        above: polynomials(above, symbols),
+        below: polynomials(below, &Monomial::one()),
+    })
+}
+
+/// Why there is no quotient.
+const SINGULAR: &str = "the equations for its denominator are singular";
+const CONSTANT: &str = "omega^2 does not depend on the amplitude";
 
 /// The equations for the denominator and then for the numerator, with the coefficients of this series in them.
 fn linear_system(series: &PowerSeries, Quotient { above, below }: &Quotient, [p, q]: &[String; 2]) -> Vec<Line> {
@@ -203,9 +262,8 @@ fn has_values(value: &Expr) -> bool {
 
 /// `q_0, ..., q_m`, the first of them one where it is a single term; or why there are none.
 fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial>, &'static str> {
-    const SINGULAR: &str = "the equations for its denominator are singular";
     if m > 0 && series.iter().skip(1).all(Polynomial::is_zero) {
-        return Err("omega^2 does not depend on the amplitude");
+        return Err(CONSTANT);
     }
     if let Some((unit, numbers)) = scaled(series) {
         let zero = Rational::zero();
@@ -314,17 +372,41 @@ fn first_correction(motion: &FourierSeries<Polynomials>, small: Symbol, step: i3
 
 /// The real zeros of the denominator, where it depends on one combination of symbols alone.
 fn poles(below: &Polynomial) -> Poles {
-    let Some((unit, coefficients)) = in_one_variable(below) else {
+    let Some((unit, exact)) = in_one_variable(below) else {
         return Poles::Unknown;
     };
+    let coefficients: Vec<f64> = exact.iter().map(to_f64).collect();
     let mut places: Vec<f64> = real_roots(&coefficients);
+    if exact.len() > LARGEST_BY_FRACTIONS + 1 {
+        // Roots of so many in doubles are taken for what they are where the exact polynomial changes its sign.
+        let floats: Vec<BigFloat> = exact.iter().map(|value| BigFloat::of_fraction(value, BITS)).collect();
+        places.retain(|place| changes_sign(&floats, *place));
+    }
     places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     let name = Expr::from(&Polynomial::term(unit, Rational::one()));
     Poles::At { name, places }
 }
 
+/// Binary digits in which the sign of a long polynomial is right.
+const BITS: usize = 1024;
+
+/// Whether a polynomial has another sign on the other side of a place.
+fn changes_sign(polynomial: &[BigFloat], place: f64) -> bool {
+    const BESIDE: f64 = 1e-6;
+    let zero = BigFloat::zero(BITS);
+    let value = |place: f64| {
+        let place = BigFloat::of_f64(place, BITS);
+        let value = polynomial
+            .iter()
+            .rev()
+            .fold(zero.clone(), |sum, number| &(&sum * &place) + number);
+        value > zero
+    };
+    value(place * (1.0 - BESIDE)) != value(place * (1.0 + BESIDE))
+}
+
 /// A polynomial as one in a single product of symbols, lowest power first.
-fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<f64>)> {
+fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<Rational>)> {
     let unit = polynomial
         .terms()
         .map(|(monomial, _)| monomial)
@@ -333,9 +415,9 @@ fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<f64>)> {
         .clone();
     let mut coefficients = Vec::new();
     for (monomial, number) in polynomial.terms() {
-        let power = (0..=LARGEST_DENOMINATOR as i32).find(|&power| unit.power(power) == *monomial)? as usize;
-        coefficients.resize(coefficients.len().max(power + 1), 0.0);
-        coefficients[power] = to_f64(number);
+        let power = (0..=LARGEST_DEGREE as i32).find(|&power| unit.power(power) == *monomial)? as usize;
+        coefficients.resize(coefficients.len().max(power + 1), Rational::zero());
+        coefficients[power] = number.clone();
     }
     Some((unit, coefficients))
 }
@@ -346,9 +428,17 @@ fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let Some(&leading) = coefficients.last().filter(|leading| degree > 0 && **leading != 0.0) else {
         return vec![];
     };
+    // In units of the mean size of the roots, in which no coefficient is out of proportion.
+    let unit = match degree > LARGEST_BY_FRACTIONS {
+        true => (coefficients[0] / leading).abs().powf(1.0 / degree as f64),
+        false => 1.0,
+    };
+    if !unit.is_normal() {
+        return vec![];
+    }
     let companion = DMatrix::from_fn(degree, degree, |row, column| {
         if column + 1 == degree {
-            -coefficients[row] / leading
+            -coefficients[row] / leading * unit.powi(row as i32 - degree as i32)
         } else {
             f64::from(u8::from(row == column + 1))
         }
@@ -357,7 +447,7 @@ fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let real = eigenvalues
         .iter()
         .filter(|value| value.im.abs() < 1e-9 * (1.0 + value.re.abs()));
-    real.map(|value| value.re).collect()
+    real.map(|value| value.re * unit).collect()
 }
 
 #[cfg(test)]
@@ -440,9 +530,9 @@ mod tests {
         assert!(product(18).starts_with("poles at k*A^2 = 2:"), "{}", product(18));
         // Beyond the highest degree nothing is listed.
         assert!(
-            product(20).starts_with("where its denominator vanishes"),
+            product(60).starts_with("where its denominator vanishes"),
             "{}",
-            product(20)
+            product(60)
         );
         // A pair of zeros next to the axis is none on it, at any scale; a double zero is two.
         for unit in [1.0, 1e3, 1e-3] {
@@ -475,7 +565,7 @@ mod tests {
         for (equation, degrees, reason) in [
             ("x'' + k*x = 0", (2, 1), "does not depend on the amplitude"),
             ("x'' + x + k*x^3 + b*x^5 = 0", (13, 13), "give numbers"),
-            ("x'' + sin(x) = 0", (20, 21), "[40/20]"),
+            ("x'' + sin(x) = 0", (20, 61), "[60/60]"),
         ] {
             let refusal = approximant(equation, degrees).unwrap_err();
             assert!(refusal.to_string().contains(reason), "{refusal}");

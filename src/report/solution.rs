@@ -2,15 +2,17 @@
 
 use std::borrow::Cow;
 
+use num_traits::{One, Zero};
+
 use super::{Block, Document};
 use crate::decimal::decimal;
-use crate::exact::Polynomial;
+use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::solution::law::Shown;
 use crate::solution::modulation::Release;
-use crate::solution::{LeadingCycle, LimitCycle, Modulation, Solution, constant_in_words};
-use crate::symbol::Symbol;
+use crate::solution::{LeadingCycle, LimitCycle, Modulation, Solution, Sum, constant_in_words};
+use crate::symbol::{Symbol, fresh};
 use crate::verify::Verification;
 
 /// The document of a solution: equation, title, law, limit cycle, motion with definitions, validity, verdict.
@@ -38,7 +40,9 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
         None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws];
-    if let Some(cycle) = &solution.limit_cycle {
+    // Where the motion is left out, so is its amplitude.
+    let cycle = solution.limit_cycle.as_ref();
+    if let Some(cycle) = cycle.filter(|_| !solution.displacement.is_zero()) {
         let amplitude = Block::CycleAmplitude {
             symbol: solution.amplitude.symbol(),
             amplitude: solution.ordered(&cycle.amplitude),
@@ -74,10 +78,15 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
         Shown::Squared(squared) => vec![explicit(&omega * &omega, squared)],
         Shown::Frequency(frequency) => vec![explicit(omega, frequency)],
         Shown::Relation(relation) => vec![Block::Relation(solution.by_falling_frequency(relation))],
-        Shown::Closed(form) => vec![Block::Equality {
-            left: if form.squared { &omega * &omega } else { omega },
-            right: &form.value,
-        }],
+        Shown::Closed(form) => {
+            let left = if form.squared { &omega * &omega } else { omega };
+            in_decimals(solution, &form.value, &left).unwrap_or_else(|| {
+                vec![Block::Equality {
+                    left,
+                    right: &form.value,
+                }]
+            })
+        }
         Shown::Quadrature(lines) => lines.iter().map(|line| Block::Line(Cow::Borrowed(line))).collect(),
         Shown::System(system) => {
             let equations = system.equations.iter();
@@ -90,6 +99,54 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
                 .collect()
         }
     }
+}
+
+/// A quotient of polynomials whose coefficients are too long for eyes, in decimals; `None` for everything else.
+fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec<Block<'a>>> {
+    /// Binary digits of a number that is read as it is: some six hundred decimal ones.
+    const LONGEST: u64 = 2000;
+    solution.degrees?;
+    let fraction = value.fraction();
+    let polynomial = |factors: Vec<Expr>| Expr::product(factors).to_polynomial(&mut |_| None).ok().flatten();
+    let above = polynomial(fraction.numerator)?;
+    let below = polynomial(fraction.denominator)?;
+    let longest = above
+        .terms()
+        .chain(below.terms())
+        .map(|(_, number)| number.numer().bits())
+        .max()?;
+    if longest < LONGEST {
+        return None;
+    }
+    let first = below.coefficient(&Monomial::one());
+    let sign = if fraction.negative {
+        -Rational::one()
+    } else {
+        Rational::one()
+    };
+    let over = |polynomial: &Polynomial, factor: &Rational| polynomial.map(|number| number * factor / &first);
+    let letters = ["P", "Q"].map(|letter| fresh(letter, &solution.names()));
+    let quotient = Monomial::power_of(letters[0], 1).product(&Monomial::power_of(letters[1], -1));
+    let sum =
+        |polynomial: &Polynomial, rounded: bool| Sum::new(polynomial, rounded, |monomial| solution.order_of(monomial));
+    let law = |name: Symbol, polynomial: &Polynomial| Block::Law {
+        left: Expr::from(name),
+        right: sum(polynomial, true),
+    };
+    (!first.is_zero()).then(|| {
+        vec![
+            Block::Law {
+                left: left.clone(),
+                right: sum(&Polynomial::term(quotient, Rational::one()), false),
+            },
+            law(letters[0], &over(&above, &sign)),
+            law(letters[1], &over(&below, &Rational::one())),
+            Block::Remark(format!(
+                "in decimals of six digits here, for they have {} digits; as JSON they are exact",
+                (longest as f64 * std::f64::consts::LOG10_2).ceil()
+            )),
+        ]
+    })
 }
 
 /// The slow equations: `a' = ...`, `psi' = ...`.

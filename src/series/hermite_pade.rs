@@ -13,6 +13,8 @@
 //! others by subtracting a multiple of that one. The one that has most room below its degrees is taken. What comes out on the way are
 //! the approximants to all lower orders. Cost: `3 m n^2/2` products.
 
+pub(crate) mod by_primes;
+
 /// Numbers that divide: residues modulo a prime, or floats of many digits.
 pub(crate) trait Field {
     /// A number.

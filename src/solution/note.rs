@@ -143,6 +143,11 @@ pub enum Note {
         /// The order given.
         given: u32,
     },
+    /// The expansion was stopped before the order asked for.
+    Stopped {
+        /// The order asked for.
+        asked: u32,
+    },
     /// A meaning that is taken to be positive.
     Positive(Definition),
     /// An expansion of a force with corners.
@@ -337,6 +342,12 @@ impl fmt::Display for Note {
                 formatter,
                 "order {asked} was asked for; {given} is the highest for this equation"
             ),
+            Self::Stopped { asked } => {
+                write!(
+                    formatter,
+                    "stopped before order {asked}, which was asked for: these are the orders that there were"
+                )
+            }
             Self::SteadyAmplitudes {
                 square,
                 polynomial,

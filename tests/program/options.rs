@@ -408,6 +408,46 @@ fn the_frequency_is_the_same_with_and_without_the_motion() {
     }
 }
 
+/// What is there when the time is up is printed: an expansion to the order that its primes were enough for.
+#[test]
+fn an_expansion_that_is_stopped_keeps_its_orders() {
+    let long = [
+        "derive",
+        "van-der-pol",
+        "--order",
+        "600",
+        "--omega-only",
+        "--format",
+        "json",
+    ];
+    let output = run(&[&long[..], &["--timeout", "1"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(
+        message.contains("stopped early") && message.contains("of 600"),
+        "{message}"
+    );
+    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    let order = document["order"].as_u64().expect("an order");
+    assert!((32..600).contains(&order), "{order}");
+    let text = document["validity"].to_string();
+    assert!(text.contains("stopped before order 600"), "{text}");
+    // They are the orders of a shorter expansion.
+    let order = order.to_string();
+    let shorter = json(&["derive", "van-der-pol", "--order", &order, "--omega-only"]);
+    assert_eq!(shorter["frequency"], document["frequency"]);
+}
+
+#[test]
+fn the_threads_of_an_expansion_change_nothing() {
+    let on = |jobs: &str| {
+        let output = run(&["derive", "van-der-pol", "--order", "80", "--jobs", jobs]);
+        assert!(output.status.success());
+        output.stdout
+    };
+    assert_eq!(on("1"), on("3"));
+}
+
 #[test]
 fn the_frequency_alone_has_a_higher_limit() {
     let refused = run(&["derive", "duffing", "--order", "401"]);

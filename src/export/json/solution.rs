@@ -207,7 +207,7 @@ pub struct Harmonic {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct LimitCycle {
-    /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate.
+    /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate; to leading order where the motion is left out.
     pub amplitude: Polynomial,
     /// Which of the `cycles` it is, counted from one.
     pub number: usize,

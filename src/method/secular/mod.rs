@@ -28,6 +28,7 @@ use num_integer::Integer as _;
 
 use crate::exact::ring::Indivisible;
 use crate::exact::{Integers, Polynomials, Ring};
+use crate::interrupt::Supervision;
 use crate::series::convolution::{Convolutions, Node};
 use crate::series::fourier::{FourierSeries, sum_of_products};
 use crate::solution::AmplitudeConvention;
@@ -225,6 +226,20 @@ pub fn expand_numbers(
     scheme: &Scheme,
     extent: Extent,
 ) -> Result<Expansion<Integers>, SecularError> {
+    expand_numbers_supervised(force, highest, scheme, extent, Supervision::default())
+}
+
+/// As [`expand_numbers`], to the order that it has reached where it is stopped.
+///
+/// # Errors
+/// See [`SecularError`].
+pub(crate) fn expand_numbers_supervised(
+    force: &[ForceTerm<Integers>],
+    highest: usize,
+    scheme: &Scheme,
+    extent: Extent,
+    supervision: Supervision,
+) -> Result<Expansion<Integers>, SecularError> {
     /// Below, whole numbers are short enough.
     const LONG: usize = 8;
     bounded(
@@ -241,17 +256,20 @@ pub fn expand_numbers(
         })
         .collect();
     let orders = highest / step;
-    let by_primes = (orders >= LONG).then(|| reconstruct::expand(&compressed, orders, scheme, extent));
+    let by_primes = (orders >= LONG).then(|| reconstruct::expand(&compressed, orders, scheme, extent, supervision));
     let mut expansion = match by_primes.flatten() {
         Some(expansion) => expansion,
-        None => expand(&Integers, &compressed, orders, scheme)?,
+        None => expand_supervised(&Integers, &compressed, orders, scheme, None, supervision)?,
     };
     if extent == Extent::Frequency {
         expansion.forget_motion();
     }
     Ok(match step {
         1 => expansion,
-        _ => expansion.spread(step, highest),
+        _ => match expansion.frequency.len() {
+            reached if reached <= orders => expansion.spread(step, (reached - 1) * step),
+            _ => expansion.spread(step, highest),
+        },
     })
 }
 
@@ -372,14 +390,33 @@ pub fn expand_from_root<R: Ring>(
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
 ) -> Result<Expansion<R>, SecularError> {
+    expand_supervised(ring, force, highest, scheme, inverse_slope, Supervision::default())
+}
+
+/// As [`expand_from_root`], to the order that it has reached where it is stopped; the first is waited for.
+///
+/// # Errors
+/// See [`SecularError`].
+pub(crate) fn expand_supervised<R: Ring>(
+    ring: &R,
+    force: &[ForceTerm<R>],
+    highest: usize,
+    scheme: &Scheme,
+    inverse_slope: Option<FourierSeries<R>>,
+    supervision: Supervision,
+) -> Result<Expansion<R>, SecularError> {
     let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
     let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
     bounded(powers, highest.saturating_add(of_amplitude))?;
     let mut order_by_order = OrderByOrder::new(ring, force, highest, *scheme, inverse_slope);
-    for order in 1..=highest {
-        order_by_order.solve_order(order)?;
+    supervision.progress.begin(highest);
+    let mut reached = 0;
+    while reached < highest && !(reached > 0 && supervision.interrupt.is_requested()) {
+        reached += 1;
+        order_by_order.solve_order(reached)?;
+        supervision.progress.advance();
     }
-    order_by_order.fix_last_amplitude(highest)?;
+    order_by_order.fix_last_amplitude(reached)?;
     Ok(order_by_order.result)
 }
 

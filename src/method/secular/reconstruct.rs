@@ -23,6 +23,7 @@ use super::{Amplitude, Expansion, ForceTerm, Scheme, SecularSine};
 use crate::exact::residue::remainder::{Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Modulus, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Rational};
+use crate::interrupt::Supervision;
 use crate::series::FourierSeries;
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
@@ -43,8 +44,9 @@ pub fn expand(
     highest: usize,
     scheme: &Scheme,
     extent: Extent,
+    supervision: Supervision,
 ) -> Option<Expansion<Integers>> {
-    by_widest(Expand(force, highest, *scheme, extent))
+    by_widest(Expand(force, highest, *scheme, extent, supervision))
 }
 
 /// Up to this order one thread is done before others have begun.
@@ -54,13 +56,13 @@ const ALONE: usize = 40;
 /// The order to which long expansions are first derived to see how their denominators grow.
 const GUESSED: usize = 32;
 
-struct Expand<'a>(&'a [ForceTerm<Integers>], usize, Scheme, Extent);
+struct Expand<'a>(&'a [ForceTerm<Integers>], usize, Scheme, Extent, Supervision);
 
 impl Work for Expand<'_> {
     type Output = Option<Expansion<Integers>>;
 
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        let Self(force, highest, scheme, extent) = self;
+        let Self(force, highest, scheme, extent, supervision) = self;
         let terms: Vec<Term> = force
             .iter()
             .map(|term| {
@@ -87,15 +89,32 @@ impl Work for Expand<'_> {
             }
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
-        let beginning = match highest > 2 * GUESSED {
+        let shorter = match highest > 2 * GUESSED {
             false => None,
-            true => Some(Beginning::of(
-                &Reconstruction::new(arithmetic, &plan(GUESSED)?, extent).orders(None)?,
-            )?),
+            true => {
+                let plan = plan(GUESSED)?;
+                let orders = Reconstruction::new(arithmetic, &plan, extent, Supervision::default()).orders(None)?;
+                Some((plan, orders))
+            }
+        };
+        let beginning = match &shorter {
+            Some((_, orders)) => Some(Beginning::of(orders)?),
+            None => None,
         };
         let plan = plan(highest)?;
-        let orders = Reconstruction::new(arithmetic, &plan, extent).orders(beginning)?;
-        Some(expansion(&plan, orders, slope, extent))
+        let orders = Reconstruction::new(arithmetic, &plan, extent, supervision).orders(beginning);
+        match (orders, shorter) {
+            (Some(orders), shorter)
+                if !orders.is_empty() && shorter.as_ref().is_none_or(|(_, own)| orders.len() >= own.len()) =>
+            {
+                Some(expansion(&plan, orders, slope, extent))
+            }
+            // Stopped so early that the shorter expansion is the longer one.
+            (_, Some((plan, orders))) if supervision.interrupt.is_requested() => {
+                Some(expansion(&plan, orders, slope, extent))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -112,6 +131,7 @@ struct Reconstruction<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     extent: Extent,
+    supervision: Supervision,
     primes: Vec<u64>,
     source: Box<dyn Iterator<Item = u64> + Send + Sync>,
     /// What the first primes see, of all orders.
@@ -119,11 +139,12 @@ struct Reconstruction<'a, A> {
 }
 
 impl<'a, A: Arithmetic> Reconstruction<'a, A> {
-    fn new(arithmetic: A, plan: &'a Plan<'a>, extent: Extent) -> Self {
+    fn new(arithmetic: A, plan: &'a Plan<'a>, extent: Extent, supervision: Supervision) -> Self {
         Self {
             arithmetic,
             plan,
             extent,
+            supervision,
             primes: vec![],
             source: Box::new(primes_below(A::BITS, plan.circle())),
             first: vec![],
@@ -174,22 +195,46 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some(count)
     }
 
-    /// Images of the primes from `self.first.len()` up to `count`, each from the order on that it is wanted for.
+    /// Images of the primes from `self.first.len()` up to `count`, each from the order on that it is wanted for; fewer where the work
+    /// is stopped.
     fn images(&self, count: usize, wanted: impl Fn(usize) -> usize + Sync) -> Option<Vec<Image>> {
-        let images = |places: &[usize]| -> Option<Vec<Image>> {
+        /// Primes of a lot use the same memory; after so many lots for each thread all threads meet, so that what is there when the work is
+        /// stopped has no gaps.
+        #[cfg(feature = "parallel")]
+        const LOT: usize = 8;
+        #[cfg(feature = "parallel")]
+        const LOTS: usize = 32;
+        let lot = |places: &[usize]| -> Option<Vec<Image>> {
             let mut recursion = Recursion::new(self.arithmetic, self.plan);
-            let image = |place: &usize| recursion.image(self.primes[*place], wanted(*place));
-            places.iter().map(image).collect()
+            let mut images = Vec::with_capacity(places.len());
+            for place in places {
+                if self.supervision.interrupt.is_requested() {
+                    break;
+                }
+                images.push(recursion.image(self.primes[*place], wanted(*place))?);
+                self.supervision.progress.advance();
+            }
+            Some(images)
         };
         let places: Vec<usize> = (self.first.len()..count).collect();
         #[cfg(feature = "parallel")]
         if self.plan.highest > ALONE {
-            // A few lots for each thread: within one, the memory is used again.
-            let lot = places.len().div_ceil(4 * rayon::current_num_threads()).max(1);
-            let lots: Option<Vec<Vec<Image>>> = places.par_chunks(lot).map(images).collect();
-            return Some(lots?.into_iter().flatten().collect());
+            let threads = rayon::current_num_threads();
+            let length = places.len().div_ceil(4 * threads).clamp(1, LOT);
+            let mut images = Vec::with_capacity(places.len());
+            for block in places.chunks(length * LOTS * threads) {
+                let lots: Option<Vec<Vec<Image>>> = block.par_chunks(length).map(lot).collect();
+                for (own, places) in lots?.into_iter().zip(block.chunks(length)) {
+                    let whole = own.len() == places.len();
+                    images.extend(own);
+                    if !whole {
+                        return Some(images);
+                    }
+                }
+            }
+            return Some(images);
         }
-        images(&places)
+        lot(&places)
     }
 
     /// The first orders as fractions, by as many primes as they need.
@@ -209,6 +254,9 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
             let more = self.images(count, |_| from)?;
             self.first.extend(more);
+            if self.first.len() < count {
+                return None;
+            }
             digits *= 1.5;
             let moduli: Vec<Modulus> = self.first.iter().map(|image| image.modulus).collect();
             let remainders = Remainders::new(self.arithmetic, &moduli);
@@ -296,8 +344,13 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             Extent::Motion => counts.partition_point(|count| *count < place),
             Extent::Frequency => usize::MAX,
         };
+        self.supervision
+            .progress
+            .begin((most + 1).saturating_sub(self.first.len()));
         let images: Vec<Image> = self.images(most + 1, wanted)?;
         let all: Vec<&Image> = self.first.iter().chain(&images).collect();
+        // Of work that was stopped there are the orders for which the primes are enough.
+        counts.truncate(counts.partition_point(|count| *count < all.len()));
         let mut groups: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
         for (order, count) in counts.into_iter().enumerate() {
             match groups.last_mut() {
@@ -595,12 +648,12 @@ mod tests {
                     detuning,
                 };
                 let exact = super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest = by_widest(Expand(force, highest, scheme, Extent::Motion));
+                let widest = by_widest(Expand(force, highest, scheme, Extent::Motion, Supervision::default()));
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                let portable = Expand(force, highest, scheme, Extent::Motion)
+                let portable = Expand(force, highest, scheme, Extent::Motion, Supervision::default())
                     .by(Portable::new())
                     .expect("the same by primes");
-                let alone = super::expand(force, highest, &scheme, Extent::Frequency);
+                let alone = super::expand(force, highest, &scheme, Extent::Frequency, Supervision::default());
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
                 assert_eq!(alone.frequency_squared, exact.frequency_squared, "{scheme:?}");
                 assert_eq!(alone.frequency, exact.frequency);
@@ -674,7 +727,25 @@ mod tests {
         };
         // A spring and damping at the same order: sines and cosines in every y_n.
         let mixed = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(1, 3, 0, (1, 1))];
-        assert!(expand(&mixed, 12, &scheme(Amplitude::Determined), Extent::Motion).is_none());
-        assert!(expand(&[term(1, 0, 1, (2, 1))], 12, &scheme(Amplitude::Free), Extent::Motion).is_none());
+        assert!(
+            expand(
+                &mixed,
+                12,
+                &scheme(Amplitude::Determined),
+                Extent::Motion,
+                Supervision::default()
+            )
+            .is_none()
+        );
+        assert!(
+            expand(
+                &[term(1, 0, 1, (2, 1))],
+                12,
+                &scheme(Amplitude::Free),
+                Extent::Motion,
+                Supervision::default()
+            )
+            .is_none()
+        );
     }
 }

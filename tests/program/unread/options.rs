@@ -100,7 +100,12 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("derive", vec!["pendulum"], vec!["--output", file]),
         ("derive", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
         ("derive", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
-        ("derive", vec!["pendulum"], vec!["--timeout", "1e-9"]),
+        (
+            "derive",
+            vec!["van-der-pol", "--order", "150", "--omega-only"],
+            vec!["--timeout", "1e-9"],
+        ),
+        ("derive", vec!["pendulum"], vec!["--jobs", "0"]),
         ("derive", vec!["pendulum"], vec!["--quiet"]),
         ("compare", vec![cubic, "--at", "eps=1"], vec!["--at", "A=1"]),
         (

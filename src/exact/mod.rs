@@ -5,7 +5,7 @@
 //!
 //! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what a derivation asks of its
 //! coefficients, so that one derivation serves exact numbers, symbols, floating point, and rings that are chosen at run time.
-//! Where rounding cannot be left out, [`BigFloat`](big_float::BigFloat) puts it as far away as is asked for.
+//! Where rounding cannot be left out, `BigFloat` puts it as far away as is asked for.
 
 pub(crate) mod big_float;
 pub(crate) mod integer;

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! With omega^2 for `f` the last is the period, which has a logarithm where a motion takes for ever, and the differential approximants
-//! take that as it is. All three kinds of [approximant](super::hermite_pade) are made of all coefficients, and of fewer and fewer. Zeros
+//! take that as it is. All three kinds of approximant are made of all coefficients, and of fewer and fewer. Zeros
 //! that are no singularities of the series, and there are many, move from one to the next; one that stays is believed, and how far it
 //! moves is the estimate of its error. Which kind converges fastest is seen by that. It must stand where the growth of the coefficients
 //! says, and where several kinds have found it they must agree within their errors, or the error is what they differ by.

@@ -116,6 +116,7 @@ impl CompiledFunction {
         let mut compiler = Compiler {
             arguments,
             known: HashMap::new(),
+            sizes: HashMap::new(),
             constants: Vec::new(),
             code: Vec::new(),
         };
@@ -198,6 +199,8 @@ struct Compiler<'a> {
     arguments: &'a [Symbol],
     /// Equal subexpressions share one slot.
     known: HashMap<Expr, Slot>,
+    /// The [sizes](Compiler::size) of all of them.
+    sizes: HashMap<Expr, i64>,
     constants: Vec<f64>,
     code: Vec<Operation>,
 }
@@ -216,7 +219,7 @@ impl Compiler<'_> {
             }
             (Node::Sum(terms), _) => self.sum(terms, children),
             (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
-            (Node::Power(base, exponent), _) if shift(base, exponent.as_number()).is_some() => {
+            (Node::Power(base, exponent), _) if self.shift(base, exponent.as_number()).is_some() => {
                 self.product(&Rational::one(), std::slice::from_ref(expr), children)
             }
             (Node::Power(_, exponent), [base, exponent_slot]) => match exponent.as_number() {
@@ -234,7 +237,50 @@ impl Compiler<'_> {
             (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
         };
         self.known.insert(expr.clone(), slot);
+        let size = self.size(expr);
+        self.sizes.insert(expr.clone(), size);
         Ok(slot)
+    }
+
+    /// By how many bits the numbers in an expression make it large, those of the sums in it included.
+    fn size(&self, expr: &Expr) -> i64 {
+        let of = |part: &Expr| self.sizes.get(part).copied().unwrap_or(0);
+        match expr.node() {
+            Node::Number(number) => bits(number),
+            Node::Product(coefficient, factors) => {
+                let factors = factors.iter().map(of);
+                factors.fold(bits(coefficient), i64::saturating_add)
+            }
+            Node::Sum(terms) => terms.iter().map(of).max().unwrap_or(0),
+            Node::Power(base, exponent) => {
+                let exponent = exponent.as_number().map_or(0.0, to_f64);
+                (of(base) as f64 * exponent) as i64
+            }
+            _ => 0,
+        }
+    }
+
+    /// The shift of a sum whose numbers are so large that a few of them in a product, or what makes up for them before it, are beyond
+    /// double precision; none for other bases and exponents.
+    fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
+        const LONG: u64 = 200;
+        /// What is larger is no number of anybody's equation, and beyond double precision whatever stands before it.
+        const LONGEST: u64 = 100_000;
+        let size = match base.node() {
+            Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,
+            _ => return None,
+        };
+        let exponent = exponent?;
+        let (numerator, denominator) = (exponent.numer().to_i32()?, exponent.denom().to_u32()?);
+        if !(LONG..=LONGEST).contains(&size) {
+            return None;
+        }
+        // The root of the divisor is to be a power of two as well.
+        let root_bits = size.div_ceil(u64::from(denominator));
+        Some(Shift {
+            bits: root_bits * u64::from(denominator),
+            made_up: Rational::from_integer(Integer::one() << root_bits as usize).pow(numerator),
+        })
     }
 
     fn sum(&mut self, terms: &[Expr], slots: &[Slot]) -> Slot {
@@ -273,7 +319,7 @@ impl Compiler<'_> {
                 Node::Power(base, exponent) => (base, exponent.as_number().cloned()),
                 _ => (factor, Some(Rational::one())),
             };
-            places.push(match (shift(base, exponent.as_ref()), exponent) {
+            places.push(match (self.shift(base, exponent.as_ref()), exponent) {
                 (Some(shift), Some(exponent)) => {
                     let sum = self.scaled_sum(base, shift.bits);
                     coefficient *= shift.made_up;
@@ -433,15 +479,9 @@ impl Compiler<'_> {
     }
 }
 
-/// The bits before the point of the largest number before a term of a sum; of a fraction of two long numbers they are few.
-fn longest_number(sum: &Expr) -> u64 {
-    let bits = sum.terms().iter().map(|term| match term.node() {
-        Node::Number(number) | Node::Product(number, _) => {
-            (number.numer().bits() + 1).saturating_sub(number.denom().bits())
-        }
-        _ => 1,
-    });
-    bits.max().unwrap_or(0)
+/// The bits of a number before the point, of a small one those before its first digit, negative.
+fn bits(number: &Rational) -> i64 {
+    number.numer().bits() as i64 - number.denom().bits() as i64 + 1
 }
 
 /// By what a sum is divided before it is raised to a power, and what makes up for it after.
@@ -450,26 +490,6 @@ struct Shift {
     bits: u64,
     /// `2^(bits*exponent)`, a fraction.
     made_up: Rational,
-}
-
-/// The shift of a sum whose numbers are near the end of double precision or beyond; none for other bases and exponents.
-fn shift(base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
-    const LONG: u64 = 900;
-    let longest = match base.node() {
-        Node::Sum(_) => longest_number(base),
-        _ => return None,
-    };
-    let exponent = exponent?;
-    let (numerator, denominator) = (exponent.numer().to_i32()?, exponent.denom().to_u32()?);
-    if longest <= LONG {
-        return None;
-    }
-    // The root of the divisor is to be a power of two as well.
-    let root_bits = longest.div_ceil(u64::from(denominator));
-    Some(Shift {
-        bits: root_bits * u64::from(denominator),
-        made_up: Rational::from_integer(Integer::one() << root_bits as usize).pow(numerator),
-    })
 }
 
 /// A factor whose zero covers a whole interval, on which the other factors need no value.

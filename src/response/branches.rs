@@ -118,15 +118,9 @@ impl Asked<'_> {
         };
         let between = |pair: &[Node], of: &[DVector<f64>]| {
             let [one, other] = pair else { return false };
-            let way = other.parameter - one.parameter;
-            let part = if way == 0.0 {
-                0.0
-            } else {
-                (parameter - one.parameter) / way
-            };
-            if !(-1e-9..=1.0 + 1e-9).contains(&part) {
+            let Some(part) = one.part_of_way(other, parameter) else {
                 return false;
-            }
+            };
             let guess = &one.coefficients + (&other.coefficients - &one.coefficients) * part;
             let solved = || balance.solve(&guess, parameter);
             is_one(&guess, of, NEAR, true) && solved().is_some_and(|found| is_one(&found, of, SAME, false))

@@ -33,6 +33,17 @@ pub struct Node {
 }
 
 impl Node {
+    /// Where a parameter lies on the way to the next node, from zero to one; `None` where it does not.
+    pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
+        let way = next.parameter - self.parameter;
+        let part = if way == 0.0 {
+            0.0
+        } else {
+            (parameter - self.parameter) / way
+        };
+        (-1e-9..=1.0 + 1e-9).contains(&part).then_some(part)
+    }
+
     /// Position and velocity at phase zero.
     pub fn begins(&self, balance: &Balance) -> [f64; 2] {
         self.truth.map_or_else(

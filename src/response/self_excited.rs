@@ -73,14 +73,7 @@ impl Asked<'_> {
                 let path = self.swing(place, radius, parameter, backward, SEARCHED);
                 path.map_or(f64::NAN, |path| path.end().x - 1.0)
             };
-            let mut before = f64::NAN;
-            for ring in -RINGS..=RINGS {
-                let radius = RATIO.powi(ring);
-                let after = growth(radius);
-                let changes = before * after < 0.0 && before.abs().min(after.abs()) > ROUNDING;
-                let fixed = changes.then(|| find_root(growth, radius / RATIO, radius).ok());
-                before = after;
-                let Some(radius) = fixed.flatten() else { continue };
+            for radius in fixed_radii(growth) {
                 let Some(path) = self.swing(place, radius, parameter, backward, FOUND) else {
                     continue;
                 };
@@ -123,17 +116,10 @@ impl Asked<'_> {
             (course.turned() && away > 0.0).then_some((course, away))
         };
         let growth = |radius: f64| swing(radius, SEARCHED).map_or(f64::NAN, |(_, away)| away / radius - 1.0);
-        let mut before = f64::NAN;
-        for ring in -RINGS..=RINGS {
-            let radius = RATIO.powi(ring);
-            let after = growth(radius);
-            let changes = before * after < 0.0 && before.abs().min(after.abs()) > ROUNDING;
-            let fixed = changes.then(|| find_root(growth, radius / RATIO, radius).ok());
-            before = after;
-            let found = fixed.flatten().and_then(|radius| Some((radius, swing(radius, FOUND)?)));
+        for radius in fixed_radii(growth) {
             // A jump from growing to shrinking is no cycle.
-            let found = found.filter(|(radius, (_, away))| (away / radius - 1.0).abs() <= 1e-4);
-            if let Some((radius, (course, _))) = found {
+            let found = swing(radius, FOUND).filter(|(_, away)| (away / radius - 1.0).abs() <= 1e-4);
+            if let Some((course, _)) = found {
                 seeds.push(Seed {
                     parameter,
                     frequency: std::f64::consts::TAU / course.duration(),
@@ -184,3 +170,18 @@ impl Asked<'_> {
 /// Tolerance of a step and steps, while cycles are looked for and where one is found.
 const SEARCHED: (f64, usize) = (1e-9, 600);
 const FOUND: (f64, usize) = (1e-11, 4000);
+
+/// The radii, ring by ring, at which a turn neither grows nor shrinks.
+fn fixed_radii(growth: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut before = f64::NAN;
+    let mut radii = Vec::new();
+    for ring in -RINGS..=RINGS {
+        let radius = RATIO.powi(ring);
+        let after = growth(radius);
+        if before * after < 0.0 && before.abs().min(after.abs()) > ROUNDING {
+            radii.extend(find_root(&growth, radius / RATIO, radius).ok());
+        }
+        before = after;
+    }
+    radii
+}

@@ -454,15 +454,9 @@ impl Asked<'_> {
         let apart = |other: [f64; 2]| (other[0] - start[0]).hypot((other[1] - start[1]) / omega);
         path.nodes.windows(2).any(|pair| {
             let [one, other] = pair else { return false };
-            let way = other.parameter - one.parameter;
-            let part = if way == 0.0 {
-                0.0
-            } else {
-                (parameter - one.parameter) / way
-            };
-            if !(-1e-9..=1.0 + 1e-9).contains(&part) {
+            let Some(part) = one.part_of_way(other, parameter) else {
                 return false;
-            }
+            };
             let starts = [one, other].map(|node| node.begins(balance));
             let guess = [0, 1].map(|index| starts[0][index] + part * (starts[1][index] - starts[0][index]));
             let map = PeriodMap::new(self, size, parameter);

@@ -157,12 +157,17 @@ impl Digits {
     }
 }
 
-/// The fraction with this residue modulo `modulus` whose numerator and denominator together have at least 24 binary digits fewer
+/// The fraction with this residue modulo `modulus`, between its two halves or positive, whose numerator and denominator together have at least 24 binary digits fewer
 /// than the modulus, so that another fraction with the same residue would be a coincidence; Wang's algorithm.
 pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
     const ROOM: u64 = 24;
     let bound = modulus.bits() / 2;
-    let (mut larger, mut smaller) = (modulus.clone(), residue.clone());
+    let positive = if residue.is_negative() {
+        residue + modulus
+    } else {
+        residue.clone()
+    };
+    let (mut larger, mut smaller) = (modulus.clone(), positive);
     let (mut before, mut denominator) = (Integer::zero(), Integer::one());
     while smaller.bits() > bound {
         let (quotient, rest) = larger.div_rem(&smaller);

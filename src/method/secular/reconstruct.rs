@@ -299,12 +299,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let weights: Vec<u64> = remainders.weights(scaled).collect();
             let residues = weighted(&self.first, &weights, |image| number(image, index));
             let residue = remainders.lift(&residues).to_integer::<A>();
-            let positive = if residue < Integer::zero() {
-                residue + product
-            } else {
-                residue
-            };
-            let (numerator, more) = fraction(&positive, product)?;
+            let (numerator, more) = fraction(&residue, product)?;
             denominator *= more;
             largest = largest.max(numerator.bits() as f64 - denominator.bits() as f64);
             if 2 * denominator.bits() > product.bits() {

@@ -349,12 +349,7 @@ fn fractions<A: Arithmetic>(
             *residue = image.modulus.product(image.orders[order][index], *weight);
         }
         let number = remainders.lift(&residues).to_integer::<A>();
-        let positive = if number < Integer::zero() {
-            number + product
-        } else {
-            number
-        };
-        let (numerator, more) = fraction(&positive, product)?;
+        let (numerator, more) = fraction(&number, product)?;
         if !more.is_one() {
             denominator *= more;
             if 2 * denominator.bits() > product.bits() {

@@ -385,39 +385,10 @@ fn add_baseline(
 }
 
 fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
-    if arguments.sweep.len() > 2 && arguments.common.plot.is_some() {
-        return Err(Failure::Usage(
-            "--plot draws curves over one parameter or a map over two, but more are swept: leave out --plot, or draw a map \
-             for each value of the others, given in the file"
-                .to_owned(),
-        ));
-    }
-    if arguments
-        .integrator
-        .is_some_and(|integrator| integrator != Method::Taylor)
-        || !arguments.sample.is_empty()
-    {
-        return Err(Failure::Usage(
-            "a sweep is done by Taylor series, or with --chain by closed forms, and reports one line a motion: leave out \
-             --integrator and --sample"
-                .to_owned(),
-        ));
-    }
+    check_sweep(arguments)?;
     let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();
-    // Draws on standard error, and only where that is a terminal.
-    let bar = if arguments.quiet {
-        ProgressBar::hidden()
-    } else {
-        ProgressBar::new(if arguments.baseline {
-            3 * total as u64
-        } else {
-            total as u64
-        })
-    };
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
-        bar.set_style(style);
-    }
+    let bar = bar_of(if arguments.baseline { 3 * total } else { total }, arguments.quiet);
     let route = match arguments.chain {
         true => Integrator::Chain,
         false => Integrator::Taylor,
@@ -439,11 +410,8 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         axes: &arguments.sweep,
         rows: &rows,
     };
-    let picture = arguments
-        .common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), sweep_picture(&report)));
+    let path = arguments.common.plot.as_ref();
+    let picture = path.map(|path| (path.clone(), sweep_picture(&report)));
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
     let write = match arguments.common.format {
@@ -454,19 +422,49 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let axes = arguments.sweep.clone();
     Ok(Outcome {
         result: Box::new(move |to| {
-            write(
-                &SweepReport {
-                    axes: &axes,
-                    rows: &rows,
-                },
-                to,
-            )
+            let report = SweepReport {
+                axes: &axes,
+                rows: &rows,
+            };
+            write(&report, to)
         }),
         picture,
         note,
         verdict: Some(Verdict::of(incomplete == 0)),
         partial: incomplete > 0,
     })
+}
+
+/// What a sweep leaves no place for.
+fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.sweep.len() > 2 && arguments.common.plot.is_some() {
+        return Err(Failure::Usage(
+            "--plot draws curves over one parameter or a map over two, but more are swept: leave out --plot, or draw a map \
+             for each value of the others, given in the file"
+                .to_owned(),
+        ));
+    }
+    let other = |integrator| integrator != Method::Taylor;
+    if arguments.integrator.is_some_and(other) || !arguments.sample.is_empty() {
+        return Err(Failure::Usage(
+            "a sweep is done by Taylor series, or with --chain by closed forms, and reports one line a motion: leave out \
+             --integrator and --sample"
+                .to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+/// How many of the motions are done: on standard error, and only where that is a terminal.
+fn bar_of(motions: usize, quiet: bool) -> ProgressBar {
+    let bar = match quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(motions as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 #[cfg(not(feature = "plot"))]

@@ -509,78 +509,101 @@ fn phase_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// The library's lines and axes for one panel that is one or two columns wide; refuses what has no place on them.
-/// A logarithmic axis is drawn as a linear one of exponents, because the library's own ends at 1e-10.
 fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureError> {
     let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
     if panel.curves.is_empty() {
         return Err(FigureError::Empty(within("the list of curves".to_owned())));
     }
-    let [x_logarithmic, y_logarithmic] = [panel.x_scale, panel.y_scale].map(|scale| scale == Scale::Logarithmic);
-    let place = |x: f64| if x_logarithmic { x.log10() } else { x };
-    let height = |y: f64| if y_logarithmic { y.log10() } else { y };
     let (mut xs, mut ys, mut lines) = (Vec::new(), Vec::new(), Vec::new());
-    for Curve { label, points, style } in &panel.curves {
-        let off = |&&(x, y): &&(f64, f64)| !x.is_finite() || !y.is_finite() || place(x).is_nan() || height(y).is_nan();
-        if let Some(point) = points.iter().find(off) {
-            return Err(FigureError::OffAxes(within(format!("point {point:?} of \"{label}\""))));
-        }
-        let points = points.iter().map(|&(x, y)| (place(x), height(y)));
-        let points = points.filter(|(x, y)| x.is_finite() && y.is_finite());
-        let points: Vec<(f64, f64)> = points.collect();
-        let points = match style.1 == POINTS {
-            true => points
-                .iter()
-                .copied()
-                .step_by(points.len().div_ceil(MOST_DOTS).max(1))
-                .collect(),
-            false => thinned(&points),
-        };
-        let enough = if style.1 == POINTS { 1 } else { 2 };
-        if points.len() < enough {
-            return Err(FigureError::TooFewPoints(within(format!("curve \"{label}\""))));
-        }
+    for curve in &panel.curves {
+        let points = placed(curve, panel)?;
         xs.extend(points.iter().map(|point| point.0));
         ys.extend(points.iter().map(|point| point.1));
-        lines.push((*label, points, *style));
+        lines.push((curve.label, points, curve.style));
     }
     for guide in &panel.guides {
         let (at, label, list) = match *guide {
-            Guide::X(at, label) => (place(at), label, &mut xs),
-            Guide::Y(at, label) => (height(at), label, &mut ys),
+            Guide::X(at, label) => (panel.x_scale.place(at), label, &mut xs),
+            Guide::Y(at, label) => (panel.y_scale.place(at), label, &mut ys),
         };
         if !at.is_finite() {
             return Err(FigureError::OffAxes(within(format!("guide \"{label}\""))));
         }
         list.push(at);
     }
-    let ((x_power, x_range), (y_power, y_range)) = (extent(&xs, x_logarithmic), extent(&ys, y_logarithmic));
+    let (x_power, x_range) = extent(&xs, panel.x_scale);
+    let (y_power, y_range) = extent(&ys, panel.y_scale);
     let (x_unit, y_unit) = (10f64.powi(x_power), 10f64.powi(y_power));
-
-    let line = |label, points: Vec<(f64, f64)>, CurveStyle(colour, dashes, width)| {
-        if dashes == POINTS {
-            let points = ScatterPlot::new().with_data(points).with_color(colour).with_size(width);
-            let words = printable(label);
-            return Plot::Scatter(if words.is_empty() {
-                points
-            } else {
-                points.with_legend(words)
-            });
-        }
-        let line = LinePlot::new().with_data(points).with_color(colour);
-        let mut line = line.with_stroke_width(width);
-        line.legend_label = Some(printable(label)).filter(|label| !label.is_empty());
-        Plot::Line(line.with_line_style(LineStyle::Custom(dashes.to_owned())))
-    };
     let across = |y: f64| vec![(x_range.0, y / y_unit), (x_range.1, y / y_unit)];
     let upright = |x: f64| vec![(x / x_unit, y_range.0), (x / x_unit, y_range.1)];
     let guides = panel.guides.iter().map(|guide| match *guide {
-        Guide::X(at, label) => line(label, upright(place(at)), CurveStyle::GUIDE),
-        Guide::Y(at, label) => line(label, across(height(at)), CurveStyle::GUIDE),
+        Guide::X(at, label) => plot(label, upright(panel.x_scale.place(at)), CurveStyle::GUIDE),
+        Guide::Y(at, label) => plot(label, across(panel.y_scale.place(at)), CurveStyle::GUIDE),
     });
     let scaled = |points: Vec<(f64, f64)>| points.into_iter().map(|(x, y)| (x / x_unit, y / y_unit)).collect();
     let curves = lines.into_iter();
-    let curves = curves.map(|(label, points, style)| line(label, scaled(points), style));
+    let curves = curves.map(|(label, points, style)| plot(label, scaled(points), style));
     let lines = guides.chain(curves).collect();
+    Ok((lines, axes(panel, (x_power, x_range), (y_power, y_range), columns)))
+}
+
+impl Scale {
+    /// Where a value lies on an axis. A logarithmic axis is drawn as a linear one of exponents, because the library's own ends at 1e-10.
+    fn place(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Logarithmic => value.log10(),
+        }
+    }
+}
+
+/// The points of a curve on the axes of its panel, no more than can be told apart.
+fn placed(Curve { label, points, style }: &Curve, panel: &Panel) -> Result<Vec<(f64, f64)>, FigureError> {
+    let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
+    let place = |&(x, y): &(f64, f64)| (panel.x_scale.place(x), panel.y_scale.place(y));
+    let off = |point: &&(f64, f64)| {
+        let (x, y) = place(point);
+        !point.0.is_finite() || !point.1.is_finite() || x.is_nan() || y.is_nan()
+    };
+    if let Some(point) = points.iter().find(off) {
+        return Err(FigureError::OffAxes(within(format!("point {point:?} of \"{label}\""))));
+    }
+    let points = points.iter().map(place);
+    let points: Vec<(f64, f64)> = points.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+    let (points, enough) = match style.1 == POINTS {
+        true => {
+            let every = points.len().div_ceil(MOST_DOTS).max(1);
+            (points.into_iter().step_by(every).collect(), 1)
+        }
+        false => (thinned(&points), 2),
+    };
+    if points.len() < enough {
+        return Err(FigureError::TooFewPoints(within(format!("curve \"{label}\""))));
+    }
+    Ok(points)
+}
+
+/// A curve of the library's, or dots.
+fn plot(label: &str, points: Vec<(f64, f64)>, CurveStyle(colour, dashes, width): CurveStyle) -> Plot {
+    let words = Some(printable(label)).filter(|label| !label.is_empty());
+    if dashes == POINTS {
+        let points = ScatterPlot::new().with_data(points).with_color(colour).with_size(width);
+        return Plot::Scatter(match words {
+            None => points,
+            Some(words) => points.with_legend(words),
+        });
+    }
+    let line = LinePlot::new().with_data(points).with_color(colour);
+    let mut line = line.with_stroke_width(width);
+    line.legend_label = words;
+    Plot::Line(line.with_line_style(LineStyle::Custom(dashes.to_owned())))
+}
+
+/// The power of ten that an axis is in, and its range in units of it.
+type Extent = (i32, (f64, f64));
+
+/// The axes of a panel.
+fn axes(panel: &Panel, (x_power, x_range): Extent, (y_power, y_range): Extent, columns: usize) -> Layout {
     let mut layout = Layout::new(x_range, y_range)
         .with_title(printable(panel.title))
         .with_x_label(axis_label(panel.x_label, x_power))
@@ -598,20 +621,20 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     (layout.y_axis_min, layout.y_axis_max) = (Some(y_range.0), Some(y_range.1));
     let exponents = || TickFormat::Custom(Arc::new(|exponent: f64| power_of_ten(exponent.round() as i32)));
     let decades = |range: (f64, f64)| Some(((range.1 - range.0) / 6.0).ceil());
-    if x_logarithmic {
+    if panel.x_scale == Scale::Logarithmic {
         (layout.x_tick_step, layout.x_tick_format) = (decades(x_range), exponents());
     }
-    if y_logarithmic {
+    if panel.y_scale == Scale::Logarithmic {
         (layout.y_tick_step, layout.y_tick_format) = (decades(y_range), exponents());
     }
-    Ok((lines, layout))
+    layout
 }
 
 /// The power of ten that makes the values readable, and their range in units of it (a constant in the middle of one).
-fn extent(values: &[f64], exponents: bool) -> (i32, (f64, f64)) {
+fn extent(values: &[f64], scale: Scale) -> Extent {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if exponents {
+    if scale == Scale::Logarithmic {
         return (0, (low.floor(), high.ceil().max(low.floor() + 1.0)));
     }
     let size = low.abs().max(high.abs());

@@ -123,34 +123,22 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
         .iter()
         .map(|(t, state)| (t * second, motion.case.energy(*state)))
         .collect();
-    let primary = &motion.case.primary;
-    let [.., y, speed] = motion.case.start;
-    let [locked, without] = [primary.mass + 1.0, primary.mass];
+    let [locked, without] = [motion.case.primary.mass + 1.0, motion.case.primary.mass];
     // The first swings whole, and how all of them decay.
     let first: Vec<f64> = states
         .iter()
         .map(|(t, _)| *t)
-        .take_while(|t| *t <= FIRST_SWINGS * std::f64::consts::TAU * (locked / primary.stiffness).sqrt())
+        .take_while(|t| *t <= FIRST_SWINGS * std::f64::consts::TAU * (locked / motion.case.primary.stiffness).sqrt())
         .collect();
     let early: Vec<(f64, f64)> = with.iter().take(first.len()).copied().collect();
-    let alone = |mass: f64| -> Vec<(f64, f64)> {
-        let point = |t: &f64| (t * second, primary.alone_at(mass, [y, speed], *t) * metre);
-        first.iter().map(point).collect()
-    };
-    let decay = |mass: f64| -> Option<Vec<(f64, f64)>> {
-        let points = states.iter().step_by(10).map(|(t, _)| {
-            let height = primary.alone_envelope(mass, [y, speed], *t)?;
-            Some((t * second, height * metre))
-        });
-        points.collect()
-    };
-    let (locked_swings, swings_without) = (alone(locked), alone(without));
-    let (locked_decay, decay_without) = (decay(locked), decay(without));
+    let [locked_swings, swings_without] = [locked, without].map(|mass| swings_alone(report, mass, &first));
+    let some_times: Vec<f64> = states.iter().step_by(10).map(|(t, _)| *t).collect();
+    let [locked_decay, decay_without] = [locked, without].map(|mass| decay_alone(report, mass, &some_times));
     let curve = |label, points, style| Curve { label, points, style };
     let own = |points| curve("with its damper", points, CurveStyle::DIFFERENCE);
     let (mut all, mut some) = (vec![own(with.as_slice())], vec![own(early.as_slice())]);
     // Driven, the closed forms are those of the long run alone.
-    if primary.force == 0.0 {
+    if motion.case.primary.force == 0.0 {
         some.insert(0, curve("without", swings_without.as_slice(), CurveStyle::RUNGE_KUTTA));
         some.insert(
             1,
@@ -191,12 +179,33 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     ];
     let caption = format!(
         "Main mass {} times the pendulum, its own frequency {} times that of the pendulum; {} impact{}.",
-        decimal(primary.mass),
-        decimal((primary.stiffness / primary.mass).sqrt()),
+        decimal(motion.case.primary.mass),
+        decimal((motion.case.primary.stiffness / motion.case.primary.mass).sqrt()),
         motion.impacts.len(),
         if motion.impacts.len() == 1 { "" } else { "s" }
     );
     figure(&panels, &caption)
+}
+
+/// The swings of the main mass without a pendulum, `mass` in all, at these times, in SI units.
+#[cfg(feature = "plot")]
+fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f64)> {
+    let (case, units) = (&report.motion.case, report.units);
+    let [.., y, speed] = case.start;
+    let height = |t: f64| case.primary.alone_at(mass, [y, speed], t) * units.length;
+    times.iter().map(|t| (t * units.time(), height(*t))).collect()
+}
+
+/// The amplitude of these swings; nothing where the mass creeps back.
+#[cfg(feature = "plot")]
+fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(f64, f64)>> {
+    let (case, units) = (&report.motion.case, report.units);
+    let [.., y, speed] = case.start;
+    let points = times.iter().map(|t| {
+        let height = case.primary.alone_envelope(mass, [y, speed], *t)?;
+        Some((t * units.time(), height * units.length))
+    });
+    points.collect()
 }
 
 /// The amplitude of the main mass over the frequency of its force.

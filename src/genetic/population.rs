@@ -265,24 +265,16 @@ pub fn search(
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
 ) -> Run {
-    let tolerance = options.constraint_tolerance;
-    let mut best: Option<Individual> = None;
-    let mut evaluations = 0;
-    let mut born = |genes: Vec<f64>, best: &mut Option<Individual>| {
-        let point = options.coding.point(&genes, space);
-        let evaluation = evaluate(&point);
-        let individual = Individual { point, evaluation };
-        let better = |best: &Individual| individual.evaluation.value() < best.evaluation.value();
-        if individual.evaluation.is_feasible(tolerance) && best.as_ref().is_none_or(better) {
-            *best = Some(individual.clone());
-        }
-        Member { genes, individual }
+    let mut nursery = Nursery {
+        space,
+        options,
+        evaluate: &mut evaluate,
+        best: None,
+        evaluations: 0,
     };
-    let value = |best: &Option<Individual>| best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
     let mut population = Vec::with_capacity(options.population);
     for _ in 0..options.population {
-        population.push(born(options.coding.draw(space, generator), &mut best));
-        evaluations += 1;
+        population.push(nursery.born(options.coding.draw(space, generator)));
     }
     let mut multipliers = match (options.penalty, population.first()) {
         (Penalty::AugmentedLagrangian { initial, .. }, Some(first)) => {
@@ -293,26 +285,12 @@ pub fn search(
     let (crossed, mutated) = options.children();
     let score = |population: &[Member], multipliers: Option<&Multipliers>| {
         let evaluations: Vec<&Evaluation> = population.iter().map(|member| &member.individual.evaluation).collect();
-        scores(&evaluations, options.penalty, multipliers, tolerance)
+        scores(&evaluations, options.penalty, multipliers, options.constraint_tolerance)
     };
-    let (mut curve, mut step, mut generation) = (vec![value(&best)], 1.0, 0);
+    let (mut curve, mut step, mut generation) = (vec![nursery.value()], 1.0, 0);
     let stop = loop {
-        if has_stalled(
-            &curve,
-            options.stall_generations,
-            options.function_tolerance,
-            options.stall_test,
-        ) {
-            break Stop::Stalled;
-        }
-        if generation >= options.generations {
-            break Stop::Generations;
-        }
-        if options
-            .budget
-            .is_some_and(|budget| evaluations + crossed + mutated > budget)
-        {
-            break Stop::Budget;
+        if let Some(stop) = ended(options, &curve, generation, nursery.evaluations) {
+            break stop;
         }
         if !go_on(generation + 1) {
             break Stop::Interrupted;
@@ -320,37 +298,83 @@ pub fn search(
         let scored = score(&population, multipliers.as_ref());
         let expected = rank_scaling(&scored, 2 * crossed + mutated);
         let parents = stochastic_uniform(&expected, 2 * crossed + mutated, generator);
+        let children = children(&population, &scored, &parents, (space, options, step), generator);
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| scored[*one].total_cmp(&scored[*other]));
-        let children = children(&population, &scored, &parents, (space, options, step), generator);
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
         let elite = order.iter().take(options.elite);
         population = elite.filter_map(|index| places[*index].take()).collect();
-        for genes in children {
-            population.push(born(genes, &mut best));
-            evaluations += 1;
-        }
+        population.extend(children.into_iter().map(|genes| nursery.born(genes)));
         let before = order.first().map_or(f64::INFINITY, |index| scored[*index]);
         let now = score(&population, multipliers.as_ref());
         let leader = (0..now.len()).min_by(|one, other| now[*one].total_cmp(&now[*other]));
         let improved = leader.is_some_and(|leader| now[leader] < before);
         step = next_step(step, generation, improved);
         generation += 1;
-        curve.push(value(&best));
+        curve.push(nursery.value());
         if let (Some(multipliers), Penalty::AugmentedLagrangian { factor, .. }, Some(leader)) =
             (&mut multipliers, options.penalty, leader)
             && generation % SUBPROBLEM == 0
         {
-            multipliers.update(&population[leader].individual.evaluation, factor, tolerance);
+            let evaluation = &population[leader].individual.evaluation;
+            multipliers.update(evaluation, factor, options.constraint_tolerance);
         }
     };
     Run {
-        best,
+        best: nursery.best,
         curve,
         generations: generation,
-        evaluations,
+        evaluations: nursery.evaluations,
         stop,
     }
+}
+
+/// Where genes become members of the population; remembers the best that breaks no constraint.
+struct Nursery<'a, E> {
+    space: &'a Space,
+    options: &'a Options,
+    evaluate: &'a mut E,
+    best: Option<Individual>,
+    evaluations: usize,
+}
+
+impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
+    fn born(&mut self, genes: Vec<f64>) -> Member {
+        let point = self.options.coding.point(&genes, self.space);
+        let evaluation = (self.evaluate)(&point);
+        self.evaluations += 1;
+        let individual = Individual { point, evaluation };
+        let better = individual.evaluation.value() < self.value();
+        let first = self.best.is_none();
+        if individual.evaluation.is_feasible(self.options.constraint_tolerance) && (first || better) {
+            self.best = Some(individual.clone());
+        }
+        Member { genes, individual }
+    }
+
+    /// The best value so far; infinite while there is none.
+    fn value(&self) -> f64 {
+        let best = self.best.as_ref();
+        best.map_or(f64::INFINITY, |best| best.evaluation.value())
+    }
+}
+
+/// Why no further generation is begun, where one of the limits is reached.
+fn ended(options: &Options, curve: &[f64], generation: usize, evaluations: usize) -> Option<Stop> {
+    let (crossed, mutated) = options.children();
+    if has_stalled(
+        curve,
+        options.stall_generations,
+        options.function_tolerance,
+        options.stall_test,
+    ) {
+        return Some(Stop::Stalled);
+    }
+    if generation >= options.generations {
+        return Some(Stop::Generations);
+    }
+    let spent = |budget: usize| evaluations + crossed + mutated > budget;
+    options.budget.is_some_and(spent).then_some(Stop::Budget)
 }
 
 /// The genes of the children: of two parents each first, then of one.

@@ -11,7 +11,7 @@ use super::Kind;
 use super::number::{Map, finite};
 use super::simulation::Barrier;
 use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
-use crate::impact::{ContactDamping, Friction, Parameter, REST_FRACTION};
+use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION};
 use crate::optimize::{self, Objective, Question, Role, SearchRun, Study, WITHIN};
 use crate::report::optimization_sentences;
 
@@ -509,20 +509,6 @@ fn decision(decision: &optimize::Decision) -> Decision {
 impl Asked {
     /// What a question asks.
     pub fn of(question: &Question) -> Self {
-        let form = |damping: ContactDamping, at_speed: Option<f64>| ContactForm {
-            form: damping.form().name().to_owned(),
-            value: damping.value(),
-            at_speed,
-        };
-        let case = &question.case;
-        let fixed = |parameter: Parameter| {
-            let varies = question
-                .variables
-                .iter()
-                .any(|variable| variable.parameter == parameter);
-            let of_material = parameter == Parameter::Modulus && !question.materials.is_empty();
-            case.get(parameter).filter(|_| !varies && !of_material)
-        };
         Self {
             objectives: question
                 .objectives
@@ -539,16 +525,7 @@ impl Asked {
                     upper: variable.upper,
                 })
                 .collect(),
-            materials: question
-                .materials
-                .iter()
-                .map(|material| Material {
-                    name: material.name.clone(),
-                    modulus: material.modulus.value(),
-                    yield_limit: material.yield_limit,
-                    damping: material.damping.map(|damping| form(damping, material.at_speed)),
-                })
-                .collect(),
+            materials: question.materials.iter().map(Material::of).collect(),
             limits: question
                 .limits
                 .iter()
@@ -569,29 +546,7 @@ impl Asked {
                 displacement: of.displacement,
                 speed: of.speed,
             }),
-            held_fixed: HeldFixed {
-                amplitude: case.amplitude,
-                start: case.start,
-                speed: case.speed,
-                barrier: Barrier {
-                    left: case.left,
-                    right: case.right,
-                },
-                contact: form(case.contact_damping, case.at_speed),
-                zeta: case.get(Parameter::Zeta),
-                viscous: case.viscous,
-                alpha: case.get(Parameter::Alpha),
-                torque: case.torque,
-                friction: match case.friction {
-                    Friction::Exact => "exact".to_owned(),
-                    Friction::Arctangent => "arctangent".to_owned(),
-                },
-                mass: fixed(Parameter::Mass),
-                radius: fixed(Parameter::Radius),
-                length: fixed(Parameter::Length),
-                modulus: fixed(Parameter::Modulus),
-                gravity: case.design.gravity,
-            },
+            held_fixed: HeldFixed::of(question),
             defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
             duration: question.settings.duration,
             rest_fraction: REST_FRACTION,
@@ -600,6 +555,63 @@ impl Asked {
             genetic: Genetic::of(question),
             runs: question.runs,
             seed: question.seed,
+        }
+    }
+}
+
+impl ContactForm {
+    fn of(damping: ContactDamping, at_speed: Option<f64>) -> Self {
+        Self {
+            form: damping.form().name().to_owned(),
+            value: damping.value(),
+            at_speed,
+        }
+    }
+}
+
+impl Material {
+    fn of(material: &impact::Material) -> Self {
+        let damping = material.damping;
+        Self {
+            name: material.name.clone(),
+            modulus: material.modulus.value(),
+            yield_limit: material.yield_limit,
+            damping: damping.map(|damping| ContactForm::of(damping, material.at_speed)),
+        }
+    }
+}
+
+impl HeldFixed {
+    fn of(question: &Question) -> Self {
+        let case = &question.case;
+        let fixed = |parameter: Parameter| {
+            let mut variables = question.variables.iter();
+            let varies = variables.any(|variable| variable.parameter == parameter);
+            let of_material = parameter == Parameter::Modulus && !question.materials.is_empty();
+            case.get(parameter).filter(|_| !varies && !of_material)
+        };
+        Self {
+            amplitude: case.amplitude,
+            start: case.start,
+            speed: case.speed,
+            barrier: Barrier {
+                left: case.left,
+                right: case.right,
+            },
+            contact: ContactForm::of(case.contact_damping, case.at_speed),
+            zeta: case.get(Parameter::Zeta),
+            viscous: case.viscous,
+            alpha: case.get(Parameter::Alpha),
+            torque: case.torque,
+            friction: match case.friction {
+                Friction::Exact => "exact".to_owned(),
+                Friction::Arctangent => "arctangent".to_owned(),
+            },
+            mass: fixed(Parameter::Mass),
+            radius: fixed(Parameter::Radius),
+            length: fixed(Parameter::Length),
+            modulus: fixed(Parameter::Modulus),
+            gravity: case.design.gravity,
         }
     }
 }

@@ -6,6 +6,7 @@
 //! asked for, or a [`TaylorError`] with the term that has none there. Nothing here knows a method or an equation of motion.
 
 pub(crate) mod convolution;
+pub(crate) mod fixed_width;
 pub(crate) mod fourier;
 pub(crate) mod hermite_pade;
 pub(crate) mod recurrence;

@@ -13,6 +13,14 @@ pub const WIDTH: usize = 8;
 #[repr(align(64))]
 pub struct Lanes(pub [u64; WIDTH]);
 
+impl Lanes {
+    /// The same eight times.
+    #[inline(always)]
+    pub fn all(value: u64) -> Self {
+        Self([value; WIDTH])
+    }
+}
+
 /// A length that whole [`Lanes`] fill.
 pub fn padded(length: usize) -> usize {
     length.next_multiple_of(WIDTH)
@@ -39,12 +47,19 @@ pub trait Arithmetic: Copy + Send + Sync {
     fn add_multiple(self, sum: Self::Sum, left: u64, right: &Lanes) -> Self::Sum;
     /// Makes room for another [run](Self::RUN): 2^13 products at most in all.
     fn carry(self, sum: Self::Sum) -> Self::Sum;
+    /// The sum of two that have not more products than one [run](Self::RUN) together.
+    fn merge(self, left: Self::Sum, right: Self::Sum) -> Self::Sum;
     /// The sum of two, each with room for another.
     fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum;
     /// The low and the high parts of carried sums: `low + 2^RADIX high`.
     fn parts(self, sum: Self::Sum) -> (Lanes, Lanes);
     /// The sums divided by `R` as residues, in Montgomery's form where both factors were.
     fn reduce(self, sum: Self::Sum, modulus: &Modulus) -> Lanes;
+    /// The product of two residues.
+    #[inline(always)]
+    fn product(self, left: &Lanes, right: &Lanes, modulus: &Modulus) -> Lanes {
+        self.reduce(self.add_product(self.none(), left, right), modulus)
+    }
     /// Runs a function compiled for this processor.
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output;
 }

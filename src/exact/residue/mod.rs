@@ -14,6 +14,8 @@
 //! results after the [remainders](remainder) are put together.
 
 pub mod lanes;
+#[cfg(target_arch = "x86_64")]
+pub mod narrow;
 pub mod portable;
 pub mod remainder;
 pub mod sums;
@@ -41,6 +43,10 @@ pub fn by_widest<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(wide) = wide::Wide::try_new() {
         return work.by(wide);
+    }
+    #[cfg(target_arch = "x86_64")]
+    if let Some(narrow) = narrow::Narrow::try_new() {
+        return work.by(narrow);
     }
     work.by(portable::Portable::new())
 }
@@ -219,20 +225,24 @@ pub fn primes_up_to(last: u64) -> Vec<u64> {
     primes
 }
 
-/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^64`.
+/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^64`, the first four below
+/// `3 215 031 751`.
 fn is_prime(number: u64) -> bool {
-    /// Sorenson and Webster, Math. Comp. 86 (2017) 985-1003.
+    /// Sorenson and Webster, Math. Comp. 86 (2017) 985-1003; the first four: Pomerance, Selfridge and Wagstaff, Math. Comp. 35 (1980)
+    /// 1003-1026.
     const BASES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+    const FOUR_DECIDE_BELOW: u64 = 3_215_031_751;
     if let Some(divisor) = BASES.iter().find(|&base| number.is_multiple_of(*base)) {
         return number == *divisor;
     }
+    let needed = if number < FOUR_DECIDE_BELOW { 4 } else { BASES.len() };
     if number < 2 {
         return false;
     }
     let modulus = Modulus::new(number, 52);
     let halvings = (number - 1).trailing_zeros();
     let minus_one = modulus.negative(modulus.one);
-    BASES.iter().all(|&base| {
+    BASES[..needed].iter().all(|&base| {
         let mut power = modulus.power(modulus.residue(base), (number - 1) >> halvings);
         if power == modulus.one {
             return true;

@@ -34,8 +34,8 @@ impl Arithmetic for Portable {
     const BITS: u32 = 30;
     const RADIX: u32 = 32;
     const DIGIT: u32 = 30;
-    // Of products of 60 digits, sixteen fill a word.
-    const RUN: usize = 15;
+    // Sixteen products of 60 digits fill a word.
+    const RUN: usize = 16;
     type Sum = Sum;
 
     #[inline(always)]
@@ -71,13 +71,17 @@ impl Arithmetic for Portable {
         sum
     }
     #[inline(always)]
-    fn join(self, left: Sum, right: Sum) -> Sum {
-        let (mut sum, right) = (self.carry(left), self.carry(right));
+    fn merge(self, mut sum: Sum, right: Sum) -> Sum {
         for k in 0..WIDTH {
+            sum.recent.0[k] = sum.recent.0[k].wrapping_add(right.recent.0[k]);
             sum.low.0[k] = sum.low.0[k].wrapping_add(right.low.0[k]);
             sum.high.0[k] = sum.high.0[k].wrapping_add(right.high.0[k]);
         }
         sum
+    }
+    #[inline(always)]
+    fn join(self, left: Sum, right: Sum) -> Sum {
+        self.merge(self.carry(left), self.carry(right))
     }
     #[inline(always)]
     fn parts(self, sum: Sum) -> (Lanes, Lanes) {

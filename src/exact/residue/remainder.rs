@@ -1,14 +1,15 @@
 //! Whole numbers from their residues: the Chinese remainder theorem, for many numbers over the same primes.
 //!
 //! The cofactors `M/p_i` are cut into digits once; a number is then a sum of digits times residues, which costs (primes)^2 word
-//! products and runs as fast as the recursion that gave the residues. A number nearer to zero than half of `M` is meant.
+//! products. Eight numbers are put together side by side, which runs as fast as the recursion that gave the residues. A number nearer
+//! to zero than half of `M` is meant.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
 use pulp::NullaryFnOnce;
 
 use super::sums::multiples;
-use super::{Arithmetic, Modulus, Rows, WIDTH, padded};
+use super::{Arithmetic, Lanes, Modulus, Rows, WIDTH, padded};
 use crate::exact::Integer;
 
 /// Primes, and what brings residues modulo all of them together.
@@ -17,10 +18,12 @@ pub struct Remainders<A> {
     moduli: Vec<Modulus>,
     /// The digits of `M/p_i`, a column for each prime.
     cofactors: Rows,
-    /// The digits of `M`.
+    /// The digits of `M`, as many as those.
     product: Vec<u64>,
     /// `(M/p_i)^-1` modulo `p_i`.
     inverses: Vec<u64>,
+    /// `1/p_i`.
+    reciprocals: Vec<f64>,
 }
 
 impl<A: Arithmetic> Remainders<A> {
@@ -44,7 +47,8 @@ impl<A: Arithmetic> Remainders<A> {
         Self {
             arithmetic,
             moduli: moduli.to_vec(),
-            product: digits::<A>(&product, count),
+            reciprocals: moduli.iter().map(|modulus| 1.0 / modulus.prime as f64).collect(),
+            product: digits::<A>(&product, padded(count)),
             cofactors,
             inverses,
         }
@@ -56,55 +60,84 @@ impl<A: Arithmetic> Remainders<A> {
         pairs.map(move |(modulus, inverse)| modulus.product(factor(modulus), *inverse))
     }
 
-    /// The number from its plain residues times the [weights](Self::weights).
-    pub fn lift(&self, weighted: &[u64]) -> Digits {
-        let mut sums = vec![0_u128; padded(self.product.len())];
-        let work = Lift(self.arithmetic, weighted, &self.cofactors, &mut sums);
-        self.arithmetic.vectorize(work);
-        let fractions = weighted.iter().zip(&self.moduli);
-        let quotient: f64 = fractions.map(|(t, modulus)| *t as f64 / modulus.prime as f64).sum();
-        // Far from the middle between two integers where the number is small beside M, as it is where there are primes enough.
-        let quotient = quotient.round() as i128;
-        let mask = (1_i128 << A::DIGIT) - 1;
-        let mut carry = 0_i128;
-        let mut digits: Vec<u64> = Vec::with_capacity(self.product.len());
-        for (sum, digit) in sums.into_iter().zip(&self.product) {
-            let value = sum as i128 - quotient * i128::from(*digit) + carry;
-            digits.push((value & mask) as u64);
-            carry = value >> A::DIGIT;
-        }
-        let negative = carry < 0;
-        if negative {
-            let mut borrow = 1;
-            for digit in &mut digits {
-                let complement = (!*digit & mask as u64) + borrow;
-                *digit = complement & mask as u64;
-                borrow = complement >> A::DIGIT;
-            }
-        }
-        while digits.last() == Some(&0) {
-            digits.pop();
-        }
-        Digits { negative, digits }
+    /// Eight numbers, from their plain residues modulo each prime and the [weights](Self::weights); the residues are used up.
+    pub fn lift(&self, residues: &mut [Lanes], weights: &[u64], numbers: &mut Numbers) {
+        numbers.digits.resize(self.product.len(), Lanes::default());
+        self.arithmetic.vectorize(Lift(self, residues, weights, numbers));
+    }
+
+    /// One number, from its plain residues.
+    pub fn lift_one(&self, residues: impl Iterator<Item = u64>, weights: &[u64]) -> Integer {
+        let mut residues: Vec<Lanes> = residues.map(Lanes::all).collect();
+        let mut numbers = Numbers::default();
+        self.lift(&mut residues, weights, &mut numbers);
+        numbers.integer::<A>(0)
     }
 }
 
-struct Lift<'a, A>(A, &'a [u64], &'a Rows, &'a mut [u128]);
+struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut Numbers);
 
 impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self(arithmetic, weighted, cofactors, sums) = self;
-        for (block, sums) in sums.chunks_exact_mut(WIDTH).enumerate() {
-            let sum = multiples(arithmetic, weighted, cofactors.row(block));
-            let (low, high) = arithmetic.parts(sum);
-            for (k, sum) in sums.iter_mut().enumerate() {
-                *sum = u128::from(low.0[k]) + (u128::from(high.0[k]) << A::RADIX);
+        /// Digits whose sums are formed together: a residue is read once for all of them.
+        const TOGETHER: usize = 4;
+        let Self(remainders, residues, weights, numbers) = self;
+        let arithmetic = remainders.arithmetic;
+        let mut quotients = [0.0; WIDTH];
+        let primes = weights.iter().zip(&remainders.moduli).zip(&remainders.reciprocals);
+        for (own, ((weight, modulus), reciprocal)) in residues.iter_mut().zip(primes) {
+            *own = arithmetic.product(own, &Lanes::all(*weight), modulus);
+            for (quotient, residue) in quotients.iter_mut().zip(own.0) {
+                *quotient += small_to_f64(residue) * reciprocal;
             }
         }
+        // Far from the middle between two integers where the number is small beside M, as it is where there are primes enough.
+        let mut times = Lanes::default();
+        for (times, quotient) in times.0.iter_mut().zip(quotients) {
+            *times = (quotient + 0.5) as u64;
+        }
+        let mask = (1_u64 << A::DIGIT) - 1;
+        let mut carries = [0_i64; WIDTH];
+        let digits = numbers.digits.chunks_exact_mut(TOGETHER);
+        for (lot, (digits, product)) in digits.zip(remainders.product.chunks_exact(TOGETHER)).enumerate() {
+            let (block, first) = (lot * TOGETHER / WIDTH, lot * TOGETHER % WIDTH);
+            let mut sums = [arithmetic.none(); TOGETHER];
+            let columns = remainders.cofactors.row(block);
+            for (columns, residues) in columns.chunks(A::RUN).zip(residues.chunks(A::RUN)) {
+                for (column, residue) in columns.iter().zip(residues) {
+                    let column = &column.0[first..first + TOGETHER];
+                    for (sum, digit) in sums.iter_mut().zip(column) {
+                        *sum = arithmetic.add_multiple(*sum, *digit, residue);
+                    }
+                }
+                // A loop, for a closure would not be compiled for this processor.
+                for sum in &mut sums {
+                    *sum = arithmetic.carry(*sum);
+                }
+            }
+            for ((sum, digit), product) in sums.into_iter().zip(digits).zip(product) {
+                let (low, high) = arithmetic.parts(sum);
+                let taken = arithmetic.parts(arithmetic.add_multiple(arithmetic.none(), *product, &times));
+                for (j, carry) in carries.iter_mut().enumerate() {
+                    let value = (low.0[j] as i64).wrapping_sub(taken.0.0[j] as i64).wrapping_add(*carry);
+                    digit.0[j] = value as u64 & mask;
+                    let above = (high.0[j] as i64).wrapping_sub(taken.1.0[j] as i64);
+                    *carry = (value >> A::DIGIT).wrapping_add(above << (A::RADIX - A::DIGIT));
+                }
+            }
+        }
+        numbers.negative = carries.map(|carry| carry < 0);
     }
+}
+
+/// A whole number below `2^52`, without the instruction that not every processor has for words.
+#[inline(always)]
+fn small_to_f64(number: u64) -> f64 {
+    const SHIFT: f64 = (1_u64 << 52) as f64;
+    f64::from_bits(SHIFT.to_bits() | number) - SHIFT
 }
 
 /// The lowest `count` digits of a positive number.
@@ -119,41 +152,62 @@ fn digits<A: Arithmetic>(number: &Integer, count: usize) -> Vec<u64> {
     (0..count).map(digit).collect()
 }
 
-/// A whole number as it comes out of the remainders.
-#[derive(Clone, Debug)]
-pub struct Digits {
-    negative: bool,
-    digits: Vec<u64>,
+/// Eight whole numbers as they come out of the remainders: of a negative one the digits of its sum with a power of a digit.
+#[derive(Clone, Debug, Default)]
+pub struct Numbers {
+    digits: Vec<Lanes>,
+    negative: [bool; WIDTH],
 }
 
-impl Digits {
-    /// Its residue; `powers` are the residues of the powers of a [digit](Arithmetic::DIGIT).
-    pub fn residue(&self, modulus: &Modulus, powers: &[u64]) -> u64 {
-        let terms = self.digits.iter().zip(powers);
-        let sum = terms.fold(0, |sum, (&digit, &power)| {
-            modulus.sum(sum, modulus.product(digit, power))
-        });
-        // Digits are no residues: one factor R is missing.
-        let residue = modulus.of_plain(sum);
-        if self.negative {
-            modulus.negative(residue)
-        } else {
-            residue
+impl Numbers {
+    /// Their plain residues; `powers` are the residues of the powers of a [digit](Arithmetic::DIGIT), one more than there are digits.
+    pub fn residues<A: Arithmetic>(&self, arithmetic: A, modulus: &Modulus, powers: &[u64]) -> [u64; WIDTH] {
+        struct Residues<'a, A>(A, &'a Modulus, &'a [u64], &'a [Lanes]);
+        impl<A: Arithmetic> NullaryFnOnce for Residues<'_, A> {
+            type Output = Lanes;
+            #[inline(always)]
+            fn call(self) -> Lanes {
+                let Self(arithmetic, modulus, powers, digits) = self;
+                arithmetic.reduce(multiples(arithmetic, powers, digits), modulus)
+            }
         }
+        let count = self.digits.len();
+        let mut residues = arithmetic
+            .vectorize(Residues(arithmetic, modulus, &powers[..count], &self.digits))
+            .0;
+        let above = modulus.plain(powers[count]);
+        for (residue, negative) in residues.iter_mut().zip(self.negative) {
+            if negative {
+                *residue = modulus.difference(*residue, above);
+            }
+        }
+        residues
     }
 
-    /// The number itself.
-    pub fn to_integer<A: Arithmetic>(&self) -> Integer {
-        let length = self.digits.len() * A::DIGIT as usize;
-        let mut words = vec![0_u64; length / 64 + 2];
-        for (place, digit) in self.digits.iter().enumerate() {
-            let (word, shift) = (place * A::DIGIT as usize / 64, place * A::DIGIT as usize % 64);
-            let shifted = u128::from(*digit) << shift;
-            words[word] |= shifted as u64;
-            words[word + 1] |= (shifted >> 64) as u64;
+    /// One of them.
+    pub fn integer<A: Arithmetic>(&self, place: usize) -> Integer {
+        let mask = (1_u64 << A::DIGIT) - 1;
+        let negative = self.negative[place];
+        let mut words = Vec::with_capacity(self.digits.len() * A::DIGIT as usize / 64 + 2);
+        let (mut pending, mut length, mut borrow) = (0_u128, 0, u64::from(negative));
+        for digit in &self.digits {
+            let mut digit = digit.0[place];
+            if negative {
+                let complement = (!digit & mask) + borrow;
+                digit = complement & mask;
+                borrow = complement >> A::DIGIT;
+            }
+            pending |= u128::from(digit) << length;
+            length += A::DIGIT;
+            if length >= 64 {
+                words.push(pending as u64);
+                pending >>= 64;
+                length -= 64;
+            }
         }
+        words.push(pending as u64);
         let number = Integer::from_words(&words);
-        if self.negative { -number } else { number }
+        if negative { -number } else { number }
     }
 }
 
@@ -200,16 +254,25 @@ mod tests {
             for (power, factor) in [(0, 0), (1, 1), (3, -1), (600, 17), (600, -17), (1000, 3), (1000, -1)] {
                 let number = Integer::from(3).pow(power / 2) * Integer::from(factor);
                 let weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
-                let weighted: Vec<u64> = moduli[..39]
-                    .iter()
-                    .zip(weights)
-                    .map(|(modulus, weight)| modulus.product(modulus.plain(modulus.integer(&number)), weight))
-                    .collect();
-                let digits = remainders.lift(&weighted);
-                assert_eq!(digits.to_integer::<A>(), number);
+                // Eight numbers beside each other: this one and its multiples.
+                let all: Vec<Integer> = (0..WIDTH as i64).map(|k| &number * Integer::from(3 - 2 * k)).collect();
+                let mut residues = vec![Lanes::default(); 39];
+                for (own, modulus) in residues.iter_mut().zip(&moduli) {
+                    for (residue, number) in own.0.iter_mut().zip(&all) {
+                        *residue = modulus.plain(modulus.integer(number));
+                    }
+                }
+                let first = remainders.lift_one(residues.iter().map(|own| own.0[0]), &weights);
+                assert_eq!(first, all[0]);
+                let mut numbers = Numbers::default();
+                remainders.lift(&mut residues, &weights, &mut numbers);
                 let digit = check.residue(1 << A::DIGIT);
                 let powers: Vec<u64> = (0..60).map(|place| check.power(digit, place)).collect();
-                assert_eq!(digits.residue(&check, &powers), check.integer(&number));
+                let found = numbers.residues(arithmetic, &check, &powers);
+                for (place, number) in all.iter().enumerate() {
+                    assert_eq!(numbers.integer::<A>(place), *number);
+                    assert_eq!(found[place], check.plain(check.integer(number)));
+                }
             }
         }
     }

@@ -63,7 +63,7 @@ pub fn convolve<A: Arithmetic>(
                             false => pairs(arithmetic, &left[start..], &right[..recent]),
                         };
                         let before = &tables[product.to].row(block)[order];
-                        let sum = arithmetic.join(first, last);
+                        let sum = arithmetic.carry(arithmetic.merge(first, last));
                         arithmetic.add_multiple(sum, modulus.one, before)
                     };
                     *tables[product.to].entry(block, order) = arithmetic.reduce(sum, modulus);
@@ -147,27 +147,21 @@ fn window<A: Arithmetic>(
     }
 }
 
-/// `sum_i left_i right_(n-i)`: four sums run beside each other, for each has to wait for itself.
+/// `sum_i left_i right_(n-i)` over [so few](TOGETHER) that nothing has to be carried, even twice: two sums run beside each other, for
+/// each has to wait for itself.
 #[inline(always)]
 fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
-    let mut sums = [arithmetic.none(); 4];
-    for (left, right) in left.chunks(4 * A::RUN).zip(right.rchunks(4 * A::RUN)) {
-        let (mut left, mut right) = (left.chunks_exact(4), right.rchunks_exact(4));
-        for (left, right) in left.by_ref().zip(right.by_ref()) {
-            for k in 0..4 {
-                sums[k] = arithmetic.add_product(sums[k], &left[k], &right[3 - k]);
-            }
-        }
-        let rest = left.remainder().iter().zip(right.remainder().iter().rev());
-        for ((left, right), sum) in rest.zip(&mut sums) {
-            *sum = arithmetic.add_product(*sum, left, right);
-        }
-        // A loop, for a closure would not be compiled for this processor.
-        for sum in &mut sums {
-            *sum = arithmetic.carry(*sum);
-        }
+    const { assert!(2 * TOGETHER <= A::RUN) };
+    let mut sums = [arithmetic.none(); 2];
+    let (mut lefts, mut rights) = (left.chunks_exact(2), right.rchunks_exact(2));
+    for (left, right) in lefts.by_ref().zip(rights.by_ref()) {
+        sums[0] = arithmetic.add_product(sums[0], &left[0], &right[1]);
+        sums[1] = arithmetic.add_product(sums[1], &left[1], &right[0]);
     }
-    joined(arithmetic, sums)
+    if let ([left], [right]) = (lefts.remainder(), rights.remainder()) {
+        sums[0] = arithmetic.add_product(sums[0], left, right);
+    }
+    arithmetic.merge(sums[0], sums[1])
 }
 
 /// `sum_i u_i u_(n-i)`, each pair once.
@@ -175,7 +169,7 @@ fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Su
 fn square<A: Arithmetic>(arithmetic: A, orders: &[Lanes]) -> A::Sum {
     let half = orders.len() / 2;
     let pairs = pairs(arithmetic, &orders[..half], &orders[orders.len() - half..]);
-    let twice = arithmetic.join(pairs, pairs);
+    let twice = arithmetic.merge(pairs, pairs);
     match orders.len() % 2 {
         0 => twice,
         _ => arithmetic.add_product(twice, &orders[half], &orders[half]),
@@ -317,8 +311,7 @@ pub fn multiply_here<A: Arithmetic>(arithmetic: A, modulus: &Modulus, values: &m
         let (mut left, mut right) = (Lanes::default(), Lanes::default());
         left.0.copy_from_slice(values);
         right.0.copy_from_slice(factors);
-        let product = arithmetic.add_product(arithmetic.none(), &left, &right);
-        values.copy_from_slice(&arithmetic.reduce(product, modulus).0);
+        values.copy_from_slice(&arithmetic.product(&left, &right, modulus).0);
     }
 }
 

@@ -76,9 +76,13 @@ impl Arithmetic for Wide {
         (low_digits, f._mm512_add_epi64(high, f._mm512_srli_epi64::<52>(low)))
     }
     #[inline(always)]
-    fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
+    fn merge(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
         let f = self.avx512f;
         (f._mm512_add_epi64(left.0, right.0), f._mm512_add_epi64(left.1, right.1))
+    }
+    #[inline(always)]
+    fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
+        self.merge(left, right)
     }
     #[inline(always)]
     fn parts(self, sum: Self::Sum) -> (Lanes, Lanes) {

@@ -14,7 +14,9 @@
 //! ```
 
 mod denominators;
+mod fixed_width;
 mod modular;
+mod orders;
 mod reconstruct;
 mod sine;
 mod symbolic;
@@ -240,8 +242,6 @@ pub(crate) fn expand_numbers_supervised(
     extent: Extent,
     supervision: Supervision,
 ) -> Result<Expansion<Integers>, SecularError> {
-    /// Below, whole numbers are short enough.
-    const LONG: usize = 8;
     bounded(
         force.iter().map(|term| (term.order, term.position + term.velocity)),
         highest,
@@ -256,8 +256,8 @@ pub(crate) fn expand_numbers_supervised(
         })
         .collect();
     let orders = highest / step;
-    let by_primes = (orders >= LONG).then(|| reconstruct::expand(&compressed, orders, scheme, extent, supervision));
-    let mut expansion = match by_primes.flatten() {
+    let by_words = reconstruct::expand(&compressed, orders, scheme, extent, supervision);
+    let mut expansion = match by_words {
         Some(expansion) => expansion,
         None => expand_supervised(&Integers, &compressed, orders, scheme, None, supervision)?,
     };

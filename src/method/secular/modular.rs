@@ -33,29 +33,29 @@ pub(super) struct Term {
 
 /// What is the same for every prime: the products, their symmetries and the points they are formed at.
 pub(super) struct Plan<'a> {
-    terms: &'a [Term],
-    scheme: Scheme,
+    pub terms: &'a [Term],
+    pub scheme: Scheme,
     /// The highest order that is kept; the amplitude of a limit cycle follows from one order more.
     pub highest: usize,
     last: usize,
-    half_wave: bool,
+    pub half_wave: bool,
     /// Sines at odd orders.
     alternating: bool,
     /// How many harmonics an order brings.
     growth: usize,
     grid: Grid,
     /// The tables of values: `y`, `omega y'` where it is needed, and products of those before.
-    tables: usize,
-    products: Vec<Product>,
+    pub tables: usize,
+    pub products: Vec<Product>,
     /// Which table belongs to each term, and whether its derivative is meant.
-    of_terms: Vec<(usize, bool)>,
-    has_velocity: bool,
+    pub of_terms: Vec<(usize, bool)>,
+    pub has_velocity: bool,
     /// Harmonics that the frequency of the last order does not depend on are left out.
     frequency_alone: bool,
     /// Where the coefficients of each order start in a list of all, and where the last ends.
     starts: Vec<usize>,
     /// A sine beside the terms, with its rate.
-    sine: Option<(Sine, Rational)>,
+    pub sine: Option<(Sine, Rational)>,
 }
 
 impl<'a> Plan<'a> {
@@ -483,10 +483,16 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             Wave::Sine => 0,
             Wave::Cosine => modulus.negative(self.right_side[resonant]),
         };
-        let lower = (1..order).filter(|&i| self.frequency[i] != 0);
-        let products = lower.fold(0, |sum, i| {
+        // Of a sum over all pairs, each pair once and the middle.
+        let lower = (1..order.div_ceil(2)).filter(|&i| self.frequency[i] != 0);
+        let pairs = lower.fold(0, |sum, i| {
             modulus.sum(sum, modulus.product(self.frequency[i], self.frequency[order - i]))
         });
+        let middle = match order % 2 {
+            0 => modulus.product(self.frequency[order / 2], self.frequency[order / 2]),
+            _ => 0,
+        };
+        let products = modulus.sum(modulus.sum(pairs, pairs), middle);
         let twice = modulus.difference(square, products);
         // Half of it: an odd one is made even by the prime.
         let half = if twice % 2 == 0 {

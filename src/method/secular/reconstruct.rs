@@ -13,18 +13,18 @@
 //! Memory: the residues of all coefficients, 8 bytes for each 50 binary digits of the result.
 
 use num_integer::Integer as _;
-use num_traits::{One, Zero};
+use num_traits::One;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
 use super::denominators::{Factored, Growth};
 use super::modular::{Image, Plan, Recursion, Term};
-use super::{Amplitude, Expansion, ForceTerm, Scheme, SecularSine};
-use crate::exact::residue::remainder::{Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Modulus, Work, by_widest, primes_below};
+use super::orders::{Order, expansion};
+use super::{Amplitude, Expansion, ForceTerm, Scheme, fixed_width};
+use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Rational};
 use crate::interrupt::Supervision;
-use crate::series::FourierSeries;
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
 
@@ -37,8 +37,8 @@ pub enum Extent {
     Frequency,
 }
 
-/// The expansion by many primes; `None` where the equation has no symmetry to use, where the denominators grow in no known way,
-/// and where there is none: the ring's own recursion answers then.
+/// The expansion by words, or by many primes; `None` where the equation has no symmetry to use, where the denominators grow in no
+/// known way, where numbers are short, and where there is none: the ring's own recursion answers then.
 pub fn expand(
     force: &[ForceTerm<Integers>],
     highest: usize,
@@ -46,7 +46,43 @@ pub fn expand(
     extent: Extent,
     supervision: Supervision,
 ) -> Option<Expansion<Integers>> {
-    by_widest(Expand(force, highest, *scheme, extent, supervision))
+    /// Below, whole numbers are short enough.
+    const LONG: usize = 8;
+    let equation = Equation::new(force, highest, *scheme, extent);
+    let plan = equation.plan(highest)?;
+    let beginning = fixed_width::beginning(&plan, supervision.interrupt);
+    let slope = match (scheme.amplitude, extent) {
+        (Amplitude::Free, _) | (_, Extent::Frequency) => None,
+        (Amplitude::Determined, Extent::Motion) => Some(slope(force, scheme, &beginning)?),
+    };
+    let orders: Vec<Order> = beginning
+        .orders
+        .iter()
+        .map(|order| Order::of_short(&plan, order))
+        .collect();
+    if orders.len() > highest {
+        return Some(expansion(&plan, orders, slope.as_ref(), extent));
+    }
+    if highest < LONG {
+        return None;
+    }
+    by_widest(Expand {
+        equation: &equation,
+        plan: &plan,
+        slope,
+        orders,
+        supervision,
+    })
+}
+
+/// Where the amplitude is determined, its condition has the same slope at every order.
+fn slope(force: &[ForceTerm<Integers>], scheme: &Scheme, beginning: &fixed_width::Beginning) -> Option<Rational> {
+    if let Some(slope) = &beginning.slope {
+        return Some(Rational::new_raw(slope.numerator(0).into(), slope.denominator().into()));
+    }
+    let first = super::expand(&Integers, force, 1, scheme).ok()?;
+    let (numerator, denominator) = first.amplitudes.first()?.slope.mean();
+    Some(in_lowest_terms(&numerator, denominator))
 }
 
 /// Up to this order one thread is done before others have begun.
@@ -56,75 +92,102 @@ const ALONE: usize = 40;
 /// The order to which long expansions are first derived to see how their denominators grow.
 const GUESSED: usize = 32;
 
-struct Expand<'a>(&'a [ForceTerm<Integers>], usize, Scheme, Extent, Supervision);
+/// What is to be expanded.
+struct Equation {
+    terms: Vec<Term>,
+    /// The rate of a sine beside the terms.
+    sine: Option<Rational>,
+    scheme: Scheme,
+    extent: Extent,
+}
+
+impl Equation {
+    fn new(force: &[ForceTerm<Integers>], highest: usize, scheme: Scheme, extent: Extent) -> Self {
+        let terms = force.iter().map(|term| {
+            let (numerator, denominator) = term.coefficient.mean();
+            Term {
+                order: term.order,
+                position: term.position,
+                velocity: term.velocity,
+                coefficient: in_lowest_terms(&numerator, denominator),
+            }
+        });
+        let terms: Vec<Term> = terms.collect();
+        let (sine, terms) = match scheme.amplitude {
+            Amplitude::Free => super::sine::split(&terms, highest),
+            Amplitude::Determined => (None, terms),
+        };
+        Self {
+            terms,
+            sine,
+            scheme,
+            extent,
+        }
+    }
+
+    fn plan(&self, highest: usize) -> Option<Plan<'_>> {
+        let frequency_alone = self.extent == Extent::Frequency;
+        Plan::new(&self.terms, self.sine.clone(), highest, self.scheme, frequency_alone)
+    }
+}
+
+struct Expand<'a> {
+    equation: &'a Equation,
+    plan: &'a Plan<'a>,
+    slope: Option<Rational>,
+    /// The first ones, in numbers of a fixed width.
+    orders: Vec<Order>,
+    supervision: Supervision,
+}
 
 impl Work for Expand<'_> {
     type Output = Option<Expansion<Integers>>;
 
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        let Self(force, highest, scheme, extent, supervision) = self;
-        let terms: Vec<Term> = force
-            .iter()
-            .map(|term| {
-                let (numerator, denominator) = term.coefficient.mean();
-                Term {
-                    order: term.order,
-                    position: term.position,
-                    velocity: term.velocity,
-                    coefficient: in_lowest_terms(&numerator, denominator),
-                }
-            })
-            .collect();
-        let (sine, terms) = match scheme.amplitude {
-            Amplitude::Free => super::sine::split(&terms, highest),
-            Amplitude::Determined => (None, terms),
-        };
-        let plan = |highest: usize| Plan::new(&terms, sine.clone(), highest, scheme, extent == Extent::Frequency);
-        // Where the amplitude is determined, its condition has the same slope at every order.
-        let slope = match (scheme.amplitude, extent) {
-            (Amplitude::Free, _) | (_, Extent::Frequency) => None,
-            (Amplitude::Determined, Extent::Motion) => {
-                let first = super::expand(&Integers, force, 1, &scheme).ok()?;
-                Some(first.amplitudes.first()?.slope.clone())
-            }
+        /// So many orders show as much as a shorter expansion does.
+        const ENOUGH: usize = 16;
+        /// So many show how denominators grow.
+        const SOME: usize = 8;
+        let Self {
+            equation,
+            plan,
+            slope,
+            orders: short,
+            supervision,
+        } = self;
+        let extent = equation.extent;
+        let mut known = match short.len() >= SOME {
+            true => Some(Beginning::of(&short)?),
+            false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
-        let shorter = match highest > 2 * GUESSED {
+        let shorter = match plan.highest > 2 * GUESSED && short.len() < ENOUGH {
             false => None,
             true => {
-                let plan = plan(GUESSED)?;
-                let orders = Reconstruction::new(arithmetic, &plan, extent, Supervision::default()).orders(None)?;
+                let plan = equation.plan(GUESSED)?;
+                let orders =
+                    Reconstruction::new(arithmetic, &plan, extent, Supervision::default()).orders(known.take())?;
                 Some((plan, orders))
             }
         };
         let beginning = match &shorter {
             Some((_, orders)) => Some(Beginning::of(orders)?),
-            None => None,
+            None => known,
         };
-        let plan = plan(highest)?;
-        let orders = Reconstruction::new(arithmetic, &plan, extent, supervision).orders(beginning);
+        let orders = Reconstruction::new(arithmetic, plan, extent, supervision).orders(beginning);
+        let least = shorter.as_ref().map_or(short.len(), |(_, own)| own.len());
         match (orders, shorter) {
-            (Some(orders), shorter)
-                if !orders.is_empty() && shorter.as_ref().is_none_or(|(_, own)| orders.len() >= own.len()) =>
-            {
-                Some(expansion(&plan, orders, slope, extent))
-            }
+            (Some(orders), _) if orders.len() >= least.max(1) => Some(expansion(plan, orders, slope.as_ref(), extent)),
             // Stopped so early that the shorter expansion is the longer one.
             (_, Some((plan, orders))) if supervision.interrupt.is_requested() => {
-                Some(expansion(&plan, orders, slope, extent))
+                Some(expansion(&plan, orders, slope.as_ref(), extent))
+            }
+            (_, None) if supervision.interrupt.is_requested() && short.len() > 1 => {
+                Some(expansion(plan, short, slope.as_ref(), extent))
             }
             _ => None,
         }
     }
-}
-
-/// One order of the result.
-struct Order {
-    /// Of all coefficients of the motion.
-    denominator: Factored,
-    displacement: Vec<Integer>,
-    frequency_squared: Rational,
-    frequency: Rational,
 }
 
 struct Reconstruction<'a, A> {
@@ -297,8 +360,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         for index in 0..count {
             let scaled = |modulus: &Modulus| modulus.integer(&denominator);
             let weights: Vec<u64> = remainders.weights(scaled).collect();
-            let residues = weighted(&self.first, &weights, |image| number(image, index));
-            let residue = remainders.lift(&residues).to_integer::<A>();
+            let residues = self.first.iter().map(|image| number(image, index));
+            let residue = remainders.lift_one(residues, &weights);
             let (numerator, more) = fraction(&residue, product)?;
             denominator *= more;
             largest = largest.max(numerator.bits() as f64 - denominator.bits() as f64);
@@ -319,10 +382,15 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         for (order, (motion, frequency)) in motion.iter().zip(frequency).enumerate() {
             let bits = |denominator: &Factored, guess: &Guess| denominator.bits() + guess.growth * order as f64;
             let bits = bits(motion, &beginning.motion).max(bits(frequency, &beginning.frequency));
-            let count = self.primes_for(bits + ROOM)?;
-            // Orders share the primes of the longest among their neighbours: what a set of primes needs is computed once.
-            let step = (count / 8).next_power_of_two();
-            counts.push(count.next_multiple_of(step).max(counts.last().copied().unwrap_or(1)));
+            counts.push(self.primes_for(bits + ROOM)?);
+        }
+        // Orders share the primes of the longest among their neighbours: what a set of primes needs is computed once.
+        let longest = counts.iter().copied().max()?;
+        let mut least = 1;
+        for count in &mut counts {
+            let step = (*count / 8).next_power_of_two();
+            least = count.next_multiple_of(step).min(longest).max(least);
+            *count = least;
         }
         if self.extent == Extent::Motion {
             let orders = counts.iter().enumerate();
@@ -380,8 +448,8 @@ impl Beginning {
         for order in orders {
             let bits =
                 |numbers: &mut dyn Iterator<Item = &Integer>| numbers.map(Integer::bits).max().unwrap_or(0) as f64;
-            let size = bits(&mut order.displacement.iter()) - order.denominator.bits();
-            beginning.motion.push(order.denominator.clone(), size);
+            let size = bits(&mut order.displacement.iter()) - order.denominator.bits() as f64;
+            beginning.motion.push(Factored::of(&order.denominator)?, size);
             let both = [&order.frequency, &order.frequency_squared];
             let denominator = Factored::of(&both[0].denom().lcm(both[1].denom()))?;
             let sizes = both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
@@ -413,20 +481,9 @@ impl Guess {
     }
 }
 
-/// The residues of one number, each times its weight.
-fn weighted<'a>(
-    images: impl IntoIterator<Item = &'a Image>,
-    weights: &[u64],
-    number: impl Fn(&Image) -> u64,
-) -> Vec<u64> {
-    let pairs = images.into_iter().zip(weights);
-    pairs
-        .map(|(image, weight)| image.modulus.product(number(image), *weight))
-        .collect()
-}
-
 /// The way back for orders that share their primes.
 struct Lift<'a, A> {
+    arithmetic: A,
     plan: &'a Plan<'a>,
     images: &'a [&'a Image],
     remainders: Remainders<A>,
@@ -442,9 +499,10 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         let (test, images) = images.split_last().expect("one image at least");
         let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
         let digit = test.modulus.residue(1 << A::DIGIT);
-        let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2;
+        let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2 + WIDTH;
         let next = |power: &u64| Some(test.modulus.product(*power, digit));
         Self {
+            arithmetic,
             plan,
             images,
             remainders: Remainders::new(arithmetic, &moduli),
@@ -483,18 +541,24 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             }
             let whole = &frequency[order];
             let over = self.over(whole, of_frequency.take());
-            let constants = self.numbers(of_frequency.insert(over), 2, |image, index| match index {
-                0 => image.frequency[order],
-                _ => image.frequency_squared[order],
+            let constants = self.numbers(of_frequency.insert(over), 2, |image, _, lanes| {
+                (lanes.0[0], lanes.0[1]) = (image.frequency[order], image.frequency_squared[order]);
             });
             let constants = constants?.into_iter().map(|numerator| {
                 let (numerator, denominator) = whole.lowest_terms(numerator);
                 Rational::new_raw(numerator, denominator)
             });
             let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
+            let denominator = denominator.over(&common);
+            let first = match (self.plan.scheme.amplitude, self.plan.wave(order)) {
+                (Amplitude::Determined, Wave::Cosine) => displacement.get(self.plan.resonant()).cloned(),
+                _ => None,
+            };
+            let (numerator, over_first) = denominator.lowest_terms(first.unwrap_or_default());
             lifted.push(Order {
-                denominator: denominator.over(&common),
+                denominator: denominator.value(),
                 displacement,
+                first_harmonic: Rational::new_raw(numerator, over_first),
                 frequency_squared,
                 frequency,
             });
@@ -505,7 +569,10 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     /// Empty where no prime keeps the motion.
     fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
         let count = self.test.displacement(self.plan, order).len();
-        self.numbers(over, count, |image, index| image.displacement(self.plan, order)[index])
+        self.numbers(over, count, |image, block, lanes| {
+            let own = image.displacement(self.plan, order).iter().skip(block * WIDTH);
+            lanes.0.iter_mut().zip(own).for_each(|(lane, residue)| *lane = *residue);
+        })
     }
 
     /// From what the last order needed, where that divides.
@@ -534,20 +601,27 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         }
     }
 
-    /// The numerators of so many numbers over a denominator.
-    fn numbers(&self, over: &Over, count: usize, number: impl Fn(&Image, usize) -> u64) -> Option<Vec<Integer>> {
+    /// The numerators of so many numbers over a denominator; `eight` writes a block of their residues.
+    fn numbers(&self, over: &Over, count: usize, eight: impl Fn(&Image, usize, &mut Lanes)) -> Option<Vec<Integer>> {
         let modulus = &self.test.modulus;
         let mut numerators = Vec::with_capacity(count);
-        for index in 0..count {
-            let images = self.images.iter().copied();
-            let digits = self
-                .remainders
-                .lift(&weighted(images, &over.weights, |image| number(image, index)));
-            let expected = modulus.product(modulus.of_plain(number(self.test, index)), over.in_test);
-            if digits.residue(modulus, &self.powers) != expected {
-                return None;
+        let mut residues = vec![Lanes::default(); self.images.len()];
+        let mut numbers = Numbers::default();
+        for block in 0..count.div_ceil(WIDTH) {
+            for (own, image) in residues.iter_mut().zip(self.images) {
+                eight(image, block, own);
             }
-            numerators.push(digits.to_integer::<A>());
+            self.remainders.lift(&mut residues, &over.weights, &mut numbers);
+            let mut in_test = Lanes::default();
+            eight(self.test, block, &mut in_test);
+            let found = numbers.residues(self.arithmetic, modulus, &self.powers);
+            let pairs = found.into_iter().zip(in_test.0).enumerate();
+            for (place, (found, in_test)) in pairs.take(count - block * WIDTH) {
+                if found != modulus.product(in_test, over.in_test) {
+                    return None;
+                }
+                numerators.push(numbers.integer::<A>(place));
+            }
         }
         Some(numerators)
     }
@@ -562,75 +636,13 @@ struct Over {
     in_test: u64,
 }
 
-/// The orders as series; `slope` is that of the secular sine in the amplitude.
-fn expansion(
-    plan: &Plan,
-    orders: Vec<Order>,
-    slope: Option<FourierSeries<Integers>>,
-    extent: Extent,
-) -> Expansion<Integers> {
-    let constant = |value: &Rational| match value.is_zero() {
-        true => FourierSeries::zero(Integers),
-        false => FourierSeries::in_lowest_terms(Integers, value.denom().clone(), vec![value.numer().clone()], vec![]),
-    };
-    let series = |order: usize, denominator: &Factored, numerators: Vec<Integer>| {
-        let mut coefficients = Vec::new();
-        for (index, numerator) in numerators.into_iter().enumerate() {
-            coefficients.resize(plan.harmonic(index), Integer::zero());
-            coefficients.push(numerator);
-        }
-        let (cosine, sine) = match plan.wave(order) {
-            Wave::Cosine => (coefficients, vec![]),
-            Wave::Sine => (vec![], coefficients),
-        };
-        FourierSeries::in_lowest_terms(Integers, denominator.value(), cosine, sine)
-    };
-    let frequency_squared: Vec<_> = orders.iter().map(|order| constant(&order.frequency_squared)).collect();
-    let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
-    let squares = orders.iter().skip(1).map(|order| &order.frequency_squared);
-    let removed = squares.map(|square| constant(&-square)).collect();
-    // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
-    let amplitudes = slope.map_or_else(Vec::new, |slope| {
-        let (numerator, denominator) = slope.mean();
-        let rate = in_lowest_terms(&numerator, denominator);
-        let secular_sine = |(order, own): (usize, &Order)| {
-            let first = match plan.wave(order) {
-                Wave::Cosine => own.displacement.get(plan.resonant()).cloned().unwrap_or_default(),
-                Wave::Sine => Integer::zero(),
-            };
-            let (numerator, denominator) = own.denominator.lowest_terms(first);
-            let amplitude = Rational::new_raw(numerator, denominator);
-            SecularSine {
-                sine: constant(&-(&amplitude * &rate)),
-                slope: slope.clone(),
-                amplitude: constant(&amplitude),
-            }
-        };
-        orders.iter().enumerate().skip(1).map(secular_sine).collect()
-    });
-    let mut expansion = Expansion {
-        frequency_squared,
-        frequency,
-        displacement: vec![],
-        removed: vec![],
-        amplitudes,
-    };
-    if extent == Extent::Motion {
-        expansion.removed = removed;
-        let orders = orders.into_iter().enumerate();
-        expansion.displacement = orders
-            .map(|(order, own)| series(order, &own.denominator, own.displacement))
-            .collect();
-    }
-    expansion
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::Detuning;
     use super::super::tests::term;
     use super::*;
     use crate::exact::residue::portable::Portable;
+    use crate::series::FourierSeries;
     use crate::solution::AmplitudeConvention;
 
     /// Every number of the expansion, its steps included, is that of the recursion over whole numbers.
@@ -643,11 +655,17 @@ mod tests {
                     detuning,
                 };
                 let exact = super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest = by_widest(Expand(force, highest, scheme, Extent::Motion, Supervision::default()));
+                let widest = super::expand(force, highest, &scheme, Extent::Motion, Supervision::default());
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                let portable = Expand(force, highest, scheme, Extent::Motion, Supervision::default())
-                    .by(Portable::new())
-                    .expect("the same by primes");
+                let equation = Equation::new(force, highest, scheme, Extent::Motion);
+                let by_primes = Expand {
+                    equation: &equation,
+                    plan: &equation.plan(highest).expect("a symmetry"),
+                    slope: slope(force, &scheme, &fixed_width::Beginning::default()),
+                    orders: vec![],
+                    supervision: Supervision::default(),
+                };
+                let portable = by_primes.by(Portable::new()).expect("the same by primes");
                 let alone = super::expand(force, highest, &scheme, Extent::Frequency, Supervision::default());
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
                 assert_eq!(alone.frequency_squared, exact.frequency_squared, "{scheme:?}");

@@ -20,8 +20,8 @@ use num_traits::{One, Zero};
 
 use super::modular::{Field, Plan, Recursion, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
-use crate::exact::residue::remainder::{Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Modulus, Work, by_widest, primes_below};
+use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
 use crate::series::FourierSeries;
 use crate::series::waves::Wave;
@@ -343,12 +343,27 @@ fn fractions<A: Arithmetic>(
     let mut over: Vec<Integer> = vec![];
     let mut numerators = Vec::new();
     let mut weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
-    let mut residues = vec![0; images.len()];
+    let mut residues = vec![Lanes::default(); images.len()];
+    let mut eight = Numbers::default();
+    // The place of the first of eight that were put together over the present denominator.
+    let mut first = None;
     for index in 0..images[0].orders[order].len() {
-        for ((residue, image), weight) in residues.iter_mut().zip(images).zip(&weights) {
-            *residue = image.modulus.product(image.orders[order][index], *weight);
+        let start = *first.get_or_insert_with(|| {
+            for (residues, image) in residues.iter_mut().zip(images) {
+                let own = image.orders[order][index..].iter();
+                residues
+                    .0
+                    .iter_mut()
+                    .zip(own)
+                    .for_each(|(lane, residue)| *lane = *residue);
+            }
+            remainders.lift(&mut residues, &weights, &mut eight);
+            index
+        });
+        let number = eight.integer::<A>(index - start);
+        if index - start == WIDTH - 1 {
+            first = None;
         }
-        let number = remainders.lift(&residues).to_integer::<A>();
         let (numerator, more) = fraction(&number, product)?;
         if !more.is_one() {
             denominator *= more;
@@ -357,6 +372,7 @@ fn fractions<A: Arithmetic>(
             }
             let scaled = |modulus: &Modulus| modulus.integer(&denominator);
             weights = remainders.weights(scaled).collect();
+            first = None;
         }
         numerators.push(numerator);
         over.push(denominator.clone());

@@ -10,8 +10,8 @@ use num_traits::{One, Signed, Zero};
 use rayon::prelude::*;
 
 use super::{Field, HermitePade};
-use crate::exact::residue::remainder::{Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Modulus, Work, by_widest, primes_below};
+use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Rational};
 
 /// The combination of these series, each with the degree of its factor, that vanishes to the highest order: whole numbers without a
@@ -146,18 +146,11 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
     let remainders = Remainders::new(arithmetic, &moduli);
     let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
     let digit = test.modulus.residue(1 << A::DIGIT);
-    let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2;
+    let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2 + WIDTH;
     let next = |power: &u64| Some(test.modulus.product(*power, digit));
     let powers: Vec<u64> = std::iter::successors(Some(test.modulus.one), next)
         .take(digits)
         .collect();
-    let lift = |place: usize, weights: &[u64]| {
-        let pairs = images.iter().zip(weights);
-        let weighted: Vec<u64> = pairs
-            .map(|(image, weight)| image.modulus.product(image.numbers[place], *weight))
-            .collect();
-        remainders.lift(&weighted)
-    };
     let weights = |factor: &Integer| -> Vec<u64> { remainders.weights(|modulus| modulus.integer(factor)).collect() };
     let length = test.numbers.len();
     // The numbers of the highest powers have the longest denominators.
@@ -166,22 +159,43 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
     let mut over = weights(&denominator);
     let mut place = length - 1;
     let mut first = true;
+    // Eight numbers down to a place, over the present denominator.
+    let mut residues = vec![Lanes::default(); images.len()];
+    let mut eight = Numbers::default();
+    let mut lifted = None;
+    let mut in_test = [0; WIDTH];
     while numerators.len() < length {
-        let found = lift(place, &over);
-        let in_test = test.modulus.integer(&denominator);
+        let start = *lifted.get_or_insert_with(|| {
+            for (residues, image) in residues.iter_mut().zip(images) {
+                let own = image.numbers[..=place].iter().rev();
+                residues
+                    .0
+                    .iter_mut()
+                    .zip(own)
+                    .for_each(|(lane, residue)| *lane = *residue);
+            }
+            remainders.lift(&mut residues, &over, &mut eight);
+            in_test = eight.residues(arithmetic, &test.modulus, &powers);
+            place
+        });
+        let found = eight.integer::<A>(start - place);
         let expected = test
             .modulus
-            .product(test.modulus.of_plain(test.numbers[place]), in_test);
-        if !first && found.residue(&test.modulus, &powers) == expected {
-            numerators.push(found.to_integer::<A>());
+            .product(test.numbers[place], test.modulus.integer(&denominator));
+        if !first && in_test[start - place] == expected {
+            numerators.push(found);
+            if start - place == WIDTH - 1 {
+                lifted = None;
+            }
             place = place.wrapping_sub(1);
             continue;
         }
-        let residue = found.to_integer::<A>().mod_floor(&product);
+        let residue = found.mod_floor(&product);
         let (_, more) = fraction(&residue, &product)?;
         if more.is_one() && !first {
             return None;
         }
+        lifted = None;
         // What was found before is over the shorter denominator.
         numerators
             .iter_mut()

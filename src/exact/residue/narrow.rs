@@ -1,0 +1,193 @@
+//! Sums of products by the vectors of 256 binary digits that x86-64 processors have with AVX2: 32 by 32 digits in words of 64, as in
+//! the [portable](super::portable) arithmetic, whose primes these are.
+
+use std::arch::x86_64::__m256i as Register;
+
+use pulp::NullaryFnOnce;
+use pulp::x86::V3;
+
+use super::{Arithmetic, Lanes, Modulus};
+
+/// A processor with AVX2; that there is one is found out at run time.
+#[derive(Clone, Copy, Debug)]
+pub struct Narrow(V3);
+
+/// Eight words.
+type Words = [Register; 2];
+
+/// Products not carried yet, and the sums of the low and of the high halves of those that are.
+#[derive(Clone, Copy)]
+pub struct Sum {
+    recent: Words,
+    low: Words,
+    high: Words,
+}
+
+impl Narrow {
+    /// `None` where the processor has no such vectors.
+    pub fn try_new() -> Option<Self> {
+        V3::try_new().map(Self)
+    }
+
+    #[inline(always)]
+    fn all(self, value: u64) -> Register {
+        self.0.avx._mm256_set1_epi64x(value as i64)
+    }
+
+    #[inline(always)]
+    fn words(self, lanes: &Lanes) -> Words {
+        pulp::cast(lanes.0)
+    }
+
+    #[inline(always)]
+    fn sum(self, left: Words, right: Words) -> Words {
+        let v = self.0.avx2;
+        [
+            v._mm256_add_epi64(left[0], right[0]),
+            v._mm256_add_epi64(left[1], right[1]),
+        ]
+    }
+
+    /// The products of the low halves.
+    #[inline(always)]
+    fn multiply(self, left: Words, right: Words) -> Words {
+        let v = self.0.avx2;
+        [
+            v._mm256_mul_epu32(left[0], right[0]),
+            v._mm256_mul_epu32(left[1], right[1]),
+        ]
+    }
+
+    /// The upper halves.
+    #[inline(always)]
+    fn upper(self, words: Words) -> Words {
+        let v = self.0.avx2;
+        [v._mm256_srli_epi64::<32>(words[0]), v._mm256_srli_epi64::<32>(words[1])]
+    }
+
+    /// The lower halves.
+    #[inline(always)]
+    fn lower(self, words: Words) -> Words {
+        let (v, zero) = (self.0.avx2, self.all(0));
+        [
+            v._mm256_blend_epi32::<0xaa>(words[0], zero),
+            v._mm256_blend_epi32::<0xaa>(words[1], zero),
+        ]
+    }
+
+    /// Four sums divided by `R`.
+    #[inline(always)]
+    fn reduce_four(self, low: Register, high: Register, modulus: &Modulus) -> Register {
+        let v = self.0.avx2;
+        let prime = self.all(modulus.prime);
+        // As in the wide arithmetic, with a high part below 2^42.
+        let high = v._mm256_add_epi64(high, v._mm256_srli_epi64::<32>(low));
+        let guess = v._mm256_mul_epu32(v._mm256_srli_epi64::<10>(high), self.all(modulus.quotient));
+        let multiple = v._mm256_mul_epu32(v._mm256_srli_epi64::<47>(guess), prime);
+        let high = v._mm256_sub_epi64(high, multiple);
+        let residue = v._mm256_sub_epi64(v._mm256_add_epi64(high, prime), self.taken(low, modulus));
+        // Half words are compared: of a difference below zero both halves are large.
+        let once = v._mm256_min_epu32(residue, v._mm256_sub_epi64(residue, prime));
+        v._mm256_min_epu32(once, v._mm256_sub_epi64(once, prime))
+    }
+
+    /// Four products divided by `R`.
+    #[inline(always)]
+    fn reduce_product(self, product: Register, modulus: &Modulus) -> Register {
+        let v = self.0.avx2;
+        let residue = v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, modulus));
+        // Below zero both halves are large, and the prime more than the residue above it makes up for that.
+        v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, self.all(modulus.prime)))
+    }
+
+    /// What Montgomery's step takes away from the high part.
+    #[inline(always)]
+    fn taken(self, low: Register, modulus: &Modulus) -> Register {
+        let v = self.0.avx2;
+        let multiple = v._mm256_mul_epu32(low, self.all(modulus.inverse));
+        v._mm256_srli_epi64::<32>(v._mm256_mul_epu32(multiple, self.all(modulus.prime)))
+    }
+}
+
+impl Arithmetic for Narrow {
+    const BITS: u32 = 30;
+    const RADIX: u32 = 32;
+    const DIGIT: u32 = 30;
+    // Sixteen products of 60 digits fill a word.
+    const RUN: usize = 16;
+    type Sum = Sum;
+
+    #[inline(always)]
+    fn none(self) -> Sum {
+        let none = [self.all(0); 2];
+        Sum {
+            recent: none,
+            low: none,
+            high: none,
+        }
+    }
+    #[inline(always)]
+    fn add_product(self, sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
+        let product = self.multiply(self.words(left), self.words(right));
+        Sum {
+            recent: self.sum(sum.recent, product),
+            ..sum
+        }
+    }
+    #[inline(always)]
+    fn add_multiple(self, sum: Sum, left: u64, right: &Lanes) -> Sum {
+        let left = self.all(left);
+        let product = self.multiply([left; 2], self.words(right));
+        Sum {
+            recent: self.sum(sum.recent, product),
+            ..sum
+        }
+    }
+    #[inline(always)]
+    fn carry(self, sum: Sum) -> Sum {
+        Sum {
+            recent: [self.all(0); 2],
+            low: self.sum(sum.low, self.lower(sum.recent)),
+            high: self.sum(sum.high, self.upper(sum.recent)),
+        }
+    }
+    #[inline(always)]
+    fn merge(self, left: Sum, right: Sum) -> Sum {
+        Sum {
+            recent: self.sum(left.recent, right.recent),
+            low: self.sum(left.low, right.low),
+            high: self.sum(left.high, right.high),
+        }
+    }
+    #[inline(always)]
+    fn join(self, left: Sum, right: Sum) -> Sum {
+        self.merge(self.carry(left), self.carry(right))
+    }
+    #[inline(always)]
+    fn parts(self, sum: Sum) -> (Lanes, Lanes) {
+        let sum = self.carry(sum);
+        (Lanes(pulp::cast(sum.low)), Lanes(pulp::cast(sum.high)))
+    }
+    #[inline(always)]
+    fn reduce(self, sum: Sum, modulus: &Modulus) -> Lanes {
+        let Sum { low, high, .. } = self.carry(sum);
+        let residues: Words = [
+            self.reduce_four(low[0], high[0], modulus),
+            self.reduce_four(low[1], high[1], modulus),
+        ];
+        Lanes(pulp::cast(residues))
+    }
+    #[inline(always)]
+    fn product(self, left: &Lanes, right: &Lanes, modulus: &Modulus) -> Lanes {
+        let [first, second] = self.multiply(self.words(left), self.words(right));
+        let residues: Words = [
+            self.reduce_product(first, modulus),
+            self.reduce_product(second, modulus),
+        ];
+        Lanes(pulp::cast(residues))
+    }
+    #[inline(always)]
+    fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {
+        self.0.vectorize(function)
+    }
+}

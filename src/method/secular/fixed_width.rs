@@ -1,0 +1,450 @@
+//! The first orders of an expansion in numbers of a fixed width, as far as these hold it.
+//!
+//! The recursion of the head of [the module](super) on [short series](crate::series::fixed_width), whose symmetries are those of the
+//! [plan](super::modular) for primes. Low orders need no more than this, and long expansions read off what it finds how their
+//! denominators grow.
+//!
+//! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics; two words hold Duffing's equation to
+//! order 23 or so.
+
+use super::modular::{Plan, Term};
+use super::{Amplitude, Detuning};
+use crate::exact::residue::sums::Product;
+use crate::interrupt::Interrupt;
+use crate::series::fixed_width::{Harmonics, ShortSeries, combination, sum_of_products};
+use crate::series::waves::Wave;
+use crate::solution::AmplitudeConvention;
+use num_traits::ToPrimitive;
+
+/// One order.
+pub(super) struct Order {
+    pub displacement: ShortSeries,
+    /// `W_n` and `omega_n`, constants.
+    pub frequency_squared: ShortSeries,
+    pub frequency: ShortSeries,
+}
+
+/// What was found.
+#[derive(Default)]
+pub(super) struct Beginning {
+    /// From order zero on; fewer than asked for where a number does not fit.
+    pub orders: Vec<Order>,
+    /// The derivative of the secular sine in the amplitude, where that is determined.
+    pub slope: Option<ShortSeries>,
+}
+
+/// The orders up to the highest of the plan, or as many as fit.
+pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
+    let mut beginning = Beginning::default();
+    if let Some(mut recursion) = Recursion::new(plan) {
+        while recursion.complete <= plan.highest && !interrupt.is_requested() {
+            if recursion.next_order().is_none() {
+                break;
+            }
+        }
+        beginning.slope = recursion.variation.as_ref().map(|variation| variation.slope.clone());
+        beginning.orders = recursion.orders();
+    }
+    beginning
+}
+
+struct Recursion<'a> {
+    plan: &'a Plan<'a>,
+    /// The terms with their coefficients, each over the power whose derivative is meant; without one that does not fit.
+    terms: Vec<(&'a Term, Option<(i128, i128)>)>,
+    /// The tables of the plan, an entry for each order.
+    tables: Vec<Vec<ShortSeries>>,
+    displacement: Vec<ShortSeries>,
+    detuned: Vec<ShortSeries>,
+    derived: Vec<ShortSeries>,
+    /// The derivative of all terms with one velocity at each order, where there are any.
+    damped: Vec<Option<ShortSeries>>,
+    frequency_squared: Vec<ShortSeries>,
+    frequency: Vec<ShortSeries>,
+    /// A sine beside the terms.
+    sine: Option<Sine>,
+    variation: Option<Variation>,
+    /// How many orders are known with their amplitudes.
+    complete: usize,
+}
+
+/// How everything changes with the amplitude of `y_0`, for limit cycles.
+struct Variation {
+    tables: Vec<ShortSeries>,
+    right_side: ShortSeries,
+    damped: Option<ShortSeries>,
+    slope: ShortSeries,
+}
+
+impl<'a> Recursion<'a> {
+    fn new(plan: &'a Plan<'a>) -> Option<Self> {
+        let coefficient = |term: &Term, derivative: bool| {
+            let power = if derivative { i128::from(term.position) + 1 } else { 1 };
+            let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
+            Some((term.coefficient.numer().to_i128()?, denominator))
+        };
+        let terms = plan.terms.iter().zip(&plan.of_terms);
+        let mut recursion = Self {
+            plan,
+            terms: terms
+                .map(|(term, (_, derivative))| (term, coefficient(term, *derivative)))
+                .collect(),
+            sine: match &plan.sine {
+                Some((_, rate)) => Some(Sine::new((rate.numer().to_i128()?, rate.denom().to_i128()?))),
+                None => None,
+            },
+            tables: vec![vec![]; plan.tables],
+            displacement: vec![],
+            detuned: vec![],
+            derived: vec![],
+            damped: vec![None],
+            frequency_squared: vec![],
+            frequency: vec![],
+            variation: None,
+            complete: 0,
+        };
+        let one = recursion.constant(1)?;
+        recursion.frequency_squared.push(one.clone());
+        recursion.frequency.push(one);
+        let mut start = vec![0; plan.resonant() + 1];
+        start[plan.resonant()] = 1;
+        let start = ShortSeries::new(Wave::Cosine, recursion.harmonics(), 1, start)?;
+        recursion.push_displacement(0, start)?;
+        match plan.scheme.amplitude {
+            Amplitude::Free => recursion.complete = 1,
+            Amplitude::Determined => recursion.variation = Some(recursion.variation()?),
+        }
+        Some(recursion)
+    }
+
+    fn harmonics(&self) -> Harmonics {
+        match self.plan.half_wave {
+            true => Harmonics::Odd,
+            false => Harmonics::All,
+        }
+    }
+
+    fn constant(&self, value: i128) -> Option<ShortSeries> {
+        let harmonics = match self.plan.half_wave {
+            true => Harmonics::Even,
+            false => Harmonics::All,
+        };
+        ShortSeries::constant(harmonics, value, 1)
+    }
+
+    /// What is complete.
+    fn orders(self) -> Vec<Order> {
+        let numbers = self.frequency_squared.into_iter().zip(self.frequency);
+        let orders = self.displacement.into_iter().zip(numbers).take(self.complete);
+        orders
+            .map(|(displacement, (frequency_squared, frequency))| Order {
+                displacement,
+                frequency_squared,
+                frequency,
+            })
+            .collect()
+    }
+
+    /// Solves the order after those that are known; the last one of a limit cycle gives nothing but the amplitude before it. `None`
+    /// where a number does not fit, and where a secular sine stays.
+    fn next_order(&mut self) -> Option<()> {
+        let (plan, order) = (self.plan, self.displacement.len());
+        let mut right_side = self.right_side(order)?;
+        if self.variation.is_some() {
+            if order > 1 {
+                right_side = self.fix_amplitude(order, right_side)?;
+            }
+            self.complete = order;
+            if order > plan.highest {
+                self.complete = plan.highest + 1;
+                return Some(());
+            }
+        }
+        let resonance = right_side.coefficient(plan.resonant())?;
+        let square = match right_side.wave {
+            Wave::Sine if !resonance.is_zero() => return None,
+            Wave::Sine => self.constant(0)?,
+            Wave::Cosine => combination(&[(-1, 1, &resonance)])?,
+        };
+        let products: Vec<_> = (1..order)
+            .map(|i| (-1, &self.frequency[i], &self.frequency[order - i]))
+            .collect();
+        let products = sum_of_products(&products)?;
+        let frequency = combination(&[(1, 2, &square), (1, 2, &products)])?.reduced();
+        self.frequency_squared.push(square);
+        self.frequency.push(frequency);
+        let particular = right_side.without_resonance_over_divisors()?.reduced();
+        let displacement = self.normalised(particular)?;
+        self.push_displacement(order, displacement)?;
+        if self.variation.is_none() {
+            self.complete = order + 1;
+        }
+        Some(())
+    }
+
+    /// `r_n` as in the head of the module.
+    fn right_side(&mut self, order: usize) -> Option<ShortSeries> {
+        if let Some(sine) = &mut self.sine {
+            sine.prepare(order)?;
+        }
+        let at = |term: &Term, table: usize| self.tables[table].get(order.checked_sub(term.order)?);
+        let mut plain = self.parts(false, at)?;
+        let of_sine = self.sine.as_ref().and_then(|sine| sine.rest.as_ref());
+        plain.extend(of_sine.map(|rest| (1, 1, rest)));
+        let plain = sum_of_parts(&plain)?;
+        let damped = derivative_of_parts(&self.parts(true, at)?)?;
+        self.damped.push(damped);
+        let mut products = Vec::new();
+        for i in 1..=order {
+            let delayed = match self.plan.scheme.detuning {
+                Detuning::Acceleration => &self.frequency[(order - i).min(self.frequency.len() - 1)],
+                Detuning::Displacement => &self.frequency[0],
+            };
+            let present = self.plan.scheme.detuning == Detuning::Acceleration || i == order;
+            if let Some(damped) = self.damped[i].as_ref().filter(|_| present) {
+                products.push((-1, delayed, damped));
+            }
+        }
+        let detuned = (1..order).map(|i| (-1, &self.frequency_squared[order - i], &self.detuned[i]));
+        products.extend(detuned);
+        products.retain(|(_, factor, series)| !factor.is_zero() && !series.is_zero());
+        let products = match products.is_empty() {
+            true => None,
+            false => Some(sum_of_products(&products)?),
+        };
+        let parts: Vec<_> = plain.iter().map(|plain| (-1, 1, plain)).collect();
+        let parts: Vec<_> = parts
+            .into_iter()
+            .chain(products.iter().map(|sum| (1, 1, sum)))
+            .collect();
+        match parts.is_empty() {
+            true => ShortSeries::new(self.plan.wave(order), self.harmonics(), 1, vec![0]),
+            false => combination(&parts),
+        }
+    }
+
+    /// The terms with a derivative or without, each with its table's series that `at` takes.
+    fn parts<'b>(
+        &'b self,
+        derivative: bool,
+        at: impl Fn(&Term, usize) -> Option<&'b ShortSeries>,
+    ) -> Option<Vec<(i128, i128, &'b ShortSeries)>> {
+        let mut parts = Vec::with_capacity(self.terms.len());
+        for ((term, coefficient), (table, own)) in self.terms.iter().zip(&self.plan.of_terms) {
+            if let Some(series) = at(term, *table).filter(|_| *own == derivative) {
+                let (numerator, denominator) = (*coefficient)?;
+                parts.push((numerator, denominator, series));
+            }
+        }
+        Some(parts)
+    }
+
+    /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular sine.
+    fn fix_amplitude(&mut self, order: usize, right_side: ShortSeries) -> Option<ShortSeries> {
+        let (plan, variation) = (self.plan, self.variation.as_ref()?);
+        let sine = right_side.coefficient(plan.resonant())?;
+        if right_side.wave == Wave::Cosine || sine.is_zero() {
+            return Some(right_side);
+        }
+        let slope = &variation.slope;
+        // Minus the sine over its slope.
+        let sign = -slope.numerator(0).signum();
+        let amplitude = ShortSeries::constant(
+            sine.harmonics(),
+            sine.numerator(0).checked_mul(slope.denominator())?.checked_mul(sign)?,
+            sine.denominator().checked_mul(slope.numerator(0).abs())?,
+        )?;
+        let amplitude = amplitude.reduced();
+        let change = (amplitude.numerator(0), amplitude.denominator());
+        let changed = |series: &ShortSeries, by: &ShortSeries| {
+            combination(&[(1, 1, series), (change.0, change.1, by)]).map(ShortSeries::reduced)
+        };
+        for (table, by) in self.tables.iter_mut().zip(&variation.tables) {
+            if let Some(series) = table.get_mut(order - 1) {
+                *series = changed(series, by)?;
+            }
+        }
+        let corrected = self.tables[0][order - 1].clone();
+        if let (Some(damped), Some(by)) = (self.damped[order].as_mut(), &variation.damped) {
+            *damped = changed(damped, by)?;
+        }
+        let right_side = changed(&right_side, &variation.right_side)?;
+        self.detuned[order - 1] = detuned(plan, &corrected)?;
+        if plan.has_velocity {
+            self.derived[order - 1] = corrected.derivative()?;
+        }
+        self.displacement[order - 1] = corrected;
+        Some(right_side)
+    }
+
+    /// Adds to the solution of an order the homogeneous one that the amplitude convention asks for.
+    fn normalised(&self, particular: ShortSeries) -> Option<ShortSeries> {
+        let plan = self.plan;
+        if plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
+            return Some(particular);
+        }
+        let mut at_zero = 0_i128;
+        for (index, numerator) in particular.numerators().iter().enumerate() {
+            let weight = match (particular.wave, plan.scheme.amplitude) {
+                (Wave::Sine, _) => i128::try_from(plan.harmonic(index)).ok()?,
+                (Wave::Cosine, Amplitude::Free) => 1,
+                (Wave::Cosine, Amplitude::Determined) => return Some(particular),
+            };
+            at_zero = at_zero.checked_add(numerator.checked_mul(weight)?)?;
+        }
+        let mut numerators = particular.numerators().to_vec();
+        numerators.resize(numerators.len().max(plan.resonant() + 1), 0);
+        numerators[plan.resonant()] = at_zero.checked_neg()?;
+        ShortSeries::new(particular.wave, self.harmonics(), particular.denominator(), numerators)
+    }
+
+    fn push_displacement(&mut self, order: usize, displacement: ShortSeries) -> Option<()> {
+        let plan = self.plan;
+        self.detuned.push(detuned(plan, &displacement)?);
+        self.tables[0].push(displacement.clone());
+        if plan.has_velocity {
+            self.derived.push(displacement.derivative()?);
+            let velocity = match plan.scheme.detuning {
+                Detuning::Displacement => self.derived[order].clone(),
+                Detuning::Acceleration => {
+                    let products = (0..=order).map(|i| (1, &self.frequency[order - i], &self.derived[i]));
+                    let products: Vec<_> = products.filter(|(_, factor, _)| !factor.is_zero()).collect();
+                    sum_of_products(&products)?.reduced()
+                }
+            };
+            self.tables[1].push(velocity);
+        }
+        self.displacement.push(displacement);
+        for product in &plan.products {
+            if order <= product.needed {
+                let series = self.convolution(product, order)?;
+                self.tables[product.to].push(series);
+            }
+        }
+        match &mut self.sine {
+            Some(sine) => sine.push(order, &self.displacement[order]),
+            None => Some(()),
+        }
+    }
+
+    /// One order of a product.
+    fn convolution(&self, product: &Product, order: usize) -> Option<ShortSeries> {
+        let (left, right) = (&self.tables[product.left], &self.tables[product.right]);
+        let square = product.left == product.right;
+        let last = if square { order / 2 } else { order };
+        let terms: Vec<_> = (0..=last)
+            .map(|i| match square && 2 * i != order {
+                true => (2, &left[i], &right[order - i]),
+                false => (1, &left[i], &right[order - i]),
+            })
+            .collect();
+        sum_of_products(&terms).map(ShortSeries::reduced)
+    }
+
+    /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.
+    fn variation(&self) -> Option<Variation> {
+        let plan = self.plan;
+        // Of y and of omega y': themselves.
+        let leaves = 1 + usize::from(plan.has_velocity);
+        let mut tables: Vec<ShortSeries> = self.tables[..leaves].iter().map(|table| table[0].clone()).collect();
+        for product in &plan.products {
+            let pairs = [
+                (1, &tables[product.left], &self.tables[product.right][0]),
+                (1, &tables[product.right], &self.tables[product.left][0]),
+            ];
+            let series = sum_of_products(&pairs)?.reduced();
+            tables.push(series);
+        }
+        let at = |term: &Term, table: usize| tables.get(table).filter(|_| term.order == 1);
+        let plain = sum_of_parts(&self.parts(false, at)?)?;
+        let damped = derivative_of_parts(&self.parts(true, at)?)?;
+        let parts: Vec<_> = plain.iter().chain(&damped).map(|part| (-1, 1, part)).collect();
+        let right_side = combination(&parts)?.reduced();
+        let slope = right_side.coefficient(plan.resonant())?;
+        (!slope.is_zero()).then_some(Variation {
+            tables,
+            right_side,
+            damped,
+            slope,
+        })
+    }
+}
+
+/// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
+fn detuned(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
+    match plan.scheme.detuning {
+        Detuning::Acceleration => displacement.derivative()?.derivative(),
+        Detuning::Displacement => combination(&[(-1, 1, displacement)]),
+    }
+}
+
+/// The sum, where there is anything to sum.
+fn sum_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeries>> {
+    match parts.is_empty() {
+        true => Some(None),
+        false => combination(parts).map(Some),
+    }
+}
+
+/// Its derivative.
+fn derivative_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeries>> {
+    match sum_of_parts(parts)? {
+        Some(sum) => Some(Some(sum.derivative()?.reduced())),
+        None => Some(None),
+    }
+}
+
+/// The [sine](super::sine) of the motion, order by order.
+struct Sine {
+    rate: (i128, i128),
+    /// `V`, `S` and `C`.
+    scaled: Vec<ShortSeries>,
+    sine: Vec<ShortSeries>,
+    cosine: Vec<ShortSeries>,
+    /// `S` of the next order without what it has of the motion.
+    rest: Option<ShortSeries>,
+}
+
+impl Sine {
+    fn new(rate: (i128, i128)) -> Self {
+        Self {
+            rate,
+            scaled: vec![],
+            sine: vec![],
+            cosine: vec![],
+            rest: None,
+        }
+    }
+
+    /// Forms `S_n - y_n`, for the order after those that are known.
+    fn prepare(&mut self, order: usize) -> Option<()> {
+        let products = (0..order).map(|i| (1, &self.cosine[order - i], &self.scaled[i]));
+        let sum = sum_of_products(&products.collect::<Vec<_>>())?;
+        let twice_and_half = 2 * i128::try_from(order).ok()? + 1;
+        self.rest = Some(combination(&[(2, twice_and_half, &sum)])?.reduced());
+        Some(())
+    }
+
+    /// Takes the motion of an order.
+    fn push(&mut self, order: usize, displacement: &ShortSeries) -> Option<()> {
+        let number = i128::try_from(order).ok()?;
+        self.scaled
+            .push(combination(&[(2 * number + 1, 2, displacement)])?.reduced());
+        match self.rest.take() {
+            Some(rest) => self
+                .sine
+                .push(combination(&[(1, 1, &rest), (1, 1, displacement)])?.reduced()),
+            None => {
+                // Of order zero the sine is the motion, and the cosine is one.
+                self.sine.push(displacement.clone());
+                let harmonics = displacement.harmonics().times(displacement.harmonics());
+                self.cosine.push(ShortSeries::constant(harmonics, 1, 1)?);
+            }
+        }
+        let products = (0..=order).map(|i| (1, &self.sine[order - i], &self.scaled[i]));
+        let sum = sum_of_products(&products.collect::<Vec<_>>())?;
+        let over = self.rate.1.checked_mul(number + 1)?;
+        self.cosine.push(combination(&[(self.rate.0, over, &sum)])?.reduced());
+        Some(())
+    }
+}

@@ -1,0 +1,96 @@
+//! The orders of an expansion as its lists of series.
+
+use num_traits::Zero;
+
+use super::fixed_width;
+use super::modular::Plan;
+use super::reconstruct::Extent;
+use super::{Expansion, SecularSine};
+use crate::exact::{Integer, Integers, Rational};
+use crate::series::FourierSeries;
+use crate::series::fixed_width::ShortSeries;
+use crate::series::waves::Wave;
+
+/// One order of the result.
+pub(super) struct Order {
+    /// Of all coefficients of the motion, which have no factor in common with it.
+    pub denominator: Integer,
+    pub displacement: Vec<Integer>,
+    /// The coefficient of `cos tau`; asked for of limit cycles alone.
+    pub first_harmonic: Rational,
+    pub frequency_squared: Rational,
+    pub frequency: Rational,
+}
+
+impl Order {
+    /// From numbers of a fixed width.
+    pub fn of_short(plan: &Plan, order: &fixed_width::Order) -> Self {
+        let constant =
+            |series: &ShortSeries| Rational::new_raw(series.numerator(0).into(), series.denominator().into());
+        let motion = &order.displacement;
+        let first = match motion.wave {
+            Wave::Cosine => motion.coefficient(plan.resonant()),
+            Wave::Sine => None,
+        };
+        Self {
+            denominator: motion.denominator().into(),
+            displacement: motion.numerators().iter().copied().map(Integer::from).collect(),
+            first_harmonic: first.as_ref().map_or_else(Rational::zero, constant),
+            frequency_squared: constant(&order.frequency_squared),
+            frequency: constant(&order.frequency),
+        }
+    }
+}
+
+/// The orders as series; `slope` is that of the secular sine in the amplitude.
+pub(super) fn expansion(
+    plan: &Plan,
+    orders: Vec<Order>,
+    slope: Option<&Rational>,
+    extent: Extent,
+) -> Expansion<Integers> {
+    let constant = |value: &Rational| match value.is_zero() {
+        true => FourierSeries::zero(Integers),
+        false => FourierSeries::in_lowest_terms(Integers, value.denom().clone(), vec![value.numer().clone()], vec![]),
+    };
+    let series = |order: usize, denominator: Integer, numerators: Vec<Integer>| {
+        let mut coefficients = Vec::new();
+        for (index, numerator) in numerators.into_iter().enumerate() {
+            coefficients.resize(plan.harmonic(index), Integer::zero());
+            coefficients.push(numerator);
+        }
+        let (cosine, sine) = match plan.wave(order) {
+            Wave::Cosine => (coefficients, vec![]),
+            Wave::Sine => (vec![], coefficients),
+        };
+        FourierSeries::in_lowest_terms(Integers, denominator, cosine, sine)
+    };
+    let frequency_squared: Vec<_> = orders.iter().map(|order| constant(&order.frequency_squared)).collect();
+    let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
+    let squares = orders.iter().skip(1).map(|order| &order.frequency_squared);
+    let removed = squares.map(|square| constant(&-square)).collect();
+    // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
+    let amplitudes = slope.map_or_else(Vec::new, |slope| {
+        let secular_sine = |own: &Order| SecularSine {
+            sine: constant(&-(&own.first_harmonic * slope)),
+            slope: constant(slope),
+            amplitude: constant(&own.first_harmonic),
+        };
+        orders.iter().skip(1).map(secular_sine).collect()
+    });
+    let mut expansion = Expansion {
+        frequency_squared,
+        frequency,
+        displacement: vec![],
+        removed: vec![],
+        amplitudes,
+    };
+    if extent == Extent::Motion {
+        expansion.removed = removed;
+        let orders = orders.into_iter().enumerate();
+        expansion.displacement = orders
+            .map(|(order, own)| series(order, own.denominator, own.displacement))
+            .collect();
+    }
+    expansion
+}

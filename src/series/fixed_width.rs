@@ -1,0 +1,371 @@
+//! Short Fourier series: numerators of two machine words over one denominator, without symbols and without memory for each number.
+//!
+//! What an operation can grow to is bounded before it is done, from the largest numerators of its arguments. Where that is more than
+//! two words hold there is no result, so that none is ever wrong, and no addition or multiplication has to look for overflow.
+
+use num_integer::Integer as _;
+
+use super::waves::Wave;
+
+/// Numerators and all sums on the way to them stay below this.
+const BOUND: u128 = 1 << 126;
+
+/// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones.
+#[derive(Clone, Debug)]
+pub struct ShortSeries {
+    /// Cosines or sines; a sine of harmonic zero has the numerator zero.
+    pub wave: Wave,
+    harmonics: Harmonics,
+    denominator: i128,
+    numerators: Vec<i128>,
+    /// The largest numerator, without its sign.
+    largest: u128,
+}
+
+/// Which harmonics stand side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Harmonics {
+    /// `0, 1, 2, ...`
+    All,
+    /// `0, 2, 4, ...`
+    Even,
+    /// `1, 3, 5, ...`
+    Odd,
+}
+
+impl Harmonics {
+    /// The harmonic at a place.
+    pub fn at(self, index: usize) -> usize {
+        match self {
+            Self::All => index,
+            Self::Even => 2 * index,
+            Self::Odd => 2 * index + 1,
+        }
+    }
+
+    /// Those of a product.
+    pub fn times(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::All, _) | (_, Self::All) => Self::All,
+            _ if self == other => Self::Even,
+            _ => Self::Odd,
+        }
+    }
+}
+
+impl ShortSeries {
+    /// From numerators over a positive denominator; `None` where they are too long.
+    pub fn new(wave: Wave, harmonics: Harmonics, denominator: i128, numerators: Vec<i128>) -> Option<Self> {
+        let largest = numerators.iter().map(|numerator| numerator.unsigned_abs()).max();
+        let largest = largest.unwrap_or(0);
+        (largest < BOUND && denominator > 0).then_some(Self {
+            wave,
+            harmonics,
+            denominator,
+            numerators,
+            largest,
+        })
+    }
+
+    /// A number; `harmonics` are all or the even ones.
+    pub fn constant(harmonics: Harmonics, numerator: i128, denominator: i128) -> Option<Self> {
+        Self::new(Wave::Cosine, harmonics, denominator, vec![numerator])
+    }
+
+    /// The common denominator, positive.
+    pub fn denominator(&self) -> i128 {
+        self.denominator
+    }
+
+    /// Which harmonics stand side by side.
+    pub fn harmonics(&self) -> Harmonics {
+        self.harmonics
+    }
+
+    /// The numerators of the harmonics that may occur.
+    pub fn numerators(&self) -> &[i128] {
+        &self.numerators
+    }
+
+    /// The numerator at a place, zero beyond the last.
+    pub fn numerator(&self, index: usize) -> i128 {
+        self.numerators.get(index).copied().unwrap_or(0)
+    }
+
+    /// Whether every number is zero.
+    pub fn is_zero(&self) -> bool {
+        self.largest == 0
+    }
+
+    /// The number at a place as a constant series.
+    pub fn coefficient(&self, index: usize) -> Option<Self> {
+        let harmonics = match self.harmonics {
+            Harmonics::All => Harmonics::All,
+            Harmonics::Even | Harmonics::Odd => Harmonics::Even,
+        };
+        Self::constant(harmonics, self.numerator(index), self.denominator).map(Self::reduced)
+    }
+
+    /// In lowest terms.
+    pub fn reduced(mut self) -> Self {
+        let mut common = self.denominator;
+        for numerator in &self.numerators {
+            if common == 1 {
+                return self;
+            }
+            common = greatest_common_divisor(common, *numerator);
+        }
+        if common > 1 {
+            let halvings = common.trailing_zeros();
+            if common == 1 << halvings {
+                self.numerators.iter_mut().for_each(|numerator| *numerator >>= halvings);
+            } else {
+                self.numerators.iter_mut().for_each(|numerator| *numerator /= common);
+            }
+            self.denominator /= common;
+            self.largest /= common.unsigned_abs();
+        }
+        self
+    }
+
+    /// The derivative.
+    pub fn derivative(&self) -> Option<Self> {
+        let (wave, sign) = match self.wave {
+            Wave::Cosine => (Wave::Sine, -1),
+            Wave::Sine => (Wave::Cosine, 1),
+        };
+        let mut numerators = Vec::with_capacity(self.numerators.len());
+        for (index, numerator) in self.numerators.iter().enumerate() {
+            let harmonic = i128::try_from(self.harmonics.at(index)).ok()?;
+            numerators.push(numerator.checked_mul(sign * harmonic)?);
+        }
+        Self::new(wave, self.harmonics, self.denominator, numerators)
+    }
+
+    /// The solution of `u'' + u = self` without first harmonic: every number over `1 - k^2`.
+    pub fn without_resonance_over_divisors(&self) -> Option<Self> {
+        let divisor = |index: usize| {
+            let harmonic = i128::try_from(self.harmonics.at(index)).ok()?;
+            harmonic.checked_mul(harmonic)?.checked_sub(1)
+        };
+        // What is left of each divisor when it has taken from its numerator what it can.
+        let mut parts = Vec::with_capacity(self.numerators.len());
+        let mut common = 1_i128;
+        for (index, &numerator) in self.numerators.iter().enumerate() {
+            let divisor = divisor(index)?;
+            if divisor == 0 || numerator == 0 {
+                parts.push((0, 1));
+                continue;
+            }
+            let shared = greatest_common_divisor(divisor.abs(), numerator);
+            let left = divisor / shared;
+            parts.push((numerator / shared, left));
+            common = least_common_multiple(common, left.abs())?;
+        }
+        let bound = self.largest.checked_mul(common.unsigned_abs())?;
+        if bound >= BOUND {
+            return None;
+        }
+        let numerators = parts.iter().map(|(numerator, left)| -numerator * (common / left));
+        let denominator = self.denominator.checked_mul(common)?;
+        Self::new(self.wave, self.harmonics, denominator, numerators.collect())
+    }
+}
+
+fn greatest_common_divisor(left: i128, right: i128) -> i128 {
+    match (i64::try_from(left), i64::try_from(right)) {
+        (Ok(left), Ok(right)) if left != i64::MIN && right != i64::MIN => left.gcd(&right).into(),
+        // A divisor of one word: one division leaves words.
+        (Ok(left), Err(_)) if left > 0 => match i64::try_from(right % i128::from(left)) {
+            Ok(rest) => left.gcd(&rest).into(),
+            Err(_) => i128::from(left).gcd(&right),
+        },
+        _ => left.gcd(&right),
+    }
+}
+
+fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
+    if left == right || right == 1 {
+        return Some(left);
+    }
+    if left == 1 {
+        return Some(right);
+    }
+    (left / greatest_common_divisor(left, right)).checked_mul(right)
+}
+
+/// `sum of (numerator / denominator) series`, all of the same waves.
+pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> {
+    let first = terms.first()?.2;
+    let mut common = 1;
+    let mut length = 0;
+    for (_, denominator, series) in terms {
+        common = least_common_multiple(common, denominator.checked_mul(series.denominator)?)?;
+        length = length.max(series.numerators.len());
+    }
+    let mut bound = 0_u128;
+    let mut sums = vec![0_i128; length];
+    for (numerator, denominator, series) in terms {
+        let factor = numerator.checked_mul(common / (denominator * series.denominator))?;
+        bound = bound.checked_add(factor.unsigned_abs().checked_mul(series.largest)?)?;
+        if bound >= BOUND {
+            return None;
+        }
+        for (sum, own) in sums.iter_mut().zip(&series.numerators) {
+            *sum = sum.wrapping_add(factor.wrapping_mul(*own));
+        }
+    }
+    ShortSeries::new(first.wave, first.harmonics, common, sums)
+}
+
+/// `sum of weight left right`, all products of the same waves; zero as a constant where there are none.
+pub fn sum_of_products(terms: &[(i128, &ShortSeries, &ShortSeries)]) -> Option<ShortSeries> {
+    let mut common = 1;
+    let mut length = 1;
+    let mut kind = (Wave::Cosine, Harmonics::Even);
+    for (_, left, right) in terms {
+        common = least_common_multiple(common, left.denominator.checked_mul(right.denominator)?)?;
+        length = length.max(left.numerators.len() + right.numerators.len());
+        let wave = if left.wave == right.wave {
+            Wave::Cosine
+        } else {
+            Wave::Sine
+        };
+        kind = (wave, left.harmonics.times(right.harmonics));
+    }
+    let mut bound = 0_u128;
+    let mut sums = vec![0_i128; length];
+    for (weight, left, right) in terms {
+        let factor = weight.checked_mul(common / (left.denominator * right.denominator))?;
+        let shorter = left.numerators.len().min(right.numerators.len());
+        let scaled = factor.unsigned_abs().checked_mul(left.largest)?;
+        // A sum is met once by sums of harmonics and twice by their differences.
+        let of_products = scaled.checked_mul(right.largest)?.checked_mul(3 * shorter as u128)?;
+        bound = bound.checked_add(of_products)?;
+        if bound >= BOUND {
+            return None;
+        }
+        // The odd harmonics first.
+        match (left.harmonics, right.harmonics) {
+            (Harmonics::Even, Harmonics::Odd) => add_doubled_product(&mut sums, factor, right, left),
+            _ => add_doubled_product(&mut sums, factor, left, right),
+        }
+    }
+    if kind.0 == Wave::Sine && kind.1 != Harmonics::Odd {
+        sums[0] = 0;
+    }
+    while sums.len() > 1 && sums.last() == Some(&0) {
+        sums.pop();
+    }
+    ShortSeries::new(kind.0, kind.1, common.checked_mul(2)?, sums)
+}
+
+/// `2 cos i cos j = cos(i+j) + cos(i-j)` and its likes, at the places of the harmonics.
+fn add_doubled_product(sums: &mut [i128], factor: i128, left: &ShortSeries, right: &ShortSeries) {
+    let both_odd = left.harmonics == Harmonics::Odd && right.harmonics == Harmonics::Odd;
+    let apart = usize::from(left.harmonics != right.harmonics);
+    let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
+    // Of the sine of a difference, the sign of the difference.
+    let (mixed, sine_is_left) = (left.wave != right.wave, left.wave == Wave::Sine);
+    let signed = |negative: bool, product: i128| if negative { product.wrapping_neg() } else { product };
+    for (a, own) in left.numerators.iter().enumerate() {
+        let own = own.wrapping_mul(factor);
+        if own == 0 {
+            continue;
+        }
+        let (below, above) = right.numerators.split_at((a + 1).min(right.numerators.len()));
+        for (b, other) in below.iter().enumerate() {
+            let product = own.wrapping_mul(*other);
+            let upper = &mut sums[a + b + usize::from(both_odd)];
+            *upper = upper.wrapping_add(signed(upper_is_negative, product));
+            let lower = &mut sums[a - b];
+            *lower = lower.wrapping_add(signed(mixed && !sine_is_left, product));
+        }
+        for (b, other) in above.iter().enumerate() {
+            let product = own.wrapping_mul(*other);
+            let upper = &mut sums[a + a + 1 + b + usize::from(both_odd)];
+            *upper = upper.wrapping_add(signed(upper_is_negative, product));
+            let lower = &mut sums[b + 1 - apart];
+            *lower = lower.wrapping_add(signed(mixed && sine_is_left, product));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fourier::{self, FourierSeries};
+    use super::*;
+    use crate::exact::{Integer, Integers};
+
+    /// The same series with numbers of any length.
+    fn long(series: &ShortSeries) -> FourierSeries<Integers> {
+        let mut coefficients = vec![];
+        for (index, numerator) in series.numerators.iter().enumerate() {
+            coefficients.resize(series.harmonics.at(index), Integer::from(0));
+            coefficients.push(Integer::from(*numerator));
+        }
+        let (cosine, sine) = match series.wave {
+            Wave::Cosine => (coefficients, vec![]),
+            Wave::Sine => (vec![], coefficients),
+        };
+        FourierSeries::from_parts(Integers, cosine, sine).over(&Integer::from(series.denominator))
+    }
+
+    /// Of both waves and all kinds of harmonics, with numerators that are no multiples of each other.
+    fn examples() -> Vec<ShortSeries> {
+        let mut examples = vec![];
+        for wave in [Wave::Cosine, Wave::Sine] {
+            for harmonics in [Harmonics::All, Harmonics::Even, Harmonics::Odd] {
+                for (length, denominator) in [(1, 3), (4, 32), (7, 90)] {
+                    let mut numerators: Vec<i128> = (0..length).map(|k| k * k * k - 9 * k + 5).collect();
+                    if wave == Wave::Sine && harmonics != Harmonics::Odd {
+                        numerators[0] = 0;
+                    }
+                    examples.push(ShortSeries::new(wave, harmonics, denominator, numerators).expect("short"));
+                }
+            }
+        }
+        examples
+    }
+
+    #[test]
+    fn short_series_are_those_of_any_length() {
+        let mut products = 0;
+        for left in examples() {
+            assert_eq!(long(&left.clone().reduced()), long(&left));
+            assert_eq!(long(&left.derivative().expect("short")), long(&left).derivative());
+            let solution = left.without_resonance_over_divisors().expect("short");
+            assert_eq!(long(&solution), long(&left).solve_oscillator().0);
+            for right in examples() {
+                let mixed = (left.harmonics == Harmonics::All) != (right.harmonics == Harmonics::All);
+                if mixed {
+                    continue;
+                }
+                products += 1;
+                let product = sum_of_products(&[(3, &left, &right)]).expect("short");
+                let expected = fourier::sum_of_products(&Integers, &[(3, &long(&left), &long(&right))]);
+                assert_eq!(long(&product), expected, "{left:?} {right:?}");
+                if (left.wave, left.harmonics) == (right.wave, right.harmonics) {
+                    let sum = combination(&[(2, 7, &left), (-5, 1, &right)]).expect("short");
+                    let expected =
+                        fourier::linear_combination(&Integers, &[(2, &long(&left).divided_by(7)), (-5, &long(&right))]);
+                    assert_eq!(long(&sum), expected);
+                }
+            }
+        }
+        assert!(products > 100);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_no_series() {
+        let half = 1 << 63;
+        let long = ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![half, half]).expect("half of it");
+        assert!(sum_of_products(&[(1, &long, &long)]).is_none());
+        assert!(combination(&[(half, 1, &long)]).is_none());
+        assert!(combination(&[(1, half, &long), (1, half - 1, &long)]).is_none());
+        assert!(ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![i128::MIN]).is_none());
+        let prime = (1 << 61) - 1;
+        let far = ShortSeries::new(Wave::Cosine, Harmonics::All, 1, vec![prime; 60]).expect("short");
+        assert!(far.without_resonance_over_divisors().is_none());
+    }
+}

@@ -16,6 +16,42 @@ pub fn ratio(numerator: i64, denominator: i64) -> Rational {
     Rational::new(numerator.into(), denominator.into())
 }
 
+/// `left right`, where what one has in common with the other is looked for and nothing else: most often one of them is short.
+///
+/// Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998, section 4.5.1, for this and the sum.
+pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
+    let (left_common, right_common) = (left.numer().gcd(right.denom()), right.numer().gcd(left.denom()));
+    let times = |left: &Integer, left_common: &Integer, right: &Integer, right_common: &Integer| {
+        quotient(left, left_common) * quotient(right, right_common)
+    };
+    Rational::new_raw(
+        times(left.numer(), &left_common, right.numer(), &right_common),
+        times(left.denom(), &right_common, right.denom(), &left_common),
+    )
+}
+
+/// `left + right`: what the numerator has in common with the denominator is in what the denominators have in common.
+pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
+    if left.is_zero() || right.is_zero() {
+        return if left.is_zero() { right.clone() } else { left.clone() };
+    }
+    let common = left.denom().gcd(right.denom());
+    let (own, other) = (quotient(left.denom(), &common), quotient(right.denom(), &common));
+    let numerator = left.numer() * &other + right.numer() * &own;
+    let shared = numerator.gcd(&common);
+    let denominator = own * quotient(right.denom(), &shared);
+    Rational::new_raw(quotient(&numerator, &shared), denominator)
+}
+
+/// An exact quotient.
+fn quotient(number: &Integer, divisor: &Integer) -> Integer {
+    if divisor.is_one() {
+        number.clone()
+    } else {
+        number / divisor
+    }
+}
+
 /// The nearest `f64`; infinite when it is out of range.
 pub fn to_f64(value: &Rational) -> f64 {
     /// Integers up to this size are doubles, and the quotient of two of them is rounded once.
@@ -132,6 +168,36 @@ pub fn factorial(n: u32) -> Integer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sums_and_products_are_in_lowest_terms() {
+        let numbers = [
+            (0, 1),
+            (1, 1),
+            (-3, 4),
+            (5, 6),
+            (7, 30),
+            (-14, 15),
+            (6, 35),
+            (49, 12),
+            (-5, 6),
+            (1, 6),
+        ];
+        let long = Rational::new(Integer::from(3).pow(90), Integer::from(10).pow(40));
+        let mut all: Vec<Rational> = numbers.map(|(n, d)| ratio(n, d)).to_vec();
+        all.extend([long.recip(), -&long, long]);
+        for left in &all {
+            for right in &all {
+                for (found, expected) in [(sum(left, right), left + right), (product(left, right), left * right)] {
+                    assert_eq!(
+                        (found.numer(), found.denom()),
+                        (expected.numer(), expected.denom()),
+                        "{left} {right}"
+                    );
+                }
+            }
+        }
+    }
 
     #[test]
     fn powers_are_exact_or_refused() {

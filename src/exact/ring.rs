@@ -200,13 +200,13 @@ impl Ring for Rationals {
         element.is_zero()
     }
     fn accumulate(&self, sum: &mut Rational, term: &Rational) {
-        *sum += term;
+        *sum = super::rational::sum(sum, term);
     }
     fn negate(&self, element: &mut Rational) {
         *element = -std::mem::replace(element, Rational::zero());
     }
     fn product(&self, left: &Rational, right: &Rational) -> Rational {
-        left * right
+        super::rational::product(left, right)
     }
     fn scale(&self, element: &mut Rational, factor: i64) {
         self.scale_by(element, &factor.into());

@@ -246,9 +246,18 @@ pub fn sum_of_products(terms: &[(i128, &ShortSeries, &ShortSeries)]) -> Option<S
             return None;
         }
         // The odd harmonics first.
-        match (left.harmonics, right.harmonics) {
-            (Harmonics::Even, Harmonics::Odd) => add_doubled_product(&mut sums, factor, right, left),
-            _ => add_doubled_product(&mut sums, factor, left, right),
+        let (left, right) = match (left.harmonics, right.harmonics) {
+            (Harmonics::Even, Harmonics::Odd) => (right, left),
+            _ => (left, right),
+        };
+        // Where both factors are words, their product is a single instruction.
+        let words = factor.unsigned_abs().saturating_mul(left.largest).max(right.largest) < 1 << 63;
+        let sums = &mut sums[..];
+        match words {
+            true => add_doubled_product(sums, factor, (left, right), |one, other| {
+                i128::from(one as i64).wrapping_mul(i128::from(other as i64))
+            }),
+            false => add_doubled_product(sums, factor, (left, right), i128::wrapping_mul),
         }
     }
     if kind.0 == Wave::Sine && kind.1 != Harmonics::Odd {
@@ -261,7 +270,12 @@ pub fn sum_of_products(terms: &[(i128, &ShortSeries, &ShortSeries)]) -> Option<S
 }
 
 /// `2 cos i cos j = cos(i+j) + cos(i-j)` and its likes, at the places of the harmonics.
-fn add_doubled_product(sums: &mut [i128], factor: i128, left: &ShortSeries, right: &ShortSeries) {
+fn add_doubled_product(
+    sums: &mut [i128],
+    factor: i128,
+    (left, right): (&ShortSeries, &ShortSeries),
+    multiply: impl Fn(i128, i128) -> i128,
+) {
     let both_odd = left.harmonics == Harmonics::Odd && right.harmonics == Harmonics::Odd;
     let apart = usize::from(left.harmonics != right.harmonics);
     let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
@@ -275,14 +289,14 @@ fn add_doubled_product(sums: &mut [i128], factor: i128, left: &ShortSeries, righ
         }
         let (below, above) = right.numerators.split_at((a + 1).min(right.numerators.len()));
         for (b, other) in below.iter().enumerate() {
-            let product = own.wrapping_mul(*other);
+            let product = multiply(own, *other);
             let upper = &mut sums[a + b + usize::from(both_odd)];
             *upper = upper.wrapping_add(signed(upper_is_negative, product));
             let lower = &mut sums[a - b];
             *lower = lower.wrapping_add(signed(mixed && !sine_is_left, product));
         }
         for (b, other) in above.iter().enumerate() {
-            let product = own.wrapping_mul(*other);
+            let product = multiply(own, *other);
             let upper = &mut sums[a + a + 1 + b + usize::from(both_odd)];
             *upper = upper.wrapping_add(signed(upper_is_negative, product));
             let lower = &mut sums[b + 1 - apart];

@@ -92,13 +92,13 @@ impl Rows {
     /// Eight points at every order.
     #[inline(always)]
     pub fn row(&self, block: usize) -> &[Lanes] {
-        &self.entries[block * self.orders..(block + 1) * self.orders]
+        &self.entries[block.wrapping_mul(self.orders)..][..self.orders]
     }
 
     /// Eight points at one order, to be written.
     #[inline(always)]
     pub fn entry(&mut self, block: usize, order: usize) -> &mut Lanes {
-        &mut self.entries[block * self.orders + order]
+        &mut self.entries[block.wrapping_mul(self.orders).wrapping_add(order)]
     }
 
     /// Writes one order of the first points, whole [`Lanes`] of them.

@@ -130,21 +130,27 @@ fn window<A: Arithmetic>(
         }
         *sum = arithmetic.carry(*sum);
     }
+    // By name, so that they stay in registers.
+    let [mut a, mut b, mut c, mut d] = *sums;
     let mut from = shared;
     while from < end {
         let to = (from + A::RUN).min(end);
         let fours = right[first + 1 - to..first - from + 4].windows(4).rev();
         for (left, four) in left[from..to].iter().zip(fours) {
-            for k in 0..4 {
-                sums[k] = arithmetic.add_product(sums[k], left, &four[k]);
+            if let [zeroth, first, second, third] = four {
+                a = arithmetic.add_product(a, left, zeroth);
+                b = arithmetic.add_product(b, left, first);
+                c = arithmetic.add_product(c, left, second);
+                d = arithmetic.add_product(d, left, third);
             }
         }
-        // A loop, for a closure would not be compiled for this processor.
-        for sum in sums.iter_mut() {
-            *sum = arithmetic.carry(*sum);
-        }
+        a = arithmetic.carry(a);
+        b = arithmetic.carry(b);
+        c = arithmetic.carry(c);
+        d = arithmetic.carry(d);
         from = to;
     }
+    *sums = [a, b, c, d];
 }
 
 /// `sum_i left_i right_(n-i)` over [so few](TOGETHER) that nothing has to be carried, even twice: two sums run beside each other, for
@@ -152,16 +158,16 @@ fn window<A: Arithmetic>(
 #[inline(always)]
 fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
     const { assert!(2 * TOGETHER <= A::RUN) };
-    let mut sums = [arithmetic.none(); 2];
+    let (mut even, mut odd) = (arithmetic.none(), arithmetic.none());
     let (mut lefts, mut rights) = (left.chunks_exact(2), right.rchunks_exact(2));
     for (left, right) in lefts.by_ref().zip(rights.by_ref()) {
-        sums[0] = arithmetic.add_product(sums[0], &left[0], &right[1]);
-        sums[1] = arithmetic.add_product(sums[1], &left[1], &right[0]);
+        even = arithmetic.add_product(even, &left[0], &right[1]);
+        odd = arithmetic.add_product(odd, &left[1], &right[0]);
     }
     if let ([left], [right]) = (lefts.remainder(), rights.remainder()) {
-        sums[0] = arithmetic.add_product(sums[0], left, right);
+        even = arithmetic.add_product(even, left, right);
     }
-    arithmetic.merge(sums[0], sums[1])
+    arithmetic.merge(even, odd)
 }
 
 /// `sum_i u_i u_(n-i)`, each pair once.
@@ -174,11 +180,6 @@ fn square<A: Arithmetic>(arithmetic: A, orders: &[Lanes]) -> A::Sum {
         0 => twice,
         _ => arithmetic.add_product(twice, &orders[half], &orders[half]),
     }
-}
-
-#[inline(always)]
-fn joined<A: Arithmetic>(arithmetic: A, [first, second, third, fourth]: [A::Sum; 4]) -> A::Sum {
-    arithmetic.join(arithmetic.join(first, second), arithmetic.join(third, fourth))
 }
 
 /// `out = sum_i factors_i row_i` for the first rows, each from the order `first(block)` on: the ones before are zero.
@@ -210,23 +211,33 @@ pub fn combine<A: Arithmetic>(
 /// `sum_i factors_i row_i`.
 #[inline(always)]
 pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[Lanes]) -> A::Sum {
-    let mut sums = [arithmetic.none(); 4];
+    let none = arithmetic.none();
+    // By name, so that they stay in registers.
+    let (mut a, mut b, mut c, mut d) = (none, none, none, none);
     for (factors, row) in factors.chunks(4 * A::RUN).zip(row.chunks(4 * A::RUN)) {
         let (mut factors, mut row) = (factors.chunks_exact(4), row.chunks_exact(4));
         for (factors, row) in factors.by_ref().zip(row.by_ref()) {
-            for k in 0..4 {
-                sums[k] = arithmetic.add_multiple(sums[k], factors[k], &row[k]);
-            }
+            a = arithmetic.add_multiple(a, factors[0], &row[0]);
+            b = arithmetic.add_multiple(b, factors[1], &row[1]);
+            c = arithmetic.add_multiple(c, factors[2], &row[2]);
+            d = arithmetic.add_multiple(d, factors[3], &row[3]);
         }
-        for ((factor, entry), sum) in factors.remainder().iter().zip(row.remainder()).zip(&mut sums) {
-            *sum = arithmetic.add_multiple(*sum, *factor, entry);
+        let mut rest = factors.remainder().iter().zip(row.remainder());
+        if let Some((factor, entry)) = rest.next() {
+            a = arithmetic.add_multiple(a, *factor, entry);
         }
-        // A loop, for a closure would not be compiled for this processor.
-        for sum in &mut sums {
-            *sum = arithmetic.carry(*sum);
+        if let Some((factor, entry)) = rest.next() {
+            b = arithmetic.add_multiple(b, *factor, entry);
         }
+        if let Some((factor, entry)) = rest.next() {
+            c = arithmetic.add_multiple(c, *factor, entry);
+        }
+        a = arithmetic.carry(a);
+        b = arithmetic.carry(b);
+        c = arithmetic.carry(c);
+        d = arithmetic.carry(d);
     }
-    joined(arithmetic, sums)
+    arithmetic.join(arithmetic.join(a, b), arithmetic.join(c, d))
 }
 
 /// One series of a [mixture], at one order.
@@ -322,25 +333,38 @@ pub fn combine_here<A: Arithmetic>(arithmetic: A, modulus: &Modulus, factors: &[
     let blocks = out.len() / WIDTH;
     let mut block = 0;
     while block + 4 <= blocks {
-        let row = |k: usize| &table.row(block + k)[..factors.len()];
-        let rows = [row(0), row(1), row(2), row(3)];
-        let mut sums = [arithmetic.none(); 4];
+        let rows = [
+            table.row(block),
+            table.row(block + 1),
+            table.row(block + 2),
+            table.row(block + 3),
+        ];
+        let rows = rows.map(|row| &row[..factors.len()]);
+        let none = arithmetic.none();
+        // By name, so that they stay in registers.
+        let (mut a, mut b, mut c, mut d) = (none, none, none, none);
         let mut start = 0;
         while start < factors.len() {
             let end = (start + A::RUN).min(factors.len());
-            for i in start..end {
-                for k in 0..4 {
-                    sums[k] = arithmetic.add_multiple(sums[k], factors[i], &rows[k][i]);
-                }
+            let [first, second, third, fourth] = rows.map(|row| &row[start..end]);
+            let pairs = first.iter().zip(second).zip(third.iter().zip(fourth));
+            for (factor, ((first, second), (third, fourth))) in factors[start..end].iter().zip(pairs) {
+                a = arithmetic.add_multiple(a, *factor, first);
+                b = arithmetic.add_multiple(b, *factor, second);
+                c = arithmetic.add_multiple(c, *factor, third);
+                d = arithmetic.add_multiple(d, *factor, fourth);
             }
-            // A loop, for a closure would not be compiled for this processor.
-            for sum in &mut sums {
-                *sum = arithmetic.carry(*sum);
-            }
+            a = arithmetic.carry(a);
+            b = arithmetic.carry(b);
+            c = arithmetic.carry(c);
+            d = arithmetic.carry(d);
             start = end;
         }
-        for (sum, out) in sums.iter().zip(out[block * WIDTH..].chunks_exact_mut(WIDTH)) {
-            out.copy_from_slice(&arithmetic.reduce(*sum, modulus).0);
+        for (sum, out) in [a, b, c, d]
+            .into_iter()
+            .zip(out[block * WIDTH..].chunks_exact_mut(WIDTH))
+        {
+            out.copy_from_slice(&arithmetic.reduce(sum, modulus).0);
         }
         block += 4;
     }

@@ -33,11 +33,16 @@ pub(super) struct Beginning {
     pub slope: Option<ShortSeries>,
 }
 
-/// The orders up to the highest of the plan, or as many as fit.
+/// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than show how it goes on.
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
+    /// Beyond, two words are too short for anything that is known.
+    const LONG: usize = 28;
+    /// So many orders are enough of a long one.
+    const ENOUGH: usize = 16;
+    let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
     let mut beginning = Beginning::default();
     if let Some(mut recursion) = Recursion::new(plan) {
-        while recursion.complete <= plan.highest && !interrupt.is_requested() {
+        while recursion.complete <= last && !interrupt.is_requested() {
             if recursion.next_order().is_none() {
                 break;
             }

@@ -144,8 +144,6 @@ impl Work for Expand<'_> {
     type Output = Option<Expansion<Integers>>;
 
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        /// So many orders show as much as a shorter expansion does.
-        const ENOUGH: usize = 16;
         /// So many show how denominators grow.
         const SOME: usize = 8;
         let Self {
@@ -161,7 +159,8 @@ impl Work for Expand<'_> {
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
-        let shorter = match plan.highest > 2 * GUESSED && short.len() < ENOUGH {
+        let evident = known.as_ref().is_some_and(|known| known.is_power(plan));
+        let shorter = match plan.highest > 2 * GUESSED && !evident {
             false => None,
             true => {
                 let plan = equation.plan(GUESSED)?;
@@ -442,6 +441,18 @@ struct Beginning {
 }
 
 impl Beginning {
+    /// Whether all denominators grow like powers: of these a few orders show everything.
+    fn is_power(&self, plan: &Plan) -> bool {
+        let fits = |guess: &Guess| {
+            let divisors = |order| plan.largest_factor(order);
+            guess.known.len() <= plan.highest
+                && Growth::Power
+                    .denominators(&guess.known, plan.highest, &divisors)
+                    .is_some()
+        };
+        [&self.motion, &self.frequency].into_iter().all(fits)
+    }
+
     /// From the orders of a shorter expansion.
     fn of(orders: &[Order]) -> Option<Self> {
         let mut beginning = Self::default();

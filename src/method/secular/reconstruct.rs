@@ -683,18 +683,27 @@ mod tests {
                 assert_eq!(alone.frequency, exact.frequency);
                 assert!(alone.displacement.is_empty());
                 for found in [widest, portable] {
-                    assert_eq!(found.frequency_squared, exact.frequency_squared, "{scheme:?}");
-                    assert_eq!(found.frequency, exact.frequency);
-                    assert_eq!(found.displacement, exact.displacement);
-                    assert_eq!(found.removed, exact.removed);
-                    assert_eq!(found.amplitudes.len(), exact.amplitudes.len());
-                    for (found, exact) in found.amplitudes.iter().zip(&exact.amplitudes) {
-                        assert_eq!(found.amplitude, exact.amplitude);
-                        assert_eq!(found.slope, exact.slope);
-                        assert_eq!(found.sine, exact.sine);
-                    }
+                    assert_same(&found, &exact);
+                }
+                for low in [1, 2, 5] {
+                    let exact = super::super::expand(&Integers, force, low, &scheme).expect("an expansion");
+                    let short = super::expand(force, low, &scheme, Extent::Motion, Supervision::default());
+                    assert_same(&short.expect("numbers of a fixed width"), &exact);
                 }
             }
+        }
+    }
+
+    fn assert_same(found: &Expansion<Integers>, exact: &Expansion<Integers>) {
+        assert_eq!(found.frequency_squared, exact.frequency_squared);
+        assert_eq!(found.frequency, exact.frequency);
+        assert_eq!(found.displacement, exact.displacement);
+        assert_eq!(found.removed, exact.removed);
+        assert_eq!(found.amplitudes.len(), exact.amplitudes.len());
+        for (found, exact) in found.amplitudes.iter().zip(&exact.amplitudes) {
+            assert_eq!(found.amplitude, exact.amplitude);
+            assert_eq!(found.slope, exact.slope);
+            assert_eq!(found.sine, exact.sine);
         }
     }
 

@@ -152,10 +152,14 @@ impl Waves {
             .map(|angle| modulus.product(twice_cosine(angle * step), half))
             .collect();
         for k in 0..leaf {
+            let mut angle = 0;
             for i in 0..leaf {
-                let cosine = cosines[i * (2 * k + 1) % (4 * leaf)];
-                forward.set(k, i, cosine);
-                backward.set(i, k, cosine);
+                forward.set(k, i, cosines[angle]);
+                backward.set(i, k, cosines[angle]);
+                angle += 2 * k + 1;
+                if angle >= 4 * leaf {
+                    angle -= 4 * leaf;
+                }
             }
         }
         Some(Self {

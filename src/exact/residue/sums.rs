@@ -38,7 +38,12 @@ pub fn convolve<A: Arithmetic>(
         #[inline(always)]
         fn call(self) {
             let Self(arithmetic, modulus, products, tables, order) = self;
-            let start = order - order % TOGETHER;
+            // The first orders are as fast one by one.
+            let start = if order < 2 * TOGETHER {
+                0
+            } else {
+                order - order % TOGETHER
+            };
             // Block by block: what one product has read, the next finds in the cache.
             for block in 0..tables.first().map_or(0, Rows::blocks) {
                 if order == start && start > 0 {
@@ -153,7 +158,7 @@ fn window<A: Arithmetic>(
     *sums = [a, b, c, d];
 }
 
-/// `sum_i left_i right_(n-i)` over [so few](TOGETHER) that nothing has to be carried, even twice: two sums run beside each other, for
+/// `sum_i left_i right_(n-i)` over so few, twice [those](TOGETHER), that nothing has to be carried: two sums run beside each other, for
 /// each has to wait for itself.
 #[inline(always)]
 fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {

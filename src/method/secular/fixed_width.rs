@@ -5,7 +5,7 @@
 //! denominators grow.
 //!
 //! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics; two words hold Duffing's equation to
-//! order 23 or so.
+//! order 25.
 
 use super::modular::{Plan, Term};
 use super::{Amplitude, Detuning};

@@ -154,13 +154,16 @@ pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Res
     // By order: the power n + 1 that a sine has at order n brings one harmonic more.
     let rate = |(order, power): (usize, u32)| power / u32::try_from(order.max(1)).unwrap_or(1);
     let degree = terms.map(rate).max().unwrap_or(0);
+    if degree <= HIGH_POWER {
+        return Ok(());
+    }
     let harmonics = highest
         .saturating_mul(degree.saturating_sub(1) as usize)
         .saturating_add(1);
     // Products of series of so many harmonics, whose coefficients are as long as binomials of that size.
     let (orders, length) = (highest as f64, harmonics as f64);
-    let work = (orders * length).powi(2) * f64::from(degree.max(2)).log2() * (length / 32.0).max(1.0);
-    match degree > HIGH_POWER && work > MOST_WORK {
+    let work = (orders * length).powi(2) * f64::from(degree).log2() * (length / 32.0).max(1.0);
+    match work > MOST_WORK {
         true => Err(SecularError::TooManyHarmonics { degree, harmonics }),
         false => Ok(()),
     }
@@ -307,7 +310,7 @@ pub fn expand_polynomials(
     extent: Extent,
 ) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
     /// Below, there are few products.
-    const MANY: usize = 3;
+    const MANY: usize = 2;
     bounded(
         force.iter().map(|term| (term.order, term.position + term.velocity)),
         highest,

@@ -154,38 +154,29 @@ impl Work for Expand<'_> {
             supervision,
         } = self;
         let extent = equation.extent;
-        let mut known = match short.len() >= SOME {
+        let beginning = match short.len() >= SOME {
             true => Some(Beginning::of(&short)?),
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
-        let evident = known.as_ref().is_some_and(|known| known.is_power(plan));
-        let shorter = match plan.highest > 2 * GUESSED && !evident {
-            false => None,
+        let evident = beginning.as_ref().is_some_and(|beginning| beginning.is_power(plan));
+        let (beginning, mut orders) = match plan.highest > 2 * GUESSED && !evident {
+            false => (beginning, short),
             true => {
                 let plan = equation.plan(GUESSED)?;
-                let orders =
-                    Reconstruction::new(arithmetic, &plan, extent, Supervision::default()).orders(known.take())?;
-                Some((plan, orders))
+                let mut orders = short;
+                let shorter = Reconstruction::new(arithmetic, &plan, extent, Supervision::default());
+                orders.extend(shorter.orders_from(orders.len(), beginning)?);
+                (Some(Beginning::of(&orders)?), orders)
             }
         };
-        let beginning = match &shorter {
-            Some((_, orders)) => Some(Beginning::of(orders)?),
-            None => known,
-        };
-        let orders = Reconstruction::new(arithmetic, plan, extent, supervision).orders(beginning);
-        let least = shorter.as_ref().map_or(short.len(), |(_, own)| own.len());
-        match (orders, shorter) {
-            (Some(orders), _) if orders.len() >= least.max(1) => Some(expansion(plan, orders, slope.as_ref(), extent)),
-            // Stopped so early that the shorter expansion is the longer one.
-            (_, Some((plan, orders))) if supervision.interrupt.is_requested() => {
-                Some(expansion(&plan, orders, slope.as_ref(), extent))
-            }
-            (_, None) if supervision.interrupt.is_requested() && short.len() > 1 => {
-                Some(expansion(plan, short, slope.as_ref(), extent))
-            }
-            _ => None,
+        let longer = Reconstruction::new(arithmetic, plan, extent, supervision);
+        match longer.orders_from(orders.len(), beginning) {
+            Some(others) => orders.extend(others),
+            None if supervision.interrupt.is_requested() => {}
+            None => return None,
         }
+        (orders.len() > 1).then(|| expansion(plan, orders, slope.as_ref(), extent))
     }
 }
 
@@ -213,7 +204,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         }
     }
 
-    fn orders(mut self, beginning: Option<Beginning>) -> Option<Vec<Order>> {
+    /// The orders from `first` on; those before are known.
+    fn orders_from(mut self, first: usize, beginning: Option<Beginning>) -> Option<Vec<Order>> {
         let beginning = match beginning {
             Some(beginning) => beginning,
             None => self.beginning()?,
@@ -234,7 +226,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let Some(motion) = motion else { continue };
             for growth in Growth::ALL {
                 let frequency = growth.denominators(&beginning.frequency.known, highest, &of_frequency);
-                let lifted = frequency.and_then(|frequency| self.lifted(&motion, &frequency, &beginning));
+                let lifted = frequency.and_then(|frequency| self.lifted(first, &motion, &frequency, &beginning));
                 if lifted.is_some() {
                     return lifted;
                 }
@@ -371,8 +363,15 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some((denominator, largest))
     }
 
-    /// All orders over these denominators of motion and frequency; `None` where a number fails the test of the extra prime.
-    fn lifted(&mut self, motion: &[Factored], frequency: &[Factored], beginning: &Beginning) -> Option<Vec<Order>> {
+    /// The orders from `first` on over these denominators of motion and frequency; `None` where a number fails the test of the extra
+    /// prime.
+    fn lifted(
+        &mut self,
+        first: usize,
+        motion: &[Factored],
+        frequency: &[Factored],
+        beginning: &Beginning,
+    ) -> Option<Vec<Order>> {
         /// Digits beside those of denominator and size, for the factor before the growth.
         const ROOM: f64 = 24.0;
         /// Residues kept at once, four gigabytes of them.
@@ -403,7 +402,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             self.primes.push(self.source.next()?);
         }
         let wanted = |place: usize| match self.extent {
-            Extent::Motion => counts.partition_point(|count| *count < place),
+            Extent::Motion => counts.partition_point(|count| *count < place).max(first),
             Extent::Frequency => usize::MAX,
         };
         self.supervision
@@ -414,7 +413,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         // Of work that was stopped there are the orders for which the primes are enough.
         counts.truncate(counts.partition_point(|count| *count < all.len()));
         let mut groups: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
-        for (order, count) in counts.into_iter().enumerate() {
+        for (order, count) in counts.into_iter().enumerate().skip(first) {
             match groups.last_mut() {
                 Some((own, orders)) if *own == count => orders.end = order + 1,
                 _ => groups.push((count, order..order + 1)),

@@ -16,6 +16,7 @@ pub(crate) mod force;
 mod motion;
 pub(crate) mod parity;
 pub(crate) mod potential;
+pub(crate) mod power;
 pub(crate) mod projection;
 
 pub use force::Force;

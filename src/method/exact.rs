@@ -31,6 +31,7 @@ use super::iteration_perturbation::polynomial_coefficients;
 use super::one_term::{conservative_force, unsolved};
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
+use crate::conservative::power::Power;
 use crate::conservative::{is_odd, linear_in, split, take_powers};
 use crate::derivation::{Formula, Line};
 use crate::exact::rational::ratio;
@@ -153,7 +154,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
         [1] => Ok(coefficients.get(1).cloned().map(Known::Squared)),
         [n] if n % 2 == 1 => Ok(Some(Known::Form(of_power(
             &of(*n),
-            &Rational::from_integer((*n).into()),
+            &Expr::number(Rational::from_integer((*n).into())),
         )?))),
         [1, 2] => {
             let (a, b) = (of(1), of(2));
@@ -199,13 +200,14 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
 }
 
 /// `sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))`.
-pub(super) fn of_power(coefficient: &Expr, n: &Rational) -> Result<Expr, ExprError> {
-    let next = n + Rational::one();
-    let gamma = |argument: Rational| Expr::function(Function::Gamma, vec![Expr::number(argument)]);
-    let scale = Expr::pi().sqrt()? * (coefficient * &Expr::number(&next / ratio(2, 1))).sqrt()?;
-    let amplitude = Expr::power(&Expr::symbol("A"), &Expr::number((n - Rational::one()) / ratio(2, 1)))?;
-    let inverse = next.recip();
-    Expr::divide(&(scale * amplitude * gamma(ratio(1, 2) + &inverse)?), &gamma(inverse)?)
+pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> {
+    let gamma = |argument: Expr| Expr::function(Function::Gamma, vec![argument]);
+    let next = n + &Expr::one();
+    let scale = Expr::pi().sqrt()? * (coefficient * &Expr::divide(&next, &Expr::from(2))?).sqrt()?;
+    let half_of_last = Expr::divide(&(n - &Expr::one()), &Expr::from(2))?;
+    let amplitude = Expr::power(&Expr::symbol("A"), &half_of_last)?;
+    let inverse = Expr::divide(&Expr::one(), &next)?;
+    Expr::divide(&(scale * amplitude * gamma(half() + &inverse)?), &gamma(inverse)?)
 }
 
 /// A single term: a power with its sign, a sine or a hyperbolic sine.
@@ -224,9 +226,15 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
         let parameter = if *function == Function::Sin { squared } else { -squared };
         return Ok(Some(Known::Form(by_elliptic(&scale, parameter)?)));
     }
+    // A power that is no number.
+    let mut power = Power::one();
+    if inside.iter().all(|factor| power.takes(factor, coordinate)) && power.exponent.as_number().is_none() {
+        let form = power.odd.then(|| of_power(&outside, &power.exponent)).transpose()?;
+        return Ok(form.map(Known::Form));
+    }
     match take_powers(&mut inside, &mut outside, coordinate) {
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
-            Ok(Some(Known::Form(of_power(&outside, &power.exponent)?)))
+            Ok(Some(Known::Form(of_power(&outside, &Expr::number(power.exponent))?)))
         }
         _ => Ok(None),
     }

@@ -439,7 +439,7 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
             return Err(damping_or_excitation(parts));
         }
         Err(OscillatorError::NotSmall { term, .. }) if parts.damping.terms().contains(term.expression()) => {
-            return Err(Unsuited::Damping { term }.by(Refuser::Expansion));
+            return Err(Unsuited::damping(term).by(Refuser::Expansion));
         }
         // |x'| x', a dry friction and their like damp whether or not they have a series.
         Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(TaylorError::NotAnalytic { .. }))
@@ -493,7 +493,7 @@ fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
 
 fn damped(parts: &Parts) -> Refusal {
     let term = first_term(&parts.damping);
-    Unsuited::Damping { term }.by(Refuser::Expansion)
+    Unsuited::damping(term).by(Refuser::Expansion)
 }
 
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
@@ -555,7 +555,7 @@ mod tests {
         ] {
             let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
             let term = crate::expr::parse_expression(term).unwrap().into();
-            let expected = Unsuited::Damping { term }.by(Refuser::Expansion);
+            let expected = Unsuited::damping(term).by(Refuser::Expansion);
             assert_eq!(refusal, expected, "{equation}");
         }
     }

@@ -10,6 +10,7 @@
 pub(crate) mod amplitude_frequency;
 pub(crate) mod averaging;
 pub(crate) mod balance;
+mod default_method;
 mod drive;
 mod driven_answer;
 pub(crate) mod energy_balance;
@@ -43,6 +44,7 @@ pub mod table;
 pub(crate) mod transient;
 pub(crate) mod variational_iteration;
 
+pub use default_method::default_method;
 pub use harmonic_balance::MOST_HARMONICS;
 
 pub use resonance::with_resonance_at;
@@ -191,11 +193,13 @@ pub enum Refusal {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unsuited {
-    /// Terms that take energy out, so that no motion repeats.
-    #[error("needs a periodic motion, but the term `{term}` damps it")]
+    /// Terms that take energy out, or feed it, so that no motion repeats.
+    #[error("needs a periodic motion, but the term `{term}` {}", if *.feeds { "feeds it" } else { "damps it" })]
     Damping {
         /// The damping term.
         term: Quotation,
+        /// Whether it feeds energy for positive letters.
+        feeds: bool,
     },
     /// Terms that drive the motion in time.
     #[error("is for free vibrations, but the term `{term}` drives the motion")]
@@ -252,7 +256,9 @@ pub enum Unsuited {
         force: Expr,
         /// A term that drives or damps.
         term: Quotation,
-        /// Whether averaging takes the equation all the same.
+        /// Whether it drives.
+        drives: bool,
+        /// Whether averaging takes the equation all the same, or would without the drive.
         averaged: bool,
     },
     /// A driving frequency far from every resonance that is known.
@@ -292,6 +298,12 @@ pub enum Unsuited {
     HighestOrder {
         /// Its highest order.
         highest: u32,
+    },
+    /// An order above the first, where one power alone restores.
+    #[error("goes along the true motion of the force `{term}`, which it knows to order 1 alone")]
+    FirstOrderOfPower {
+        /// The force.
+        term: Quotation,
     },
     /// An order below what a method has.
     #[error("has no order below {lowest}")]
@@ -355,6 +367,14 @@ impl fmt::Display for Refuser {
 }
 
 impl Unsuited {
+    /// A term that damps, or feeds: as it stands in the force.
+    pub(super) fn damping(term: Quotation) -> Self {
+        // What stands as a product with a sum in it may do both.
+        let written_out = term.expression().expand();
+        let feeds = written_out.is_ok_and(|written| written.terms().len() == 1 && written.has_leading_minus());
+        Self::Damping { term, feeds }
+    }
+
     /// The refusal of a method.
     pub fn to(self, method: Method) -> Refusal {
         self.by(Refuser::Method(method))
@@ -368,10 +388,11 @@ impl Unsuited {
     fn help(&self, refuser: Refuser) -> Advice {
         let first = |rest: &str| Advice::words("try ").choose(Setting::Order(1)).then(rest);
         match self {
-            Self::Damping { .. } => {
-                Advice::words("there is no frequency-amplitude law of a motion that dies out; try ")
+            Self::Damping { feeds, .. } => {
+                let (fate, course) = if *feeds { ("grows", "growth") } else { ("dies out", "decay") };
+                Advice::words(format!("there is no frequency-amplitude law of a motion that {fate}; try "))
                     .choose(Setting::Method(Method::Averaging))
-                    .then(" for its decay, or leave the term out to get the law of the undamped motion")
+                    .then(format!(" for its {course}, or leave the term out to get the law of the undamped motion"))
             }
             Self::Forcing { .. } => Advice::words(
                 "leave the term out to get the frequency of the free vibration (the backbone curve), or try ",
@@ -391,6 +412,10 @@ impl Unsuited {
                 Some(&(driving, linear)) => Advice::words("try ").choose(Setting::Resonance(driving, linear)),
                 None => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
             },
+            Self::NoLinearForce { drives: true, averaged, .. } => Advice::words(
+                "in numbers `lindstedt response` finds the steady states of a drive that repeats itself; without the term try ",
+            )
+            .choose(Setting::Method(if *averaged { Method::Averaging } else { Method::Exact })),
             Self::NoLinearForce { averaged: true, .. } => Advice::words("the true motion of one power of the coordinate can be averaged: try ")
                 .choose(Setting::Method(Method::Averaging)),
             Self::NoLinearForce { .. } => Advice::words(
@@ -407,6 +432,9 @@ impl Unsuited {
             Self::NotOdd { .. } | Self::NotOddAbout { .. } => Advice::words("try ")
                 .choose(Setting::Method(Method::HarmonicBalance))
                 .then(", which balances the drift as well"),
+            Self::FirstOrderOfPower { .. } => Advice::words("try ")
+                .choose(Setting::Order(1))
+                .then(", which holds at any amplitude; in numbers `lindstedt simulate` follows the motion"),
             Self::LowestOrder { lowest } => Advice::words("try ").choose(Setting::Order(*lowest)),
             Self::SlowAmplitude => Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial)),
             Self::NoSteadyAmplitude => Advice::words("give numbers for the parameters, in the equation"),
@@ -440,7 +468,7 @@ impl Refusal {
         Some(match self {
             Self::Unsuited {
                 reason:
-                    Unsuited::Damping { term }
+                    Unsuited::Damping { term, .. }
                     | Unsuited::Forcing { term }
                     | Unsuited::Velocity { term }
                     | Unsuited::NoWave { term }
@@ -450,6 +478,7 @@ impl Refusal {
                     | Unsuited::NotOddAbout { term, .. }
                     | Unsuited::NoProjection { term }
                     | Unsuited::NoLinearForce { term, .. }
+                    | Unsuited::FirstOrderOfPower { term }
                     | Unsuited::PolynomialOnly { term },
                 ..
             }
@@ -538,10 +567,15 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
         method: Some(Method::Averaging),
         ..Options::default()
     };
+    let mut free = oscillator.clone();
+    if let Ok(force) = (&oscillator.force - &parts.forcing).expand() {
+        free.force = force;
+    }
     let refusal = Unsuited::NoLinearForce {
         force: force.clone(),
         term: first_term(other),
-        averaged: solve_as_asked(oscillator, &by_averaging).is_ok(),
+        drives: !parts.forcing.is_zero(),
+        averaged: solve_as_asked(&free, &by_averaging).is_ok(),
     }
     .to(options.method.unwrap_or(otherwise));
     match centred(oscillator, None) {
@@ -558,102 +592,25 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
     if let Some(asked) = options.order.filter(|&order| order > limit) {
         return Err(Refusal::Order { asked, limit });
     }
-    // A drive has a method of its own.
-    let driven = Some(default_method(oscillator)).filter(|method| *method == Method::MultipleScales);
-    let asked = options.method.or(driven);
+    let may_expand = match options.method {
+        None => default_method(oscillator) == Method::LindstedtPoincare,
+        Some(method) => method == Method::LindstedtPoincare,
+    };
     // What damps is not seen at the order 0, and rules a periodic motion out all the same.
-    if options.order == Some(0) && asked.is_none_or(|method| method == Method::LindstedtPoincare) {
+    if options.order == Some(0) && may_expand {
         let first = Options {
             order: Some(1),
             ..options.clone()
         };
         if let Err(refusal) = solve_by(Method::LindstedtPoincare, oscillator, &first)
-            && is_of_damping(&refusal, oscillator)
+            && default_method::is_of_damping(&refusal, oscillator)
         {
             return Err(refusal);
         }
     }
-    // What has no series in the amplitude is averaged as it is.
-    if options.method.is_none() && driven.is_some() {
-        let expanded = solve_by(Method::MultipleScales, oscillator, options);
-        return match expanded {
-            Err(Refusal::Oscillator(
-                OscillatorError::NotPolynomial(_)
-                | OscillatorError::Taylor(_)
-                | OscillatorError::NotSmall { .. }
-                | OscillatorError::NoEquilibrium(_),
-            )) => solve_by(Method::Averaging, oscillator, options).or(expanded),
-            _ => expanded,
-        };
-    }
-    let Some(method) = asked else {
-        let periodic = solve_by(Method::LindstedtPoincare, oscillator, options);
-        return match &periodic {
-            Err(refusal) if is_of_damping(refusal, oscillator) && !of_periodic_motions(options) => {
-                averaged_by_default(oscillator, options)
-            }
-            _ => periodic,
-        };
-    };
-    solve_by(method, oscillator, options)
-}
-
-/// Whether something is asked for that only periodic motions have.
-fn of_periodic_motions(options: &Options) -> bool {
-    options.cycle.is_some() || options.frequency_alone
-}
-
-/// Whether an expansion in periodic motions is refused for what drains or feeds energy.
-fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool {
-    let damped = || {
-        let parts = oscillator.parts();
-        parts.is_ok_and(|parts| !parts.damping.is_zero() && parts.forcing.is_zero())
-    };
-    match refusal {
-        Refusal::Unsuited {
-            reason: Unsuited::Damping { .. },
-            ..
-        }
-        | Refusal::AmplitudeNotFree { .. }
-        | Refusal::NoLimitCycle { .. } => damped(),
-        Refusal::Oscillator(
-            OscillatorError::NotSmall { .. }
-            | OscillatorError::NotPolynomial(_)
-            | OscillatorError::Taylor(_)
-            | OscillatorError::NoRestoringForce(_)
-            | OscillatorError::NoEquilibrium(_),
-        ) => damped(),
-        _ => false,
-    }
-}
-
-/// Averaging, to the order asked for or the highest that there is.
-fn averaged_by_default(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    let asked = options.order.unwrap_or(1);
-    let mut given = asked;
-    loop {
-        let options = Options {
-            order: Some(given),
-            ..options.clone()
-        };
-        let lower = match solve_by(Method::Averaging, oscillator, &options) {
-            Ok(mut solution) => {
-                if given < asked {
-                    solution.validity.push(Note::HighestOrderHere { asked, given });
-                }
-                return Ok(solution);
-            }
-            Err(Refusal::Unsuited {
-                reason: Unsuited::HighestOrder { highest },
-                ..
-            }) if highest < given => highest,
-            Err(Refusal::Unsuited {
-                reason: Unsuited::PolynomialOnly { .. },
-                ..
-            }) if given > 1 => 1,
-            Err(refusal) => return Err(refusal),
-        };
-        given = lower;
+    match options.method {
+        Some(method) => solve_by(method, oscillator, options),
+        None => default_method::solve(oscillator, options),
     }
 }
 
@@ -694,23 +651,6 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
     }
     move_back(&mut solution, oscillator, &centred)?;
     Ok(solution)
-}
-
-/// The method that suits an equation, where none is asked for: multiple scales where something drives it, else that of Lindstedt
-/// and Poincare.
-///
-/// ```
-/// use lindstedt::{Method, Oscillator, method::default_method};
-///
-/// let driven = Oscillator::parse("x'' + x'/10 + x + x^3 = cos(2*t)")?;
-/// assert_eq!(default_method(&driven), Method::MultipleScales);
-/// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
-/// ```
-pub fn default_method(oscillator: &Oscillator) -> Method {
-    match oscillator.force.contains(Symbol::new("t")) {
-        true => Method::MultipleScales,
-        false => Method::LindstedtPoincare,
-    }
 }
 
 /// An option that a method has no use for is a mistake, and never ignored.

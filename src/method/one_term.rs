@@ -42,7 +42,7 @@ pub(super) fn conservative_force(oscillator: &Oscillator, options: &Options, met
         [zero] if zero.is_zero() => {}
         [only] => {
             let term = only.clone().into();
-            return Err(Unsuited::Damping { term }.to(method));
+            return Err(Unsuited::damping(term).to(method));
         }
         // Terms that feed energy for some motions and drain it for others.
         _ => {

@@ -56,7 +56,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
             }
             found => replace(term, found),
         },
-        Unsuited::Damping { term }
+        Unsuited::Damping { term, .. }
         | Unsuited::Forcing { term }
         | Unsuited::Velocity { term }
         | Unsuited::NoWave { term }
@@ -64,6 +64,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         | Unsuited::ResonanceWithoutDamping { term }
         | Unsuited::NoProjection { term }
         | Unsuited::NoLinearForce { term, .. }
+        | Unsuited::FirstOrderOfPower { term }
         | Unsuited::PolynomialOnly { term } => {
             replace(term, typed(term, oscillator, centred));
         }

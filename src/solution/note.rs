@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Definition, LeadingCycle};
+use super::{Definition, LeadingCycle, Method};
 use crate::decimal::decimal;
 use crate::exact::Polynomial;
 use crate::expr::Expr;
@@ -142,6 +142,13 @@ pub enum Note {
         asked: u32,
         /// The order given.
         given: u32,
+    },
+    /// A method in place of the one that usually answers where none is asked for.
+    InsteadOf {
+        /// The usual one.
+        usual: Method,
+        /// Why it does not answer.
+        reason: String,
     },
     /// The expansion was stopped before the order asked for.
     Stopped {
@@ -341,6 +348,11 @@ impl fmt::Display for Note {
             Self::HighestOrderHere { asked, given } => write!(
                 formatter,
                 "order {asked} was asked for; {given} is the highest for this equation"
+            ),
+            Self::InsteadOf { usual, reason } => write!(
+                formatter,
+                "chosen because {}, which usually answers, does not apply: {reason}",
+                usual.title()
             ),
             Self::Stopped { asked } => {
                 write!(

@@ -24,16 +24,13 @@
 //! later.
 
 use num_integer::Integer as _;
-use num_traits::ToPrimitive as _;
 
+use crate::conservative::power::Power;
 use crate::conservative::{cosine_coefficient, linear_in, split};
 use crate::exact::Rational;
 use crate::exact::rational::ratio;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
-
-/// The highest whole power beside a function that is no power.
-const HIGHEST_POWER: usize = 24;
 
 /// `[S, C]` of a term; `None` where one has no closed form here.
 pub(super) fn of_term(term: &Expr, coordinate: Symbol, amplitude: &Expr, omega0: &Expr) -> Option<[Expr; 2]> {
@@ -73,71 +70,6 @@ pub(super) fn of_term(term: &Expr, coordinate: Symbol, amplitude: &Expr, omega0:
         (false, false) => return None,
     };
     Some([(&outside * &sine).expand().ok()?, (&outside * &cosine).expand().ok()?])
-}
-
-/// `|y|^exponent`, times `sgn(y)` where odd. The exponent may be a symbol, which is taken to be above -1.
-pub(super) struct Power {
-    pub(super) exponent: Expr,
-    pub(super) odd: bool,
-}
-
-impl Power {
-    pub(super) fn one() -> Self {
-        Self {
-            exponent: Expr::zero(),
-            odd: false,
-        }
-    }
-
-    /// Takes a factor in, where it is a power of the variable, its size or its sign.
-    pub(super) fn takes(&mut self, factor: &Expr, variable: Symbol) -> bool {
-        let (base, exponent) = factor.base_and_exponent();
-        let number = exponent.as_number();
-        let of_variable = |arguments: &[Expr]| arguments.first().and_then(Expr::as_symbol) == Some(variable);
-        match base.node() {
-            // An even root of y exists for y > 0 alone.
-            Node::Symbol(name) if *name == variable => match number {
-                Some(number) if number.denom().is_odd() => self.odd ^= number.numer().is_odd(),
-                _ => return false,
-            },
-            Node::Function(Function::Absolute, arguments) if of_variable(arguments) => {
-                if exponent.contains(variable) {
-                    return false;
-                }
-            }
-            Node::Function(Function::Sign, arguments) if of_variable(arguments) => {
-                match number.filter(|number| number.is_integer()) {
-                    Some(number) => self.odd ^= number.numer().is_odd(),
-                    None => return false,
-                }
-                return true;
-            }
-            _ => return false,
-        }
-        self.exponent = &self.exponent + &exponent;
-        true
-    }
-
-    /// The whole number that it is a power by, where it is one of the variable itself.
-    fn whole(&self) -> Option<usize> {
-        let number = self.exponent.as_number()?;
-        let whole = number.is_integer() && self.odd == number.numer().is_odd();
-        let count = number.to_integer().to_usize()?;
-        (whole && count <= HIGHEST_POWER).then_some(count)
-    }
-
-    /// As an expression, for the projections of one variable.
-    fn in_terms_of(&self, variable: Symbol) -> Option<Expr> {
-        let size = Expr::function(Function::Absolute, vec![Expr::from(variable)]).ok()?;
-        let power = Expr::power(&size, &self.exponent).ok()?;
-        if let Some(count) = self.whole() {
-            return Expr::from(variable).integer_power(count as i64).ok();
-        }
-        match self.odd {
-            true => Some(&power * &Expr::function(Function::Sign, vec![Expr::from(variable)]).ok()?),
-            false => Some(power),
-        }
-    }
 }
 
 /// Powers of both, by the Beta integral.

@@ -21,14 +21,14 @@ use std::collections::BTreeMap;
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
-use super::projections::Power;
 use super::small_terms::letters;
 use super::{Letters, action};
 use crate::conservative::force::Force;
+use crate::conservative::power::Power;
 use crate::decimal::rounded;
 use crate::derivation::Line;
 use crate::exact::rational::ratio;
-use crate::exact::{POLYNOMIALS, Polynomial, Rational};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, ExprError, Function};
 use crate::method::exact::of_power;
 use crate::method::exact_motion::motion_about;
@@ -168,6 +168,129 @@ impl Shape {
             harmonics: cosine.iter().enumerate().take(MOST + 1).map(over).collect(),
         })
     }
+
+    /// The last harmonic that is written.
+    fn last_harmonic(&self) -> usize {
+        self.harmonics.iter().rposition(|value| !value.is_zero()).unwrap_or(1)
+    }
+
+    /// The motion whose first harmonic has this amplitude.
+    fn motion(&self, amplitude: Symbol) -> FourierSeries<Polynomials> {
+        let amplitude = Polynomial::symbol(amplitude);
+        let waves = self.harmonics.iter().cloned();
+        let waves: Vec<Polynomial> = waves
+            .map(|value| Polynomial::constant(value).product(&amplitude))
+            .collect();
+        let sines = vec![Polynomial::zero(); waves.len()];
+        FourierSeries::from_parts(POLYNOMIALS, waves, sines)
+    }
+}
+
+/// The symbols of an answer.
+struct Names {
+    taken: Vec<Symbol>,
+    /// `a`, the amplitude of the first harmonic.
+    amplitude: Symbol,
+    /// `psi`.
+    phase: Symbol,
+    /// `chi_1`, the first harmonic of the motion that turns at one.
+    first: Symbol,
+    /// `r`, where the motion turns.
+    turning: Symbol,
+}
+
+impl Names {
+    fn beside(oscillator: &Oscillator) -> Self {
+        let taken = oscillator.names();
+        let [first, turning] = ["chi", "r"].map(|name| fresh(name, &taken));
+        Self {
+            amplitude: AmplitudeConvention::FirstHarmonic.symbol(),
+            phase: Letters::beside(&taken).phase,
+            first,
+            turning,
+            taken,
+        }
+    }
+}
+
+/// The slow equations in the amplitude of the first harmonic, and how they were reached.
+struct SlowEquations {
+    amplitude_rate: Expr,
+    phase_rate: Expr,
+    derivation: Vec<Line>,
+}
+
+impl SlowEquations {
+    /// # Errors
+    /// A damping term without a closed mean.
+    fn of(oscillator: &Oscillator, parts: &Parts, restoring: &PurePower, names: &Names) -> Result<Self, Refusal> {
+        let Names {
+            amplitude,
+            phase,
+            first,
+            turning,
+            ..
+        } = *names;
+        let (mut rates, mut turning_rates) = (vec![], vec![]);
+        for term in parts.damping.terms() {
+            let Some((power, size)) = restoring.drain(term, oscillator.coordinate) else {
+                let term = term.clone().into();
+                return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
+            };
+            let at = |base: Symbol, power: Rational| Expr::power(&Expr::from(base), &Expr::number(power));
+            turning_rates.push(&size * &at(turning, power.clone())?);
+            rates.push(size * at(amplitude, power.clone())? * at(first, Rational::one() - power)?);
+        }
+        let amplitude_rate = Expr::sum(rates).expand()?;
+        let frequency = of_power(&restoring.stiffness, &Expr::number(restoring.exponent.clone()))?;
+        let turn = |size: &Expr| frequency.substitute(AmplitudeConvention::Initial.symbol(), size);
+        let phase_rate = turn(&Expr::divide(&Expr::from(amplitude), &Expr::from(first))?)?;
+        let phase_rate = spread(&phase_rate)?;
+        let derivation = vec![
+            Line::equation(turning.derivative(), Expr::sum(turning_rates))
+                .because("the mean of the work that damping takes, over k*r^n"),
+            Line::equation(phase.derivative(), turn(&Expr::from(turning))?)
+                .because("the exact frequency of the motion that turns at r"),
+            Line::equation(amplitude, Expr::from(first) * Expr::from(turning)).because("its first harmonic"),
+            Line::equation(amplitude.derivative(), amplitude_rate.clone()),
+            Line::equation(phase.derivative(), phase_rate.clone()),
+        ];
+        Ok(Self {
+            amplitude_rate,
+            phase_rate,
+            derivation,
+        })
+    }
+
+    /// Whether the amplitude only grows.
+    fn grows(&self) -> bool {
+        let mut terms = self.amplitude_rate.terms().iter();
+        !self.amplitude_rate.is_zero() && terms.all(|term| !term.has_leading_minus())
+    }
+
+    /// The slow equations with the motion from its release, and what names of that stand for.
+    fn released(&self, names: &Names, small_with: Vec<Symbol>) -> (Modulation, Vec<Definition>) {
+        let mut release = Release {
+            amplitude: Expr::from(names.first) * Expr::from(AmplitudeConvention::Initial.symbol()),
+            phase: Expr::zero(),
+        };
+        let used: Vec<Symbol> = names.taken.iter().copied().chain([names.first]).collect();
+        let rates = [&self.amplitude_rate, &self.phase_rate];
+        let (named, transient) = transient::from_release(names.amplitude, rates, &mut release, &used);
+        let modulation = Modulation {
+            amplitude: names.amplitude,
+            phase: names.phase,
+            steady: transient::steady(names.amplitude, &self.amplitude_rate),
+            amplitude_rate: self.amplitude_rate.clone(),
+            phase_rate: self.phase_rate.clone(),
+            small_with,
+            resonance: None,
+            release: Some(release),
+            transient,
+            motion: None,
+        };
+        (modulation, named)
+    }
 }
 
 /// The decay, or growth, of a motion in a force of one power, to first order in what damps.
@@ -180,75 +303,23 @@ pub(super) fn solve(
     restoring: &PurePower,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
-    match options.order {
-        None | Some(1) => {}
-        Some(0) => return refuse(Unsuited::LowestOrder { lowest: 1 }),
-        Some(_) => return refuse(Unsuited::HighestOrder { highest: 1 }),
-    }
-    if options.amplitude == Some(AmplitudeConvention::Initial) {
-        return refuse(Unsuited::SlowAmplitude);
-    }
-    let x = oscillator.coordinate;
-    let taken = oscillator.names();
-    let (a, phase) = (
-        AmplitudeConvention::FirstHarmonic.symbol(),
-        Letters::beside(&taken).phase,
-    );
-    let [chi, r] = ["chi", "r"].map(|name| fresh(name, &taken));
-    let first = |term: &Expr| term.clone().into();
+    refuse_other_orders(parts, options)?;
+    let names = Names::beside(oscillator);
     let Some(shape) = Shape::of(restoring, oscillator, parts) else {
-        let term = first(&parts.restoring);
-        return refuse(Unsuited::NoProjection { term });
+        let term = parts.restoring.clone().into();
+        return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
     };
-    let (mut rates, mut turning) = (vec![], vec![]);
-    for term in parts.damping.terms() {
-        let Some((power, size)) = restoring.drain(term, x) else {
-            let term = first(term);
-            return refuse(Unsuited::NoProjection { term });
-        };
-        let at = |base: Symbol, power: Rational| Expr::power(&Expr::from(base), &Expr::number(power));
-        turning.push(&size * &at(r, power.clone())?);
-        rates.push(size * at(a, power.clone())? * at(chi, Rational::one() - power)?);
-    }
-    let rate = Expr::sum(rates).expand()?;
-    let frequency = of_power(&restoring.stiffness, &restoring.exponent)?;
-    let turn = |size: &Expr| frequency.substitute(AmplitudeConvention::Initial.symbol(), size);
-    let phase_rate = turn(&Expr::divide(&Expr::from(a), &Expr::from(chi))?)?;
-    let phase_rate = spread(&phase_rate)?;
-    let derivation = vec![
-        Line::equation(r.derivative(), Expr::sum(turning))
-            .because("the mean of the work that damping takes, over k*r^n"),
-        Line::equation(phase.derivative(), turn(&Expr::from(r))?)
-            .because("the exact frequency of the motion that turns at r"),
-        Line::equation(a, Expr::from(chi) * Expr::from(r)).because("its first harmonic"),
-        Line::equation(a.derivative(), rate.clone()),
-        Line::equation(phase.derivative(), phase_rate.clone()),
-    ];
-    let mut definitions = vec![Definition {
-        symbol: chi,
-        meaning: Expr::number(shape.first.clone()),
-    }];
-    let mut release = Release {
-        amplitude: Expr::from(chi) * Expr::from(AmplitudeConvention::Initial.symbol()),
-        phase: Expr::zero(),
-    };
-    let used: Vec<Symbol> = taken.iter().copied().chain([chi]).collect();
-    let (named, found) = transient::from_release(a, [&rate, &phase_rate], &mut release, &used);
-    definitions.extend(named);
-    let harmonic = shape.harmonics.iter().rposition(|value| !value.is_zero()).unwrap_or(1);
-    let amplitude = Polynomial::symbol(a);
-    let waves = shape.harmonics.into_iter();
-    let waves: Vec<Polynomial> = waves
-        .map(|value| Polynomial::constant(value).product(&amplitude))
-        .collect();
-    let sines = vec![Polynomial::zero(); waves.len()];
+    let slow = SlowEquations::of(oscillator, parts, restoring, &names)?;
     let (small, small_with, cut) = small_in_words(oscillator, parts)?;
+    let harmonic = shape.last_harmonic();
     let mut validity = vec![cut, Note::AlongTrueMotion { harmonic }];
     validity.extend(action::notes(oscillator, parts));
-    if !rate.is_zero() && rate.terms().iter().all(|term| !term.has_leading_minus()) {
-        validity.push(Note::Grows);
-    }
+    validity.extend(slow.grows().then_some(Note::Grows));
+    let (modulation, named) = slow.released(&names, small_with);
+    let first = Definition {
+        symbol: names.first,
+        meaning: Expr::number(shape.first.clone()),
+    };
     Ok(Solution {
         equation: oscillator.equation(),
         method: Method::Averaging,
@@ -257,33 +328,35 @@ pub(super) fn solve(
         small_parameter: small,
         amplitude: AmplitudeConvention::FirstHarmonic,
         parameters: oscillator.parameters.clone(),
-        definitions,
+        definitions: std::iter::once(first).chain(named).collect(),
         equilibrium: Expr::zero(),
         law: Law::Closed(ClosedForm {
             squared: false,
-            value: phase_rate.clone(),
+            value: slow.phase_rate,
         }),
-        displacement: FourierSeries::from_parts(POLYNOMIALS, waves, sines),
+        displacement: shape.motion(names.amplitude),
         limit_cycle: None,
-        modulation: Some(Modulation {
-            amplitude: a,
-            phase,
-            steady: transient::steady(a, &rate),
-            amplitude_rate: rate,
-            phase_rate,
-            small_with,
-            resonance: None,
-            release: Some(release),
-            transient: found,
-            motion: None,
-        }),
+        modulation: Some(modulation),
         response: None,
         numerical: true,
         convergence: None,
         validity,
         steps: vec![],
-        derivation,
+        derivation: slow.derivation,
     })
+}
+
+/// Refuses orders other than the first, and an amplitude that is not that of the slow equations.
+fn refuse_other_orders(parts: &Parts, options: &Options) -> Result<(), Refusal> {
+    let reason = match options.order {
+        Some(0) => Unsuited::LowestOrder { lowest: 1 },
+        Some(order) if order > 1 => Unsuited::FirstOrderOfPower {
+            term: parts.restoring.clone().into(),
+        },
+        _ if options.amplitude == Some(AmplitudeConvention::Initial) => Unsuited::SlowAmplitude,
+        _ => return Ok(()),
+    };
+    Err(reason.to(Method::Averaging))
 }
 
 /// Powers of quotients as products of powers, so that the amplitude stands alone.

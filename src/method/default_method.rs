@@ -1,0 +1,159 @@
+//! Which method answers where none is asked for.
+//!
+//! ```text
+//! time occurs                            multiple scales; averaging where the force has no expansion
+//! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging
+//! conservative                           Lindstedt-Poincare
+//! conservative, without an expansion     an order asked for: so many harmonics balanced;
+//!                                        exact, where its law is closed; Hamiltonian, where its law is closed and the force odd;
+//!                                        else exact, by quadrature
+//! ```
+//!
+//! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
+
+use super::{Options, Refusal, Unsuited, solve_by};
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::solution::{Law, Method, Note, Solution};
+use crate::symbol::Symbol;
+
+/// The method that suits an equation, where none is asked for: multiple scales where something drives it, else that of Lindstedt
+/// and Poincare. Where that one has no expansion to begin with, [`solve`](super::solve) goes on to one that needs none.
+///
+/// ```
+/// use lindstedt::{Method, Oscillator, method::default_method};
+///
+/// let driven = Oscillator::parse("x'' + x'/10 + x + x^3 = cos(2*t)")?;
+/// assert_eq!(default_method(&driven), Method::MultipleScales);
+/// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
+/// ```
+pub fn default_method(oscillator: &Oscillator) -> Method {
+    match oscillator.force.contains(Symbol::new("t")) {
+        true => Method::MultipleScales,
+        false => Method::LindstedtPoincare,
+    }
+}
+
+/// Solves by the method that suits the equation.
+///
+/// # Errors
+/// The refusal of the usual method, where no other one takes its place.
+pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let usual = default_method(oscillator);
+    let found = solve_by(usual, oscillator, options);
+    let Err(refusal) = &found else { return found };
+    if usual == Method::MultipleScales {
+        // What has no series in the amplitude is averaged as it is.
+        return match refusal {
+            Refusal::Oscillator(
+                OscillatorError::NotPolynomial(_)
+                | OscillatorError::Taylor(_)
+                | OscillatorError::NotSmall { .. }
+                | OscillatorError::NoEquilibrium(_),
+            ) => solve_by(Method::Averaging, oscillator, options).or(found),
+            _ => found,
+        };
+    }
+    // A limit cycle, and the frequency alone, are asked of expansions.
+    if options.cycle.is_some() || options.frequency_alone {
+        return found;
+    }
+    if is_of_damping(refusal, oscillator) {
+        return averaged(oscillator, options);
+    }
+    match without_expansion(refusal, oscillator, options) {
+        Some(solution) => Ok(solution),
+        None => found,
+    }
+}
+
+/// Whether an expansion in periodic motions is refused for what drains or feeds energy.
+pub(super) fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool {
+    let damped = || {
+        let parts = oscillator.parts();
+        parts.is_ok_and(|parts| !parts.damping.is_zero() && parts.forcing.is_zero())
+    };
+    match refusal {
+        Refusal::Unsuited {
+            reason: Unsuited::Damping { .. },
+            ..
+        }
+        | Refusal::AmplitudeNotFree { .. }
+        | Refusal::NoLimitCycle { .. } => damped(),
+        Refusal::Oscillator(OscillatorError::NotSmall { .. } | OscillatorError::NoEquilibrium(_)) => damped(),
+        Refusal::Oscillator(error) => has_no_expansion(error) && damped(),
+        _ => false,
+    }
+}
+
+/// Whether a force has no series with a linear part about its equilibrium.
+fn has_no_expansion(error: &OscillatorError) -> bool {
+    matches!(
+        error,
+        OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoRestoringForce(_)
+    )
+}
+
+/// Averaging, to the order asked for or the highest that there is.
+fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let asked = options.order.unwrap_or(1);
+    let mut given = asked;
+    loop {
+        let options = Options {
+            order: Some(given),
+            ..options.clone()
+        };
+        let lower = match solve_by(Method::Averaging, oscillator, &options) {
+            Ok(mut solution) => {
+                if given < asked {
+                    solution.validity.push(Note::HighestOrderHere { asked, given });
+                }
+                return Ok(solution);
+            }
+            Err(Refusal::Unsuited {
+                reason: Unsuited::HighestOrder { highest },
+                ..
+            }) if highest < given => highest,
+            Err(Refusal::Unsuited {
+                reason: Unsuited::PolynomialOnly { .. } | Unsuited::FirstOrderOfPower { .. },
+                ..
+            }) if given > 1 => 1,
+            Err(refusal) => return Err(refusal),
+        };
+        given = lower;
+    }
+}
+
+/// A conservative motion about an equilibrium at which the force has no expansion, by a method that takes the force as it is; `None`
+/// where it is not that, where an expansion was asked for, and where no such method answers.
+fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Options) -> Option<Solution> {
+    let Refusal::Oscillator(error) = refusal else {
+        return None;
+    };
+    let parts = oscillator.parts().ok()?;
+    let conservative = parts.damping.is_zero() && parts.forcing.is_zero();
+    if !conservative || !has_no_expansion(error) || options.small.is_some() {
+        return None;
+    }
+    let by = |method: Method| solve_by(method, oscillator, options).ok();
+    let closed = |solution: &Solution| !matches!(solution.law, Law::Quadrature(_));
+    let leaves_drift = |solution: &Solution| {
+        let mut notes = solution.validity.iter();
+        notes.any(|note| matches!(note, Note::EvenPartLeftOut(_)))
+    };
+    let mut solution = match options.order {
+        Some(_) => by(Method::HarmonicBalance)?,
+        None => {
+            let exact = by(Method::Exact);
+            let hamiltonian = || by(Method::Hamiltonian).filter(|found| closed(found) && !leaves_drift(found));
+            match exact {
+                Some(exact) if closed(&exact) => exact,
+                exact => hamiltonian().or(exact)?,
+            }
+        }
+    };
+    solution.validity.push(Note::InsteadOf {
+        usual: Method::LindstedtPoincare,
+        reason: error.to_string(),
+    });
+    Some(solution)
+}

@@ -15,6 +15,7 @@ pub mod modulation;
 pub mod note;
 mod polar;
 pub mod response;
+mod spurious;
 mod sum;
 
 use std::collections::BTreeSet;

@@ -149,6 +149,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         verification.steady_states.len(),
         verification.frequency.map_or_else(String::new, decimal)
     )));
+    blocks.extend(left_out(verification.spurious).map(Block::Note));
     blocks.extend(quality(verification).map(Block::Note));
     if count == 0 {
         blocks.push(Block::Note(format!(
@@ -161,6 +162,19 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         solution.amplitude.symbol()
     )));
     blocks
+}
+
+/// What is said of steady motions that the truncation alone makes.
+fn left_out(count: usize) -> Option<String> {
+    let (motions, tend) = match count {
+        0 => return None,
+        1 => ("1 more steady motion", "it tends"),
+        _ => ("more steady motions", "they tend"),
+    };
+    let count = if count == 1 { String::new() } else { format!("{count} ") };
+    Some(format!(
+        "{count}{motions} of the truncated slow equations left out: {tend} to none of the leading order as what is small goes to zero, for the series does not converge at such an amplitude"
+    ))
 }
 
 /// How good the formula of the judged motion is: what it leaves of the equation, and the order of its error.

@@ -5,6 +5,7 @@
 
 use super::{Question, Response};
 use crate::solution::Solution;
+use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
 use crate::verify::Verdict;
 
@@ -30,10 +31,33 @@ pub struct SlowResponse {
     pub worst: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
+    /// Values of the parameter at which steady motions of the truncated slow equations are
+    /// [left out](Solution::steady_motions), the lowest and the highest amplitude of these; `None` where there are none.
+    pub spurious: Option<Spurious>,
     /// How many stable points there are.
     pub points: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     pub verdict: Verdict,
+}
+
+/// Steady motions that only the truncation of slow equations makes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spurious {
+    /// How many, at all values of the parameter together.
+    pub count: usize,
+    /// Their lowest and their highest amplitude.
+    pub amplitudes: [f64; 2],
+}
+
+impl Spurious {
+    fn of(found: &[SteadyState]) -> Option<Self> {
+        let amplitudes = || found.iter().map(|state| state.amplitude);
+        let lowest = amplitudes().min_by(f64::total_cmp)?;
+        Some(Self {
+            count: found.len(),
+            amplitudes: [lowest, amplitudes().fold(lowest, f64::max)],
+        })
+    }
 }
 
 /// A steady motion.
@@ -50,21 +74,13 @@ pub struct SlowState {
 }
 
 /// The steady motions by these slow equations at one value of the parameter.
-fn states_at(question: &Question, solution: &Solution, parameter: f64) -> Vec<SlowState> {
+fn motions_at(question: &Question, solution: &Solution, parameter: f64) -> SteadyMotions {
     let numbers = question.values.numbers();
     let value_of = |name: Symbol| match name == question.parameter {
         true => Some(parameter),
         false => numbers.get(&name).copied(),
     };
-    let states = solution.steady_states(&value_of).into_iter();
-    states
-        .map(|state| SlowState {
-            parameter,
-            amplitude: state.amplitude,
-            phase: state.phase,
-            stable: state.is_stable(),
-        })
-        .collect()
+    solution.steady_motions(&value_of)
 }
 
 impl Response {
@@ -87,15 +103,24 @@ impl Response {
         let question = &self.question;
         let [low, high] = question.range;
         let value = |index: u32| low + (high - low) * f64::from(index) / f64::from(VALUES);
-        let states = (0..=VALUES).flat_map(|index| states_at(question, &solution, value(index)));
-        let states: Vec<SlowState> = states.collect();
+        let (mut states, mut spurious) = (vec![], vec![]);
+        for parameter in (0..=VALUES).map(value) {
+            let found = motions_at(question, &solution, parameter);
+            states.extend(found.states.into_iter().map(|state| SlowState {
+                parameter,
+                amplitude: state.amplitude,
+                phase: state.phase,
+                stable: state.is_stable(),
+            }));
+            spurious.extend(found.spurious);
+        }
         let (mut error, mut worst, mut missing, mut count) = (None::<f64>, None, 0, 0);
         let points = self.branches.iter().flat_map(|branch| &branch.points);
         for point in points.filter(|point| point.stable == Some(true)) {
             count += 1;
-            let stable = states_at(question, &solution, point.parameter).into_iter();
+            let stable = motions_at(question, &solution, point.parameter).states.into_iter();
             let apart = stable
-                .filter(|state| state.stable)
+                .filter(SteadyState::is_stable)
                 .map(|state| (state.amplitude - point.amplitude).abs())
                 .min_by(f64::total_cmp);
             let relative = apart.map(|apart| apart / point.amplitude.max(f64::MIN_POSITIVE));
@@ -114,6 +139,7 @@ impl Response {
             error,
             worst,
             missing,
+            spurious: Spurious::of(&spurious),
             points: count,
         });
         self

@@ -8,6 +8,7 @@
 use nalgebra::Matrix2;
 
 use super::Solution;
+use super::spurious::Orders;
 use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::numeric::ode::root::find_root;
@@ -63,6 +64,9 @@ pub struct Plane {
     pub coordinates: [Symbol; 2],
     /// `u'` and `v'`.
     pub rates: [Polynomial; 2],
+    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase; first what leads, then what comes
+    /// one, two, ... orders later. Nothing where each part has one order alone.
+    pub parts: Vec<Vec<[Polynomial; 2]>>,
 }
 
 /// A steady motion at numbers.
@@ -75,6 +79,15 @@ pub struct SteadyState {
     /// Real and imaginary part of the eigenvalues of the slow equations about it, per unit of time: the larger first, of a pair that
     /// with the positive imaginary part.
     pub eigenvalues: [(f64, f64); 2],
+}
+
+/// The steady motions of slow equations at numbers, largest amplitude first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SteadyMotions {
+    /// Those of the equation.
+    pub states: Vec<SteadyState>,
+    /// Those that only the truncation of the slow equations makes.
+    pub spurious: Vec<SteadyState>,
 }
 
 impl SteadyState {
@@ -93,7 +106,8 @@ impl SteadyState {
 
 impl Solution {
     /// Every steady motion of a driven oscillator at given values, by its slow equations, largest amplitude first; nothing for
-    /// other motions, where a value is missing, and where the phase cannot be eliminated.
+    /// other motions, where a value is missing, and where the phase cannot be eliminated. What steady motions the truncation alone
+    /// makes are [left out](Self::steady_motions).
     ///
     /// ```
     /// use lindstedt::{Options, Oscillator, Values, solve};
@@ -107,10 +121,26 @@ impl Solution {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn steady_states(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Vec<SteadyState> {
-        self.found_steady_states(value_of).unwrap_or_default()
+        self.steady_motions(value_of).states
     }
 
-    fn found_steady_states(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Vec<SteadyState>> {
+    /// The same, and beside them the steady motions of the truncated slow equations that are none of the equation: those that tend to
+    /// none of the leading order as all that is small goes to zero, because the series does not converge at their amplitude.
+    pub fn steady_motions(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> SteadyMotions {
+        let found = self.roots(value_of).unwrap_or_default();
+        let plane = self.response.as_ref().and_then(|response| response.plane.as_ref());
+        let times = self.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
+        let times = times.map_or(1.0, |resonance| f64::from(resonance.times_linear));
+        let orders = plane.and_then(|plane| Orders::new(self, plane, value_of));
+        let is_spurious = |state: &SteadyState| {
+            let place = on_circle(state.amplitude, state.phase / times);
+            state.amplitude > 0.0 && orders.as_ref().is_some_and(|orders| orders.is_spurious(place))
+        };
+        let (spurious, states) = found.into_iter().partition(is_spurious);
+        SteadyMotions { states, spurious }
+    }
+
+    fn roots(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Vec<SteadyState>> {
         let response = self.response.as_ref()?;
         let modulation = self.modulation.as_ref()?;
         let times = f64::from(modulation.resonance.as_ref()?.times_linear);
@@ -338,17 +368,21 @@ impl<'a> Field<'a> {
     /// Newton's steps from a place to one where both rates vanish.
     fn at_rest_from(&self, start: [f64; 2]) -> Option<[f64; 2]> {
         const STEPS: usize = 40;
+        /// A step that rounding leaves, also where two steady motions meet.
+        const SETTLED: f64 = 1e-6;
         let radius = start[0].hypot(start[1]);
         let mut place = start;
+        let mut moved = f64::INFINITY;
         for _ in 0..STEPS {
             let [u, v] = self.at(place);
             let step = self.jacobian(place).try_inverse()? * nalgebra::Vector2::new(u, v);
             place = [place[0] - step[0], place[1] - step[1]];
-            if step.norm() <= 1e-15 * radius {
+            moved = step.norm();
+            if moved <= 1e-15 * radius {
                 break;
             }
         }
-        place.iter().all(|value| value.is_finite()).then_some(place)
+        (moved <= SETTLED * radius).then_some(place)
     }
 }
 

@@ -25,7 +25,7 @@ use crate::method::numbers::symbol_values;
 use crate::numeric::ode::{Options, State, integrate};
 use crate::numeric::periodic::{PeriodicMotion, periodic_motion};
 use crate::oscillator::Oscillator;
-use crate::solution::response::SteadyState;
+use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::solution::{Response, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -118,7 +118,11 @@ impl<'a> Question<'a> {
     }
 
     fn states(&self) -> Vec<SteadyState> {
-        self.solution.steady_states(&|name| self.numbers.get(&name).copied())
+        self.steady_motions().states
+    }
+
+    fn steady_motions(&self) -> SteadyMotions {
+        self.solution.steady_motions(&|name| self.numbers.get(&name).copied())
     }
 
     /// What the formula leaves of the equation, over the force.
@@ -253,6 +257,7 @@ pub(super) fn judge(
         phase: 0.0,
         motion: None,
         steady_states: states,
+        spurious: question.steady_motions().spurious.len(),
         followed: None,
         verdict: Verdict::of(passed),
     })

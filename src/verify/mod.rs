@@ -119,6 +119,9 @@ pub struct Verification {
     pub motion: Option<FourierSeries<Doubles>>,
     /// Driven motions: every steady motion by the slow equations, largest first, beside the true one.
     pub steady_states: Vec<JudgedState>,
+    /// Driven motions: how many steady motions of the truncated slow equations are
+    /// [left out](crate::solution::Solution::steady_motions), because they are none of the equation.
+    pub spurious: usize,
     /// Motions that are not periodic: what else is known of them.
     pub followed: Option<Followed>,
     /// The verdict on the frequency; on the amplitude of a driven motion.
@@ -307,6 +310,7 @@ pub fn judge(
         values: symbols.values,
         phase: symbols.phase,
         steady_states: vec![],
+        spurious: 0,
         // The motion of the size of the amplitude, which begins half a period later.
         motion: motion.map(|(_, motion)| match symbols.phase == 0.0 {
             true => motion,

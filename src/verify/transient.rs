@@ -120,6 +120,7 @@ pub(super) fn judge(
         phase: 0.0,
         motion: None,
         steady_states: vec![],
+        spurious: 0,
         followed: Some(Followed {
             until: *until,
             reason,

@@ -16,6 +16,11 @@ use crate::symbol::Symbol;
 /// What stands under names that the equation or the program chose, in their order.
 pub type Map<T> = IndexMap<String, T>;
 
+/// Whether there is nothing of what is counted, so that it is left out.
+pub(super) fn is_nothing(count: &usize) -> bool {
+    *count == 0
+}
+
 /// An exact constant beside its decimal value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]

@@ -4,7 +4,7 @@ use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::{expression, finite};
+use super::number::{expression, finite, is_nothing};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, unexpected};
 use crate::derivation::Line;
 use crate::exact::{self, Doubles, Monomial, POLYNOMIALS, Polynomials};
@@ -298,6 +298,10 @@ pub struct Response {
     pub coordinates: Option<[String; 2]>,
     /// The rates of u and v, polynomials: the slow equations without a singular origin; null where they are no polynomials.
     pub rates: Option<[Polynomial; 2]>,
+    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase; of each first what leads, then what
+    /// comes one, two, ... orders later. Left out where each part has one order alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Vec<[Polynomial; 2]>>,
 }
 
 /// The frequency-response equation of a force that is no polynomial, expressions in the amplitude and the detuning.
@@ -417,6 +421,10 @@ pub struct Verification {
     /// The steady motions of a driven equation, largest first; empty for any other.
     #[serde(default)]
     pub steady_states: Vec<SteadyState>,
+    /// How many steady motions of the truncated slow equations are no motions of the equation: they tend to none of the leading order
+    /// as what is small goes to zero. Left out where there are none.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub spurious: usize,
     /// What else is known of a motion that is not periodic; null for any other.
     #[serde(default)]
     pub followed: Option<Followed>,
@@ -610,6 +618,13 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
             .plane
             .as_ref()
             .map(|plane| plane.rates.each_ref().map(polynomial)),
+        parts: response.plane.as_ref().map_or_else(Vec::new, |plane| {
+            let orders = |part: &Vec<[exact::Polynomial; 2]>| {
+                let orders = part.iter().map(|rates| rates.each_ref().map(polynomial));
+                orders.collect()
+            };
+            plane.parts.iter().map(orders).collect()
+        }),
     }
 }
 
@@ -663,6 +678,7 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
         steady_states: verification.steady_states.iter().map(steady_state).collect(),
+        spurious: verification.spurious,
         followed: verification.followed.as_ref().map(|followed| Followed {
             until: followed.until,
             reason: followed.reason.to_owned(),
@@ -849,10 +865,15 @@ impl Response {
                 width_squared: expression(&closed.width_squared, "width_squared")?,
             })
         };
+        let orders = |part: &[[Polynomial; 2]]| -> Result<Vec<_>, JsonError> {
+            let both = |[u, v]: &[Polynomial; 2]| Ok([u.exact("parts")?, v.exact("parts")?]);
+            part.iter().map(both).collect()
+        };
         let plane = |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
             Ok(solution::response::Plane {
                 coordinates: coordinates.each_ref().map(|name| Symbol::new(name)),
                 rates: [u.exact("rates")?, v.exact("rates")?],
+                parts: self.parts.iter().map(|part| orders(part)).collect::<Result<_, _>>()?,
             })
         };
         Ok(solution::Response {

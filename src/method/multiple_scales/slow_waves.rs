@@ -6,6 +6,7 @@ use num_integer::Integer as _;
 use num_traits::Zero;
 
 use super::driven::Question;
+use super::names::Names;
 use super::slow_times::{Complex, Expansion};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -192,10 +193,7 @@ pub(super) fn response(
         folds: found.folds,
         jumps: found.jumps,
         closed: None,
-        plane: Some(Plane {
-            coordinates: [u, v],
-            rates: plane(question, expansion, [u, v]),
-        }),
+        plane: Some(plane(question, expansion, [u, v])),
     })
 }
 
@@ -240,29 +238,70 @@ pub(super) fn motion(
 }
 
 /// The slow equations in `u = a cos(psi/p)` and `v = -a sin(psi/p)`, that is `2 B = u + i v`: without a singular origin.
-fn plane(question: &Question, expansion: &Expansion, [u, v]: [Symbol; 2]) -> [Polynomial; 2] {
+fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -> Plane {
     let names = &question.names;
+    let mut parts: BTreeMap<Part, BTreeMap<usize, Complex>> = BTreeMap::new();
+    for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
+        for (terms, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
+            for (monomial, number) in terms.terms() {
+                let turns = monomial.exponent(names.complex.own) - monomial.exponent(names.complex.conjugate) - 1;
+                let part = match (turns, imaginary) {
+                    (0, false) => Part::Drains,
+                    (0, true) => Part::Turns,
+                    (turns, _) => Part::Wave(turns.unsigned_abs()),
+                };
+                let term = in_plane(monomial, number, names, coordinates);
+                let order = parts.entry(part).or_default().entry(k).or_insert_with(Complex::zero);
+                let mark = Complex::real(Polynomial::term(names.mark(k), ratio(1, 1)));
+                let term = term.product(&mark);
+                order.accumulate(&if imaginary { term.times_i() } else { term });
+            }
+        }
+    }
+    let unmarked = |sum: &Complex| [question.unmarked(&sum.real), question.unmarked(&sum.imaginary)];
+    let mut rates = Complex::zero();
+    for order in parts.values().flat_map(BTreeMap::values) {
+        rates.accumulate(order);
+    }
+    // From the order that leads on, also those that add nothing.
+    let by_orders = |orders: &BTreeMap<usize, Complex>| {
+        let (first, last) = (orders.keys().next()?, orders.keys().next_back()?);
+        let order = |k| unmarked(orders.get(&k).unwrap_or(&Complex::zero()));
+        Some((*first..=*last).map(order).collect::<Vec<_>>())
+    };
+    let parts: Vec<Vec<[Polynomial; 2]>> = parts.values().filter_map(by_orders).collect();
+    let several = parts.iter().any(|part| part.len() > 1);
+    Plane {
+        coordinates,
+        rates: unmarked(&rates),
+        parts: if several { parts } else { vec![] },
+    }
+}
+
+/// What slow equations are made of, each part with an order of its own that leads.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Part {
+    /// `a'` without the phase.
+    Drains,
+    /// `psi'` without the phase.
+    Turns,
+    /// What turns so many times with the phase.
+    Wave(u32),
+}
+
+/// A term of `2 B'` in `u` and `v`.
+fn in_plane(monomial: &Monomial, number: &Rational, names: &Names, [u, v]: [Symbol; 2]) -> Complex {
     let half = Polynomial::constant(ratio(1, 2));
     let of = |sign: i64| Complex {
         real: Polynomial::symbol(u).product(&half),
         imaginary: Polynomial::symbol(v).product(&Polynomial::constant(ratio(sign, 2))),
     };
-    let (own, conjugate) = (of(1), of(-1));
-    let mut sum = Complex::zero();
-    for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
-        for (part, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
-            for (monomial, number) in part.terms() {
-                let rest = monomial.without(names.complex.own).without(names.complex.conjugate);
-                let rest = rest.product(&names.mark(k));
-                let mut term = Complex::real(Polynomial::term(rest, number * Rational::from_integer(2.into())));
-                for (name, value) in [(names.complex.own, &own), (names.complex.conjugate, &conjugate)] {
-                    for _ in 0..monomial.exponent(name) {
-                        term = term.product(value);
-                    }
-                }
-                sum.accumulate(&if imaginary { term.times_i() } else { term });
-            }
+    let rest = monomial.without(names.complex.own).without(names.complex.conjugate);
+    let mut term = Complex::real(Polynomial::term(rest, number * Rational::from_integer(2.into())));
+    for (name, value) in [(names.complex.own, of(1)), (names.complex.conjugate, of(-1))] {
+        for _ in 0..monomial.exponent(name) {
+            term = term.product(&value);
         }
     }
-    [question.unmarked(&sum.real), question.unmarked(&sum.imaginary)]
+    term
 }

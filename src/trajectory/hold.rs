@@ -34,6 +34,9 @@ const DELAY: f64 = 1e-9;
 /// A speed that rounding leaves of the one that holds.
 const AT_REST: f64 = 1e-9;
 
+/// What rounding and the steps leave of a pull, in parts of the jump of the friction.
+const ROUNDING: f64 = 1e-9;
+
 impl Hold {
     /// Coordinate, velocity and works at a time.
     pub(super) fn at(&self, time: f64) -> Vec<f64> {
@@ -92,8 +95,13 @@ impl Course {
             numbers.extend([(*place, *x), (Symbol::new("t"), from)]);
             expression.evaluate(&numbers)
         };
-        let is_held = at(forward).is_ok_and(|rate| rate <= 0.0) && at(backward).is_ok_and(|rate| rate >= 0.0);
-        if !is_held {
+        let (Ok(above), Ok(below)) = (at(forward), at(backward)) else {
+            return Ok(None);
+        };
+        // At rest nothing changes any more where time does not occur: what rounding leaves at the edge of the held places is no pull.
+        let at_edge = jump.speed == 0.0 && ![forward, backward].iter().any(|side| side.contains(Symbol::new("t")));
+        let slack = if at_edge { ROUNDING * (below - above).abs() } else { 0.0 };
+        if !(above <= slack && below >= -slack) {
             return Ok(None);
         }
         let mut hold = Hold {

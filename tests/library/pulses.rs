@@ -141,3 +141,19 @@ fn a_short_pulse_frees_what_friction_holds() {
         assert!(place(&motion, 21.0) > 0.3);
     }
 }
+
+/// A swing that ends at the edge of what friction holds, but for rounding, is held: a = 1.5 falls by 0.6 each half period of pi, to 0.3.
+#[test]
+fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
+    for motion in followed("x'' + x + 0.3*sgn(x') = 0", 1.5, 60.0) {
+        let held: Vec<[f64; 2]> = motion.held().collect();
+        let [[from, until]] = held.as_slice() else {
+            panic!("{held:?}");
+        };
+        assert!(
+            (0.0..0.5).contains(&(from + 1e-6 - std::f64::consts::TAU)) && *until == 60.0,
+            "{held:?}"
+        );
+        assert!((place(&motion, 50.0) - 0.3).abs() < 1e-9);
+    }
+}

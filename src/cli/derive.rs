@@ -1,11 +1,9 @@
 //! `lindstedt derive PROBLEM`.
 
-use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{json, latex, text};
@@ -15,9 +13,10 @@ use lindstedt::method::{self, Options, Refusal};
 use lindstedt::problem::{self, Formula, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
-use lindstedt::{Counter, Interrupt, Oscillator, Progress, Supervision, Symbol};
+use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
 use super::problem::problem;
+use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, tolerance, whole};
 
 #[derive(Args)]
@@ -140,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .map_err(|refusal| refused(&oscillator, &refusal))?,
         None => options,
     };
-    let derived = with_progress(|| {
+    let derived = with_progress("of the calculation", || {
         on_threads(arguments.jobs, || {
             let mut derived = solve_at(oscillator, values, &options)?;
             derived.2.convergence = verify::converges(&derived.2);
@@ -211,37 +210,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         verdict: verification.map(|verification| verification.verdict),
         partial: asked.is_some(),
     })
-}
-
-/// How far an expansion has come.
-static PROGRESS: Counter = Counter::new();
-
-/// Does long work with a bar on standard error, where that is a terminal.
-fn with_progress<T>(work: impl FnOnce() -> T) -> T {
-    /// Work that is done before this needs no bar.
-    const SOON: Duration = Duration::from_millis(500);
-    const EVERY: Duration = Duration::from_millis(100);
-    let (done, waits) = channel::<()>();
-    let watcher = std::thread::spawn(move || {
-        let is_done = |wait: Duration| waits.recv_timeout(wait) != Err(RecvTimeoutError::Timeout);
-        if is_done(SOON) {
-            return;
-        }
-        let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} % of the calculation, {eta} left") {
-            bar.set_style(style);
-        }
-        while !is_done(EVERY) {
-            let (position, length) = PROGRESS.read();
-            bar.set_length(length);
-            bar.set_position(position);
-        }
-        bar.finish_and_clear();
-    });
-    let result = work();
-    drop(done);
-    let _ = watcher.join();
-    result
 }
 
 /// Does the work on so many threads, or on all.

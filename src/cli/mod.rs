@@ -18,6 +18,7 @@ mod materials;
 mod optimize;
 mod primary;
 mod problem;
+mod progress;
 mod response;
 mod schema;
 mod simulate;
@@ -227,11 +228,13 @@ impl Command {
         }
     }
 
-    /// How long to wait for what there is, once the time is up. Only a simulation, a search and an expansion have parts worth waiting
+    /// How long to wait for what there is, once the time is up. Only a simulation, a search, branches and an expansion have parts worth waiting
     /// for; to add up what a long one did takes a while.
     fn patience(&self) -> fn() -> Duration {
         match self {
-            Self::Simulate(_) | Self::Materials(_) | Self::Optimize(_) => || Duration::from_secs(60),
+            Self::Simulate(_) | Self::Response(_) | Self::Materials(_) | Self::Optimize(_) => {
+                || Duration::from_secs(60)
+            }
             Self::Derive(_) => derive::patience,
             _ => || Duration::ZERO,
         }

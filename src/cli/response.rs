@@ -6,10 +6,11 @@ use lindstedt::expr::parse_expression;
 use lindstedt::problem::{Order, Reader};
 use lindstedt::response::{MOST_HARMONICS, Question, Response, ResponseError, respond};
 use lindstedt::solution::{Method, Solution};
-use lindstedt::{Interrupt, Options, Oscillator, Symbol, report, solve};
+use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
 
 use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::problem;
+use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, files, json_text, tolerance, whole};
 
 #[derive(Args)]
@@ -68,12 +69,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
         tolerance: tolerance(&arguments.common),
         interrupt: Interrupt::by(&STOP),
+        progress: Progress::by(&PROGRESS),
     };
     let slow = match method {
         Method::HarmonicBalance => None,
         method => Some(slow_equations(&question, method, order)?),
     };
-    let mut response = respond(&question).map_err(refused)?;
+    let mut response = with_progress("of this search, or of its points", || respond(&question)).map_err(refused)?;
     if let Some(solution) = slow {
         response = response.beside(solution);
     }
@@ -92,7 +94,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
         result: whole(text),
         picture,
-        note: None,
+        note: (!response.complete).then(|| {
+            format!(
+                "warning: stopped early, what there is is kept: {} branches",
+                response.branches.len()
+            )
+        }),
         verdict: Some(response.slow.as_ref().map_or(response.verdict, |slow| slow.verdict)),
         partial: !response.complete,
     })

@@ -231,6 +231,10 @@ fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<St
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
         ),
         BranchEnd::Lost => format!("It could not be followed beyond {place}: the force has a jump or no value there."),
+        BranchEnd::Harmonics => format!(
+            "It was followed no farther than {place}: beyond, {} harmonics do not suffice, the last of them are a tenth of the motion or more.",
+            response.harmonics
+        ),
         BranchEnd::Points => format!("It was followed no farther than {place}: it has too many points."),
         BranchEnd::Interrupted => format!("It was followed no farther than {place}: interrupted."),
         BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing | BranchEnd::Rest => return None,
@@ -426,6 +430,17 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
             format!(
                 "{} stable points near which the slow equations have no stable motion",
                 slow.missing
+            ),
+        ));
+    }
+    if let Some(spurious) = slow.spurious {
+        let [low, high] = spurious.amplitudes.map(decimal);
+        facts.push((
+            "left out",
+            format!(
+                "{} steady motions of the truncated slow equations, amplitudes from {low} to {high}: they tend to none of the leading \
+                 order as what is small goes to zero, for the series does not converge there",
+                spurious.count
             ),
         ));
     }

@@ -146,6 +146,16 @@ impl<'a> Balance<'a> {
         }
     }
 
+    /// The size of the last quarter of the harmonics.
+    pub(super) fn last_harmonics(&self, coefficients: &DVector<f64>) -> f64 {
+        let first = self.harmonics - self.harmonics / 4;
+        let sizes = (first + 1..=self.harmonics).map(|harmonic| {
+            let [cosine, sine] = self.harmonic(coefficients, harmonic);
+            cosine.hypot(sine)
+        });
+        sizes.fold(0.0, f64::hypot)
+    }
+
     /// The unknowns of a motion of this frequency that is known at any number of equal steps of a period.
     pub fn unknowns_of(&self, positions: &[f64], frequency: f64) -> DVector<f64> {
         let coefficients = self.coefficients_of(positions);

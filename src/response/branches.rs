@@ -35,7 +35,7 @@ impl Asked<'_> {
                     .map(|path| largest(balance, path))
                     .fold(size.max(balance.extent(&found)), f64::max),
             );
-            if self.was_known(balance, &mut paths, &found, seed.parameter) {
+            if walk.is_cut_off(balance, &found) || self.was_known(balance, &mut paths, &found, seed.parameter) {
                 continue;
             }
             if let Some(path) = walk.through(balance, &found, seed.parameter) {
@@ -110,9 +110,9 @@ impl Asked<'_> {
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
             let near = |shifted: &DVector<f64>| {
                 let apart = motion - shifted;
-                let mean = apart[0];
+                let (mean, waves) = (apart[0], apart.rows(1, apart.len() - 1).norm());
                 let allowed = within * size.max(balance.extent(motion));
-                apart.norm() <= allowed && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
+                waves <= allowed && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
             };
             of.iter().any(near)
         };

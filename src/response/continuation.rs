@@ -74,6 +74,8 @@ pub enum BranchEnd {
     Lost,
     /// After as many points as are allowed.
     Points,
+    /// The harmonics that are kept do not suffice for the motions beyond.
+    Harmonics,
     /// It rests all the time: dry friction bears what drives it.
     Held,
     /// Its amplitude has come to zero: a self-excited motion is born from rest there.
@@ -104,6 +106,8 @@ pub struct Walk {
     pub longest: f64,
     /// Points after which it ends.
     pub most: usize,
+    /// Whether it ends where the harmonics do not suffice for the motion.
+    pub resolved: bool,
     /// The size of the largest motion known: smaller ones are measured in parts of it.
     pub size: f64,
     /// The size of ordinary motions: far beyond it they are unbounded.
@@ -283,10 +287,19 @@ impl Walk {
         })
     }
 
+    /// Whether the last harmonics that are kept are as large as if there were as many again.
+    pub(super) fn is_cut_off(&self, balance: &Balance, coefficients: &DVector<f64>) -> bool {
+        /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
+        const LARGEST: f64 = 0.1;
+        self.resolved && balance.last_harmonics(coefficients) > LARGEST * balance.extent(coefficients)
+    }
+
     /// The points from one on in the direction of its tangent.
     fn follow(&self, balance: &Balance, start: Node) -> (Vec<Node>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
+        /// Short enough to tell where the harmonics cease to suffice.
+        const SHORT: f64 = 1e-4;
         const FEW: usize = 3;
         const MANY: usize = 6;
         /// Cosine of the angle between tangents beyond which a step was too long.
@@ -316,8 +329,14 @@ impl Walk {
                 let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
                 weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
             });
-            let Some((mut node, iterations)) = found else {
+            let cut_off = found
+                .as_ref()
+                .is_some_and(|(node, _)| self.is_cut_off(balance, &node.coefficients));
+            let Some((mut node, iterations)) = found.filter(|_| !cut_off) else {
                 step *= 0.5;
+                if cut_off && step < SHORT {
+                    return (nodes, BranchEnd::Harmonics);
+                }
                 if step < SHORTEST {
                     // Where the damping has a corner at rest the branch has one there as well.
                     let near = here.parameter;

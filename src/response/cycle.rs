@@ -14,7 +14,9 @@
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::driven::Driven;
-use super::stability::{Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options};
+use super::stability::{
+    Budget, Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options,
+};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Point, Trajectory, integrate_first_order};
 
@@ -137,7 +139,7 @@ pub fn settled(
     guess: &Guess,
     parameter: f64,
     periods: usize,
-    budget: &mut usize,
+    budget: &mut Budget,
 ) -> Option<(f64, Vec<f64>)> {
     const CLOSELY: f64 = 1e-11;
     /// A period and what the first guess of it may be off.
@@ -151,8 +153,8 @@ pub fn settled(
     let mut follow = |start: [f64; 2], duration: f64| {
         let begin = Point { t: 0.0, y: start };
         let path = integrate_first_order(rates, begin, duration, &[], &options(guess.size, CLOSELY)).ok()?;
-        *budget = budget.saturating_sub(path.evaluations());
-        (path.is_complete() && *budget > 0).then_some(path)
+        let more = budget.spend(path.evaluations());
+        (path.is_complete() && more).then_some(path)
     };
     let mut state = guess.start;
     for _ in 0..periods {

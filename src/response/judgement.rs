@@ -8,7 +8,7 @@ use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
     Floquet, SAMPLES, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
 };
-use super::{Asked, Branch, MOST_EVALUATIONS, Point, Simulated};
+use super::{Asked, Branch, Point, Simulated};
 use crate::trajectory;
 
 /// The multipliers at a point of a branch, and the true motion beside it.
@@ -151,7 +151,7 @@ impl Asked<'_> {
             .map(|point| point.peak)
             .fold(0.0, f64::max);
         let mut found = Vec::new();
-        let mut budget = MOST_EVALUATIONS;
+        let mut budget = self.budget();
         for branch in branches {
             for part in branch.points.chunk_by(|one, other| one.stable == other.stable) {
                 if part.first().is_none_or(|point| point.stable != Some(true)) {

@@ -32,6 +32,7 @@ mod branches;
 pub mod continuation;
 pub mod cycle;
 pub mod driven;
+mod error;
 pub mod hopf;
 mod judgement;
 pub mod jump;
@@ -45,15 +46,15 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use num_complex::Complex;
-use thiserror::Error;
 
-use crate::decimal::decimal;
-use crate::expr::{EvaluationError, Expr, ExprError};
-use crate::interrupt::Interrupt;
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::expr::Expr;
+use crate::interrupt::{Interrupt, Progress};
+use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
+
+pub use error::{ResponseError, Tried};
 
 use backbone::{BackbonePoint, backbones};
 use balance::Balance;
@@ -64,6 +65,7 @@ use driven::Driven;
 use judgement::Judged;
 use seeds::{Seed, size_of};
 use slow::SlowResponse;
+use stability::Budget;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,135 +86,8 @@ pub struct Question {
     pub tolerance: f64,
     /// Who may ask it to end.
     pub interrupt: Interrupt,
-}
-
-/// Why there is no response.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum ResponseError {
-    /// Time does not occur, and nothing feeds or damps the motion.
-    #[error("there is no drive: time `t` does not occur in the equation")]
-    NoDrive,
-    /// Time does not occur, and nothing excites the motion either.
-    #[error("there is no drive, and no limit cycle was found for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
-    NoCycle {
-        /// The parameter.
-        parameter: Symbol,
-        /// Its range.
-        range: [f64; 2],
-    },
-    /// Periods of a drive that there is not.
-    #[error("there is no drive of which a motion could take {0} periods: time `t` does not occur in the equation")]
-    NoPeriods(usize),
-    /// Time enters in a way that does not repeat.
-    #[error("the term `{0}` is not periodic in time")]
-    NotPeriodic(String),
-    /// A force that jumps with the velocity, but along no line of places and velocities.
-    #[error(
-        "the term `{0}` jumps with the velocity, and not on a line of places and velocities that is the same at every time"
-    )]
-    Jump(String),
-    /// Two frequencies without a common period for every value of the parameter.
-    #[error("the frequencies `{}` and `{}` are no whole multiples of one frequency", .0[0], .0[1])]
-    TwoFrequencies([String; 2]),
-    /// The frequency of the drive is not positive in all of the range.
-    #[error("the frequency `{frequency}` of the drive is {} at {parameter} = {}: it must be positive", decimal(*.value), decimal(*.at))]
-    Frequency {
-        /// The frequency.
-        frequency: String,
-        /// Its value.
-        value: f64,
-        /// The parameter.
-        parameter: Symbol,
-        /// Where.
-        at: f64,
-    },
-    /// The parameter to vary is none of the equation.
-    #[error("there is no parameter `{name}` in the equation: its parameters are {}", list(.known))]
-    NoParameter {
-        /// The name.
-        name: Symbol,
-        /// Those that there are.
-        known: Vec<Symbol>,
-    },
-    /// The parameter that varies has a value.
-    #[error("`{0}` varies and is given a value as well")]
-    Given(Symbol),
-    /// A value for a name that does not occur.
-    #[error("there is a value for `{0}`, which does not occur in the equation")]
-    Unknown(Symbol),
-    /// Parameters without a value.
-    #[error("no value for {}", list(.0))]
-    Missing(Vec<Symbol>),
-    /// A range that is none.
-    #[error("the range of `{0}` must go from a finite number to a larger one")]
-    Range(Symbol),
-    /// A count beyond what can be kept.
-    #[error("{what} must lie between 1 and {most}, not {given}")]
-    Count {
-        /// What is counted.
-        what: &'static str,
-        /// What was given.
-        given: usize,
-        /// The most.
-        most: usize,
-    },
-    /// Motions to begin with, and no branch of them.
-    #[error("motions were found, but none of them could be followed for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
-    NotFollowed {
-        /// The parameter.
-        parameter: Symbol,
-        /// Its range.
-        range: [f64; 2],
-    },
-    /// No periodic motion was found to begin with.
-    #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), if *undamped { ": without damping the amplitude is unbounded at resonance" } else { "" })]
-    NoMotion {
-        /// The parameter.
-        parameter: Symbol,
-        /// Its value.
-        at: f64,
-        /// Whether nothing damps the motion.
-        undamped: bool,
-    },
-    /// Somebody asked it to end before there was anything.
-    #[error(
-        "interrupted before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
-        .tried.starts,
-        .tried.values,
-        .tried.motions
-    )]
-    Interrupted {
-        /// The parameter.
-        parameter: Symbol,
-        /// What was done until then.
-        tried: Tried,
-    },
-    /// The equation has no such values.
-    #[error(transparent)]
-    Oscillator(#[from] OscillatorError),
-    /// A step of algebra failed.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
-    /// A name that stands for nothing.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
-}
-
-/// The search for motions to begin with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tried {
-    /// Values of the parameter.
-    pub values: usize,
-    /// Starts of simulations at them.
-    pub starts: usize,
-    /// Motions that they led to.
-    pub motions: usize,
-}
-
-fn list(symbols: &[Symbol]) -> String {
-    let names: Vec<String> = symbols.iter().map(|symbol| format!("`{symbol}`")).collect();
-    names.join(", ")
+    /// Who sees how far it has come: of the search for motions to begin with, then of the points that are judged, each time anew.
+    pub progress: Progress,
 }
 
 /// A steady state.
@@ -399,6 +274,11 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     let mut fewer: Option<Response> = None;
     loop {
         let attempt = asked.attempt(harmonics, &seeds);
+        let may_have_more = question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
+        if matches!(attempt, Err(ResponseError::NotFollowed { .. })) && may_have_more && fewer.is_none() {
+            harmonics *= 2;
+            continue;
+        }
         // What was stopped on the way to more harmonics has the answer by fewer of them.
         let mut response = match (attempt, fewer.take()) {
             (Ok(response), None) => response,
@@ -411,10 +291,11 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
         };
         let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
         let judged = 100 * response.unjudged <= points;
-        let good = judged && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
+        let resolved = !response.ends_with(BranchEnd::Harmonics);
+        let good = resolved && judged && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
         // What more harmonics do not better is not theirs, such as a jump of the force.
         let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
-        let stalled = now.0 >= 0.7 * before.0 && now.1 >= before.1;
+        let stalled = resolved && now.0 >= 0.7 * before.0 && now.1 >= before.1;
         before = now;
         let fixed = question.harmonics.is_some() || !response.complete;
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
@@ -431,6 +312,11 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
 }
 
 impl Response {
+    /// Whether a branch ends for this reason.
+    fn ends_with(&self, end: BranchEnd) -> bool {
+        self.branches.iter().any(|branch| branch.ends.contains(&end))
+    }
+
     /// The same with the largest error of its points and simulations, and the verdict on it.
     fn with_verdict(mut self) -> Self {
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
@@ -469,6 +355,7 @@ impl Question {
             periods: 1,
             tolerance: 0.01,
             interrupt: Interrupt::default(),
+            progress: Progress::default(),
         })
     }
 }
@@ -562,8 +449,18 @@ impl<'a> Asked<'a> {
         Ok(self)
     }
 
+    /// What the simulations of one purpose may take together.
+    fn budget(&self) -> Budget {
+        Budget {
+            evaluations: MOST_EVALUATIONS,
+            interrupt: self.question.interrupt,
+        }
+    }
+
     fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
         Walk {
+            // Corners and slow motions have long series of harmonics, and ends of their own.
+            resolved: self.question.harmonics.is_none() && self.driven.smooth && !self.driven.self_excited,
             ordinary: size_of(seeds),
             range: self.question.range,
             longest: LONGEST_STEP,
@@ -704,9 +601,13 @@ impl<'a> Asked<'a> {
         let mut changes = Vec::new();
         while let Some(path) = paths.get(all_judged.len()).cloned() {
             let branch = all_judged.len();
+            let points: usize = paths.iter().map(|path| path.nodes.len()).sum();
+            let before: usize = all_judged.iter().map(Vec::len).sum();
+            self.question.progress.begin(points - before);
             let judged: Vec<Judged> = path
                 .nodes
                 .iter()
+                .inspect(|_| self.question.progress.advance())
                 .map(|node| self.judged_in_time(balance, node))
                 .collect();
             for (pair, known) in path.nodes.windows(2).zip(judged.windows(2)) {

@@ -5,8 +5,8 @@ use nalgebra::DVector;
 use super::backbone::places_of_rest;
 use super::balance::Balance;
 use super::continuation::Path;
-use super::stability::{half_of_peak_to_peak, settle};
-use super::{Asked, Elsewhere, MOST_EVALUATIONS, ResponseError};
+use super::stability::{Budget, half_of_peak_to_peak, settle};
+use super::{Asked, Elsewhere, ResponseError};
 
 /// A motion to begin with.
 #[derive(Clone, Debug)]
@@ -40,10 +40,13 @@ impl Asked<'_> {
         let values: Vec<f64> = (0..VALUES).map(|index| low + (high - low) * part(index)).collect();
         let mut seeds = Vec::new();
         let mut elsewhere = Vec::new();
-        let mut budget = MOST_EVALUATIONS;
+        let mut budget = self.budget();
+        let rings = if self.driven.undamped { 0 } else { 4 * RINGS.len() };
+        self.question.progress.begin(values.len() * (1 + rings));
         let mut size = 0.0_f64;
         for parameter in &values {
             self.count([1, 0], seeds.len());
+            self.question.progress.advance();
             let mut places = places_of_rest(&self.driven, *parameter, size.max(1.0));
             // Between two wells there is a motion as well, though it does not last.
             if !places.contains(&0.0) {
@@ -79,6 +82,7 @@ impl Asked<'_> {
                     if self.question.interrupt.is_requested() {
                         return Ok((seeds, elsewhere));
                     }
+                    self.question.progress.advance();
                     let (sine, cosine) = (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
                     let start = [radius * size * cosine, -radius * size * omega * sine];
                     elsewhere.extend(self.settled(start, *parameter, &mut seeds, &mut budget));
@@ -119,7 +123,13 @@ impl Asked<'_> {
     }
 
     /// Adds where a simulation settles, or says that it does not repeat itself.
-    fn settled(&self, start: [f64; 2], parameter: f64, seeds: &mut Vec<Seed>, budget: &mut usize) -> Option<Elsewhere> {
+    fn settled(
+        &self,
+        start: [f64; 2],
+        parameter: f64,
+        seeds: &mut Vec<Seed>,
+        budget: &mut Budget,
+    ) -> Option<Elsewhere> {
         const PERIODS: usize = 250;
         const CLOSELY: f64 = 1e-4;
         if self.driven.undamped || self.question.interrupt.is_requested() {

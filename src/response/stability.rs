@@ -14,6 +14,7 @@ use num_complex::Complex;
 
 use super::driven::Driven;
 use super::jump::{Course, Until, follow};
+use crate::interrupt::Interrupt;
 use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
@@ -213,6 +214,23 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
     0.5 * (top(1.0) + top(-1.0))
 }
 
+/// What several simulations share: evaluations of the force that they may take, and who may ask them to end.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// Evaluations that are left.
+    pub evaluations: usize,
+    /// Looked at after every period.
+    pub interrupt: Interrupt,
+}
+
+impl Budget {
+    /// Takes what a period has cost; whether there may be another one.
+    pub(super) fn spend(&mut self, evaluations: usize) -> bool {
+        self.evaluations = self.evaluations.saturating_sub(evaluations);
+        self.evaluations > 0 && !self.interrupt.is_requested()
+    }
+}
+
 /// Where a simulation has come to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
@@ -255,14 +273,14 @@ impl Period {
 }
 
 /// Follows the equation as it was given from a start, period by period, until it repeats itself to `closely` (of its size), or
-/// `most` periods are over; the tolerance of a step is a thousandth of that. Nothing where it cannot be followed: it escapes, or there
-/// are no evaluations of the force left in the `budget` that several simulations share.
+/// `most` periods are over; the tolerance of a step is a thousandth of that. Nothing where it cannot be followed: it escapes, or the
+/// `budget` is spent.
 pub fn settle(
     driven: &Driven,
     start: [f64; 2],
     parameter: f64,
     (most, closely): (usize, f64),
-    budget: &mut usize,
+    budget: &mut Budget,
 ) -> Option<Settled> {
     /// Periods in which a repetition is looked for.
     const LONGEST: usize = 8;
@@ -287,8 +305,7 @@ pub fn settle(
             }
         };
         let end = path.end()?;
-        *budget = budget.saturating_sub(path.evaluations());
-        if size > BOUND || *budget == 0 {
+        if !budget.spend(path.evaluations()) || size > BOUND {
             return None;
         }
         let moved = (end[0] - begin[0]).hypot((end[1] - begin[1]) / omega);

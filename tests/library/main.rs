@@ -3,6 +3,7 @@
 mod averaging;
 mod conformance;
 mod contact;
+mod default_method;
 mod equilibria;
 mod exact_numbers;
 mod expr_properties;
@@ -34,6 +35,7 @@ mod section;
 mod self_excited;
 mod series_properties;
 mod simulate;
+mod spurious;
 mod starts;
 mod steps;
 mod system;

@@ -568,3 +568,28 @@ fn forces_that_jump_on_no_line_are_refused() {
     assert!(ask("x'^2*sgn(x')/20").is_ok_and(|found| !found.by_map));
     assert!(ask("(sgn(x') + sgn(x' - 1))/20").is_ok_and(|found| found.by_map && found.unjudged == 0));
 }
+
+/// A pendulum that has gone over the top swings as before, a turn away: that is no other branch. Without the turns there are two ways to
+/// swing below the jump, the small and the large, on branches that do not meet above.
+#[test]
+fn a_turn_of_a_pendulum_away_is_the_same_branch() {
+    let found = response(
+        "x'' + x'/10 + sin(x) - F*cos(Omega*t) = 0",
+        "Omega",
+        [0.5, 1.5],
+        "F = 1/5",
+    );
+    let starts: Vec<[f64; 2]> = found
+        .branches
+        .iter()
+        .filter_map(|branch| branch.points.first())
+        .map(|point| [point.parameter, point.peak])
+        .collect();
+    for (index, one) in starts.iter().enumerate() {
+        let again = starts[..index]
+            .iter()
+            .any(|other| (one[0] - other[0]).abs() < 1e-9 && (one[1] - other[1]).abs() < 1e-4);
+        assert!(!again, "{starts:?}");
+    }
+    assert!((2..=4).contains(&found.branches.len()), "{starts:?}");
+}

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::{Constant, Map};
+use super::number::{Constant, Map, is_nothing};
 use crate::report::motion_frequency;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::slow::SlowResponse;
@@ -107,6 +107,10 @@ pub struct SlowDocument {
     pub largest_error: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
+    /// Steady motions of the truncated slow equations that are left out, at all values of the parameter together: they tend to none of
+    /// the leading order as what is small goes to zero. Left out where there are none.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub spurious: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
     pub verdict: String,
@@ -154,6 +158,7 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
             .collect(),
         largest_error: slow.error,
         missing: slow.missing,
+        spurious: slow.spurious.map_or(0, |spurious| spurious.count),
         verdict: slow.verdict.name().to_owned(),
     }
 }

@@ -1,0 +1,39 @@
+//! A bar on standard error for long work, where that is a terminal.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lindstedt::Counter;
+
+/// How far the work has come.
+pub(super) static PROGRESS: Counter = Counter::new();
+
+/// Does long work with a bar, `40 % of the calculation`.
+pub(super) fn with_progress<T>(of_what: &str, work: impl FnOnce() -> T) -> T {
+    /// Work that is done before this needs no bar.
+    const SOON: Duration = Duration::from_millis(500);
+    const EVERY: Duration = Duration::from_millis(100);
+    let (done, waits) = channel::<()>();
+    let template = format!("{{bar:40}} {{percent}} % {of_what}, {{eta}} left");
+    let watcher = std::thread::spawn(move || {
+        let is_done = |wait: Duration| waits.recv_timeout(wait) != Err(RecvTimeoutError::Timeout);
+        if is_done(SOON) {
+            return;
+        }
+        let bar = ProgressBar::new(0);
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        while !is_done(EVERY) {
+            let (position, length) = PROGRESS.read();
+            bar.set_length(length);
+            bar.set_position(position);
+        }
+        bar.finish_and_clear();
+    });
+    let result = work();
+    drop(done);
+    let _ = watcher.join();
+    result
+}

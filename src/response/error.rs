@@ -1,0 +1,137 @@
+//! Why there is no response.
+
+use thiserror::Error;
+
+use crate::decimal::decimal;
+use crate::expr::{EvaluationError, ExprError};
+use crate::oscillator::OscillatorError;
+use crate::symbol::Symbol;
+
+/// Why there is no response.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ResponseError {
+    /// Time does not occur, and nothing feeds or damps the motion.
+    #[error("there is no drive: time `t` does not occur in the equation")]
+    NoDrive,
+    /// Time does not occur, and nothing excites the motion either.
+    #[error("there is no drive, and no limit cycle was found for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
+    NoCycle {
+        /// The parameter.
+        parameter: Symbol,
+        /// Its range.
+        range: [f64; 2],
+    },
+    /// Periods of a drive that there is not.
+    #[error("there is no drive of which a motion could take {0} periods: time `t` does not occur in the equation")]
+    NoPeriods(usize),
+    /// Time enters in a way that does not repeat.
+    #[error("the term `{0}` is not periodic in time")]
+    NotPeriodic(String),
+    /// A force that jumps with the velocity, but along no line of places and velocities.
+    #[error(
+        "the term `{0}` jumps with the velocity, and not on a line of places and velocities that is the same at every time"
+    )]
+    Jump(String),
+    /// Two frequencies without a common period for every value of the parameter.
+    #[error("the frequencies `{}` and `{}` are no whole multiples of one frequency", .0[0], .0[1])]
+    TwoFrequencies([String; 2]),
+    /// The frequency of the drive is not positive in all of the range.
+    #[error("the frequency `{frequency}` of the drive is {} at {parameter} = {}: it must be positive", decimal(*.value), decimal(*.at))]
+    Frequency {
+        /// The frequency.
+        frequency: String,
+        /// Its value.
+        value: f64,
+        /// The parameter.
+        parameter: Symbol,
+        /// Where.
+        at: f64,
+    },
+    /// The parameter to vary is none of the equation.
+    #[error("there is no parameter `{name}` in the equation: its parameters are {}", list(.known))]
+    NoParameter {
+        /// The name.
+        name: Symbol,
+        /// Those that there are.
+        known: Vec<Symbol>,
+    },
+    /// The parameter that varies has a value.
+    #[error("`{0}` varies and is given a value as well")]
+    Given(Symbol),
+    /// A value for a name that does not occur.
+    #[error("there is a value for `{0}`, which does not occur in the equation")]
+    Unknown(Symbol),
+    /// Parameters without a value.
+    #[error("no value for {}", list(.0))]
+    Missing(Vec<Symbol>),
+    /// A range that is none.
+    #[error("the range of `{0}` must go from a finite number to a larger one")]
+    Range(Symbol),
+    /// A count beyond what can be kept.
+    #[error("{what} must lie between 1 and {most}, not {given}")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// What was given.
+        given: usize,
+        /// The most.
+        most: usize,
+    },
+    /// Motions to begin with, and no branch of them.
+    #[error("motions were found, but none of them could be followed for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
+    NotFollowed {
+        /// The parameter.
+        parameter: Symbol,
+        /// Its range.
+        range: [f64; 2],
+    },
+    /// No periodic motion was found to begin with.
+    #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), if *undamped { ": without damping the amplitude is unbounded at resonance" } else { "" })]
+    NoMotion {
+        /// The parameter.
+        parameter: Symbol,
+        /// Its value.
+        at: f64,
+        /// Whether nothing damps the motion.
+        undamped: bool,
+    },
+    /// Somebody asked it to end before there was anything.
+    #[error(
+        "interrupted before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
+        .tried.starts,
+        .tried.values,
+        .tried.motions
+    )]
+    Interrupted {
+        /// The parameter.
+        parameter: Symbol,
+        /// What was done until then.
+        tried: Tried,
+    },
+    /// The equation has no such values.
+    #[error(transparent)]
+    Oscillator(#[from] OscillatorError),
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// A name that stands for nothing.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+}
+
+/// The search for motions to begin with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tried {
+    /// Values of the parameter.
+    pub values: usize,
+    /// Starts of simulations at them.
+    pub starts: usize,
+    /// Motions that they led to.
+    pub motions: usize,
+}
+
+fn list(symbols: &[Symbol]) -> String {
+    let names: Vec<String> = symbols.iter().map(|symbol| format!("`{symbol}`")).collect();
+    names.join(", ")
+}

@@ -9,6 +9,7 @@
 mod advice;
 mod branch;
 pub mod convergence;
+mod degrees;
 pub mod law;
 mod method;
 pub mod modulation;
@@ -26,6 +27,7 @@ use num_traits::{One, Signed};
 pub use advice::{Advice, Setting};
 pub use branch::Branch;
 pub use convergence::Convergence;
+pub use degrees::Degrees;
 use law::Shown;
 pub use law::{ClosedForm, Law, Root, System};
 pub use method::{Counts, Method};
@@ -175,8 +177,8 @@ pub struct Solution {
     pub method: Method,
     /// Highest power kept, inclusive, of the small parameter.
     pub order: u32,
-    /// Degrees of numerator and denominator of a Pade approximant.
-    pub degrees: Option<(u32, u32)>,
+    /// The degrees of an approximant.
+    pub degrees: Option<Degrees>,
     /// The parameter in which the expansion runs; the amplitude symbol where it runs in the amplitude.
     pub small_parameter: Symbol,
     /// What the amplitude symbol measures.
@@ -375,10 +377,7 @@ impl Solution {
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method.counts() {
-            Counts::Degrees => {
-                let (numerator, denominator) = self.degrees.unwrap_or((order, 0));
-                format!("[{numerator}/{denominator}]")
-            }
+            Counts::Degrees => self.degrees.unwrap_or(Degrees::Quotient(order, 0)).to_string(),
             Counts::Powers => {
                 let names: Vec<&str> = self.small_parameters().map(|symbol| symbol.name()).collect();
                 format!("to order {order} in {}", names.join(" and "))

@@ -8,7 +8,7 @@ use crate::expr::Expr;
 use crate::impact::Rule;
 use crate::method::Options;
 use crate::oscillator::Oscillator;
-use crate::solution::{AmplitudeConvention, Method};
+use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::Symbol;
 
 /// One claim of a publication.
@@ -197,7 +197,7 @@ pub enum Supposition {
     /// Another order.
     Order(u32),
     /// Degrees of an approximant.
-    Degrees(u32, u32),
+    Degrees(Degrees),
     /// Another degree of the Taylor polynomial of the force.
     Taylor(u32),
     /// Another meaning of the amplitude.
@@ -219,7 +219,7 @@ impl fmt::Display for Supposition {
             Self::Rounding(Rounding::Either) => formatter.write_str("digits rounded or cut off"),
             Self::Method(method) => write!(formatter, "method {}", method.name()),
             Self::Order(order) => write!(formatter, "order {order}"),
-            Self::Degrees(above, below) => write!(formatter, "degrees {above},{below}"),
+            Self::Degrees(degrees) => write!(formatter, "degrees {}", degrees.separated()),
             Self::Taylor(degree) => write!(formatter, "Taylor degree {degree}"),
             Self::Amplitude(convention) => write!(formatter, "amplitude {}", convention.name()),
             Self::Rule(rule) => write!(formatter, "line by {rule}"),
@@ -258,7 +258,7 @@ impl Question {
                 Supposition::Rounding(rounding) => question.rounding = *rounding,
                 Supposition::Method(method) => question.options.method = Some(*method),
                 Supposition::Order(order) => question.options.order = Some(*order),
-                Supposition::Degrees(above, below) => question.options.pade = Some((*above, *below)),
+                Supposition::Degrees(degrees) => question.options.degrees = Some(*degrees),
                 Supposition::Taylor(degree) => question.options.taylor = Some(*degree),
                 Supposition::Amplitude(convention) => question.options.amplitude = Some(*convention),
                 Supposition::Rule(rule) => question.rule = *rule,

@@ -534,15 +534,11 @@ fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> Found<Option<U
 }
 
 fn options_of(section: &Section) -> Found<Options> {
-    let (order, pade) = match section.order.as_ref().map(Spanned::get_ref) {
-        None => (None, None),
-        Some(Order::Power(order)) => (Some(*order), None),
-        Some(Order::Degrees([above, below])) => (None, Some((*above, *below))),
-    };
+    let order = section.order.as_ref().map(|order| *order.get_ref());
     Ok(Options {
         method: section.method.as_ref().map(method).transpose()?,
-        order,
-        pade,
+        order: order.and_then(Order::power),
+        degrees: order.and_then(Order::degrees),
         amplitude: section.amplitude.as_ref().map(convention).transpose()?,
         small: section.small.as_ref().map(|text| text.get_ref().clone()),
         taylor: section.taylor.as_ref().map(|degree| *degree.get_ref()),
@@ -556,7 +552,7 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
     };
     let order = |order: &Order| match *order {
         Order::Power(order) => Supposition::Order(order),
-        Order::Degrees([above, below]) => Supposition::Degrees(above, below),
+        Order::Degrees(degrees) => Supposition::Degrees(degrees),
     };
     let pi = |value: &Spanned<toml::Value>| -> Found<Supposition> {
         let found = number(value.get_ref(), value.span())?;

@@ -10,8 +10,8 @@ use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal};
-use lindstedt::problem::{self, Formula, Problem, Reader};
-use lindstedt::solution::{AmplitudeConvention, Method, Note, Solution};
+use lindstedt::problem::{Formula, Order, Problem, Reader};
+use lindstedt::solution::{AmplitudeConvention, Degrees, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
@@ -29,7 +29,7 @@ pub struct Arguments {
     #[arg(long)]
     method: Option<String>,
     /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, value_parser = order, allow_hyphen_values = true)]
     order: Option<Order>,
     /// What the amplitude measures
     #[arg(long, value_parser = convention())]
@@ -87,36 +87,20 @@ fn ratio(text: &str) -> Result<(u32, u32), String> {
 }
 
 /// What stands after `--order`.
-#[derive(Clone, Copy)]
-enum Order {
-    Power(u32),
-    /// `2,1`: numerator and denominator.
-    Degrees(u32, u32),
-}
-
-impl From<problem::Order> for Order {
-    fn from(order: problem::Order) -> Self {
-        match order {
-            problem::Order::Power(order) => Self::Power(order),
-            problem::Order::Degrees([numerator, denominator]) => Self::Degrees(numerator, denominator),
-        }
-    }
-}
-
-impl std::str::FromStr for Order {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| {
-            let text = text.trim();
-            text.parse().map_err(|_| match text.starts_with('-') {
-                true => format!("`{text}` is negative; an order is a whole number such as 2"),
-                false => format!("`{text}` is no whole number"),
-            })
-        };
-        match text.split_once(',') {
-            None => number(text).map(Self::Power),
-            Some((numerator, denominator)) => Ok(Self::Degrees(number(numerator)?, number(denominator)?)),
+fn order(text: &str) -> Result<Order, String> {
+    let number = |text: &str| {
+        let text = text.trim();
+        text.parse().map_err(|_| match text.starts_with('-') {
+            true => format!("`{text}` is negative; an order is a whole number such as 2"),
+            false => format!("`{text}` is no whole number"),
+        })
+    };
+    let numbers: Vec<u32> = text.split(',').map(number).collect::<Result<_, String>>()?;
+    match *numbers.as_slice() {
+        [order] => Ok(Order::Power(order)),
+        _ => {
+            let degrees = Degrees::of(&numbers).map(Order::Degrees);
+            degrees.ok_or_else(|| "expected a whole number, or the degrees of an approximant".to_owned())
         }
     }
 }
@@ -355,7 +339,7 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
     if arguments.omega_only && !entry.takes(Choice::FrequencyAlone) {
         return without("--omega-only", &that_take(Choice::FrequencyAlone));
     }
-    let (order, pade) = match arguments.order.or(formula.order.map(Order::from)) {
+    let (order, degrees) = match arguments.order.or(formula.order) {
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
             return without("--order, or `order` in the file,", "the methods that approximate");
         }
@@ -365,7 +349,7 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
                 that_take(Choice::Degrees)
             ));
         }
-        Some(Order::Degrees(numerator, denominator)) => (None, Some((numerator, denominator))),
+        Some(Order::Degrees(degrees)) => (None, Some(degrees)),
         Some(Order::Power(_)) if entry.takes(Choice::Degrees) => {
             return usage(format!("--method {} takes two degrees: --order 2,1", chosen.name()));
         }
@@ -390,7 +374,7 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
         amplitude,
         small,
         taylor: arguments.taylor,
-        pade,
+        degrees,
         hbar,
         cycle: arguments.cycle,
         resonance: arguments.resonance,

@@ -157,7 +157,7 @@ fn in_flags(advice: &Advice) -> String {
     advice.spelt(|setting| match setting {
         Setting::Method(method) => format!("--method {}", method.name()),
         Setting::Order(order) => format!("--order {order}"),
-        Setting::Degrees(above, below) => format!("--order {above},{below}"),
+        Setting::Degrees(degrees) => format!("--order {}", degrees.separated()),
         Setting::Amplitude(convention) => format!("--amplitude {}", convention.name()),
         Setting::Small(name) => format!("--small {name}"),
         Setting::Taylor => "--taylor DEGREE".to_owned(),

@@ -8,7 +8,7 @@ use super::judge::TrueImpact;
 use super::phases::ThreePhases;
 use super::setup::{Letters, Setup};
 use super::trial::{ImpactError, Trial, worst};
-use crate::solution::Method;
+use crate::solution::{Degrees, Method};
 use crate::verify::Verdict;
 
 /// A table of methods.
@@ -72,7 +72,7 @@ pub struct ImpactRow {
     /// The order of the law, where it has one.
     pub order: Option<u32>,
     /// The degrees of an approximant.
-    pub degrees: Option<(u32, u32)>,
+    pub degrees: Option<Degrees>,
     /// The closed forms.
     pub phases: ThreePhases,
     /// The relative errors of time to contact, speed, penetration, duration and period.
@@ -87,7 +87,7 @@ impl ImpactRow {
     pub fn title(&self) -> String {
         let title = self.method.title();
         match (self.degrees, self.order) {
-            (Some((numerator, denominator)), _) => format!("{title} [{numerator}/{denominator}]"),
+            (Some(degrees), _) => format!("{title} {degrees}"),
             (None, Some(order)) => format!("{title}, order {order}"),
             (None, None) => title.to_owned(),
         }

@@ -20,7 +20,7 @@ use crate::equilibrium::{centred, with_numbers_where_needed};
 use crate::exact::rational::ratio;
 use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function};
 use crate::oscillator::{Oscillator, OscillatorError};
-use crate::solution::{AmplitudeConvention, Method};
+use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
 use crate::verify::DEFAULT_TOLERANCE;
@@ -54,8 +54,8 @@ pub struct Setup {
     pub method: Option<Method>,
     /// Order of the law; without it 2 for the paper's reading, and for the derived column the lowest that passes.
     pub order: Option<u32>,
-    /// Degrees of numerator and denominator, for a Pade approximant.
-    pub degrees: Option<(u32, u32)>,
+    /// The degrees of an approximant.
+    pub degrees: Option<Degrees>,
     /// What the amplitude of the derived law measures.
     pub amplitude_convention: Option<AmplitudeConvention>,
     /// How the line is fitted in the paper's reading.

@@ -15,7 +15,7 @@ use super::setup::{ContactLoss, Equations, Setup, SetupError};
 use crate::method::table::{Choice, Entry};
 use crate::method::{self, Refusal};
 use crate::numeric::ode::Options;
-use crate::solution::{Method, Solution};
+use crate::solution::{Degrees, Method, Solution};
 
 /// A method that was tried for the derived column.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct Attempt {
     /// Its order, where it was given one.
     pub order: Option<u32>,
     /// Its degrees, where it was given some.
-    pub degrees: Option<(u32, u32)>,
+    pub degrees: Option<Degrees>,
     /// The largest error, relative; of the five numbers alone where one of them is beyond the tolerance already. Where the contact is
     /// not the exact one, that of the approach. Or why there is none.
     pub error: Result<f64, String>,
@@ -101,8 +101,8 @@ pub(super) struct Derived {
     error: f64,
 }
 
-/// What a method is asked for: an order, or two degrees.
-type Rung = (Option<u32>, Option<(u32, u32)>);
+/// What a method is asked for: an order, or degrees.
+type Rung = (Option<u32>, Option<Degrees>);
 
 /// The highest order of a method that is tried where none is asked for: expansions and balances go on for long, the others become
 /// slow, and a third pass of iteration perturbation may take minutes.
@@ -209,9 +209,9 @@ impl Trial<'_> {
         let setup = self.setup;
         let takes = |choice| Entry::of(method).takes(choice);
         let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
-            (None, None) if takes(Choice::Degrees) => {
-                (1..=highest_order(method)).map(|n| (None, Some((n, n)))).collect()
-            }
+            (None, None) if takes(Choice::Degrees) => (1..=highest_order(method))
+                .map(|n| (None, Some(Degrees::Quotient(n, n))))
+                .collect(),
             (None, None) if takes(Choice::Order) => {
                 (1..=highest_order(method)).map(|order| (Some(order), None)).collect()
             }
@@ -224,7 +224,7 @@ impl Trial<'_> {
             let options = method::Options {
                 method: Some(method),
                 order,
-                pade: degrees,
+                degrees,
                 amplitude: setup.amplitude_convention,
                 ..Default::default()
             };

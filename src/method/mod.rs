@@ -65,7 +65,7 @@ use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
-use crate::solution::{Advice, AmplitudeConvention, Method, Note, Setting, Solution, note::Position};
+use crate::solution::{Advice, AmplitudeConvention, Degrees, Method, Note, Setting, Solution, note::Position};
 use crate::symbol::{Symbol, fresh};
 
 /// The highest order any method accepts.
@@ -87,8 +87,8 @@ pub struct Options {
     pub small: Option<String>,
     /// Degree of the Taylor polynomial by which homotopy methods replace the force.
     pub taylor: Option<u32>,
-    /// Degrees of numerator and denominator of a Pade approximant.
-    pub pade: Option<(u32, u32)>,
+    /// The degrees of an approximant.
+    pub degrees: Option<Degrees>,
     /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for where it is not given.
     pub hbar: Option<Expr>,
     /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the smallest that attracts.
@@ -166,13 +166,13 @@ pub enum Refusal {
         /// The limit.
         terms: usize,
     },
-    /// Degrees of a Pade approximant for which no approximant exists.
-    #[error("no Pade approximant of degrees [{numerator}/{denominator}]: {reason}")]
-    Pade {
-        /// Degree of the numerator.
-        numerator: u32,
-        /// Degree of the denominator.
-        denominator: u32,
+    /// Degrees for which no approximant exists.
+    #[error("no {} of degrees {degrees}: {reason}", method.title())]
+    Approximant {
+        /// The kind of approximant.
+        method: Method,
+        /// The degrees asked for.
+        degrees: Degrees,
         /// Why.
         reason: &'static str,
     },
@@ -501,7 +501,9 @@ impl Refusal {
             Self::Unbounded { .. } | Self::NoSlope { .. } => {
                 Advice::words("try ").choose(Setting::Method(Method::Hamiltonian))
             }
-            Self::Pade { .. } => Advice::words("try other degrees, such as ").choose(Setting::Degrees(1, 1)),
+            Self::Approximant { .. } => {
+                Advice::words("try other degrees, such as ").choose(Setting::Degrees(Degrees::Quotient(1, 1)))
+            }
             Self::AmplitudeNotFree { .. } => {
                 let small = Setting::Small(AmplitudeConvention::Initial.symbol());
                 Advice::words("limit cycles start from x'' + omega0^2*x with all other terms small: do not ask for `")
@@ -657,7 +659,7 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
 fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), Refusal> {
     let given = [
         (Choice::Order, options.order.is_some()),
-        (Choice::Degrees, options.pade.is_some()),
+        (Choice::Degrees, options.degrees.is_some()),
         (Choice::Taylor, options.taylor.is_some()),
         (Choice::Hbar, options.hbar.is_some()),
         (Choice::Cycle, options.cycle.is_some()),

@@ -13,9 +13,9 @@
 //! [modulo many primes](crate::series::hermite_pade::by_primes), from the frequency alone.
 //!
 //! ```
-//! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::{Degrees, Method}};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
-//! let options = Options { method: Some(Method::Pade), pade: Some((1, 1)), ..Options::default() };
+//! let options = Options { method: Some(Method::Pade), degrees: Some(Degrees::Quotient(1, 1)), ..Options::default() };
 //! assert_eq!(solve(&pendulum, &options)?.law.closed_form().unwrap().to_string(), "omega^2 = (192 - 17*A^2)/(192 + 7*A^2)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -25,27 +25,23 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
-use super::power_series::{PowerSeries, scaled};
-use super::{Options, Refusal, Unsuited, lindstedt_poincare};
+use super::power_series::{CONSTANT, PowerSeries, Resummed, STOPPED, TOO_LONG, has_values, scaled};
+use super::{Options, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::exact::big_float::BigFloat;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
-use crate::exact::{Integer, POLYNOMIALS, Polynomial, Polynomials, Rational};
+use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::Expr;
-use crate::oscillator::{Oscillator, SmallParameter};
-use crate::series::FourierSeries;
+use crate::oscillator::Oscillator;
 use crate::series::hermite_pade::by_primes::exact;
-use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::Poles};
+use crate::solution::{Degrees, Method, Note, Solution, note::Poles};
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::Pade;
 
 /// The largest degree, of numerator and denominator.
 const LARGEST_DEGREE: u32 = 60;
-
-/// Beyond this sum of the degrees the series is derived without its motion, of which the first correction is all that is used.
-const LONG: u32 = 24;
 
 /// Beyond this degree of the denominator fractions are long, and primes faster.
 const LARGEST_BY_FRACTIONS: usize = 12;
@@ -59,79 +55,39 @@ const LARGEST_WITH_SYMBOLS: usize = 9;
 /// # Errors
 /// As for the method of Lindstedt and Poincare; degrees without an approximant.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    let (numerator_degree, denominator_degree) = options.pade.unwrap_or((2, 1));
-    let refused = |reason| Refusal::Pade {
-        numerator: numerator_degree,
-        denominator: denominator_degree,
+    let degrees = options.degrees.unwrap_or(Degrees::Quotient(2, 1));
+    let refused = |reason| Refusal::Approximant {
+        method: METHOD,
+        degrees,
         reason,
     };
+    let Degrees::Quotient(numerator_degree, denominator_degree) = degrees;
     if numerator_degree > LARGEST_DEGREE || denominator_degree > LARGEST_DEGREE {
         return Err(refused("degrees go up to [60/60]"));
     }
-    if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Unsuited::Convention.to(METHOD));
-    }
     let order = numerator_degree + denominator_degree;
-    let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
-    let series_to = |highest: u32, frequency_alone: bool| {
-        let options = Options {
-            order: Some(highest),
-            frequency_alone,
-            ..options.clone()
-        };
-        lindstedt_poincare::solve(oscillator, &options)
-    };
-    let long = order > LONG;
-    let mut solution = series_to(if in_amplitude { 2 * order } else { order }, long)?;
-    // The frequency of a limit cycle is mostly the same for both signs of what is small.
-    let of_cycle = solution.limit_cycle.is_some() && order > 0;
-    if of_cycle {
-        let further = series_to(2 * order, long)?;
-        if PowerSeries::of(&further, true).step == 2 {
-            solution = further;
-        }
-    }
-    let series = PowerSeries::of(&solution, in_amplitude || of_cycle);
-    if long {
-        let first = series_to(u32::try_from(series.step).unwrap_or(1), false)?;
-        (solution.displacement, solution.limit_cycle) = (first.displacement, first.limit_cycle);
-    }
-    let quotient = quotient(&series, (numerator_degree, denominator_degree)).map_err(refused)?;
+    let resummed = Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+    let series = &resummed.series;
+    let quotient = quotient(series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);
     let value = Expr::divide(&Expr::from(&series.with_powers(&quotient.above)), &Expr::from(&below))?;
     if !has_values(&value) {
-        return Err(refused("its coefficients are too long for a value in double precision"));
+        return Err(refused(TOO_LONG));
     }
-    solution.method = METHOD;
-    solution.order = order;
-    solution.degrees = Some((numerator_degree, denominator_degree));
-    solution.law = Law::Closed(ClosedForm { squared: true, value });
-    solution.steps = vec![];
-    solution.displacement = first_correction(&solution.displacement, series.small, series.step);
-    let harmonics = solution.displacement.harmonics();
-    let motion = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
-    let mut used = &solution.equilibrium.symbols() | &series.law.symbols();
-    used.extend(motion.flat_map(Polynomial::symbols));
-    solution.definitions = solution.definitions_behind(used).into_iter().cloned().collect();
-    solution.validity = vec![
-        Note::AgreesThrough {
-            degrees: (numerator_degree, denominator_degree),
-            small: series.small,
-            step: series.step as u32,
-            order,
-        },
+    let notes = vec![
+        resummed.agreement(degrees),
         Note::Poles(poles(&below)),
         Note::MotionOfSeries,
     ];
-    let letters = ["p", "q"].map(|letter| fresh_stem(letter, &solution.names()));
-    solution.derivation = match long {
+    let letters = ["p", "q"].map(|letter| fresh_stem(letter, &resummed.names()));
+    let derivation = match resummed.long {
         // Equations by the dozen, with coefficients of thousands of digits.
         true => vec![Line::words(format!(
             "the {denominator_degree} linear equations for the denominator are solved modulo many primes, and put together"
         ))],
-        false => linear_system(&series, &quotient, &letters),
+        false => linear_system(series, &quotient, &letters),
     };
-    Ok(solution)
+    Ok(resummed.answer(degrees, (value, vec![]), (notes, derivation)))
 }
 
 /// The coefficients of numerator and denominator.
@@ -198,7 +154,6 @@ fn by_primes(
 
 /// Why there is no quotient.
 const SINGULAR: &str = "the equations for its denominator are singular";
-const CONSTANT: &str = "omega^2 does not depend on the amplitude";
 
 /// The equations for the denominator and then for the numerator, with the coefficients of this series in them.
 fn linear_system(series: &PowerSeries, Quotient { above, below }: &Quotient, [p, q]: &[String; 2]) -> Vec<Line> {
@@ -249,15 +204,6 @@ fn linear_system(series: &PowerSeries, Quotient { above, below }: &Quotient, [p,
         lines.push(Line::equal(equal).because(words));
     }
     lines
-}
-
-/// Whether the quotient can be evaluated in double precision, where its whole numbers do not overflow.
-fn has_values(value: &Expr) -> bool {
-    let at = |place: f64| value.symbols().into_iter().map(|symbol| (symbol, place)).collect();
-    // One of the places may be a pole.
-    [1.0, 0.5]
-        .iter()
-        .any(|place| value.evaluate(&at(*place)).is_ok_and(f64::is_finite))
 }
 
 /// `q_0, ..., q_m`, the first of them one where it is a single term; or why there are none.
@@ -362,14 +308,6 @@ fn normalise(coefficients: &mut [Polynomial], first: &Polynomial) {
     }
 }
 
-/// The motion up to the first power of the expansion variable beyond the leading term.
-fn first_correction(motion: &FourierSeries<Polynomials>, small: Symbol, step: i32) -> FourierSeries<Polynomials> {
-    let leading = if small == Symbol::new("A") { 1 } else { 0 };
-    motion.map(POLYNOMIALS, |coefficient, _| {
-        coefficient.truncated(small, leading + step)
-    })
-}
-
 /// The real zeros of the denominator, where it depends on one combination of symbols alone.
 fn poles(below: &Polynomial) -> Poles {
     let Some((unit, exact)) = in_one_variable(below) else {
@@ -457,7 +395,7 @@ mod tests {
     fn approximant(equation: &str, degrees: (u32, u32)) -> Result<Expr, Refusal> {
         let options = Options {
             method: Some(METHOD),
-            pade: Some(degrees),
+            degrees: Some(Degrees::Quotient(degrees.0, degrees.1)),
             ..Options::default()
         };
         let solution = solve(&Oscillator::parse(equation).unwrap(), &options)?;

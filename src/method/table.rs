@@ -9,7 +9,7 @@ use super::{
 };
 use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Solution};
+use crate::solution::{Degrees, Method, Solution};
 
 /// A row of [`METHODS`].
 pub struct Entry {
@@ -67,7 +67,7 @@ const OF_THE_SHARED_INTEGRAL: Entry = Entry {
 pub enum Choice {
     /// An order: a power of the small parameter, a number of harmonics or of passes.
     Order,
-    /// Two degrees, of numerator and denominator.
+    /// The degrees of an approximant.
     Degrees,
     /// The degree of a Taylor polynomial in place of the force.
     Taylor,
@@ -211,8 +211,8 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         takes: &[Choice::Degrees, Choice::Cycle],
         sees: Sees::Derivatives,
         rounded_degree: |options, _| {
-            let (numerator, denominator) = options.pade.unwrap_or((2, 1));
-            Some(beyond_twice(numerator.saturating_add(denominator)))
+            let sum = options.degrees.map_or(3, Degrees::sum);
+            Some(beyond_twice(sum))
         },
         definition: None,
         signed: true,

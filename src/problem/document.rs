@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
 use crate::impact::hertz::Design;
 use crate::impact::{ContactDamping, DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
+use crate::solution::Degrees;
 
 /// A problem file as it was written.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -65,14 +67,38 @@ pub struct Problem {
     pub overriding: Vec<String>,
 }
 
-/// A whole number, or the two degrees of a Pade approximant: `order = 4`, `order = [2, 1]`.
+/// A whole number, or the degrees of an approximant: `order = 4`, `order = [2, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(untagged, expecting = "expected a whole number, or two: [numerator, denominator]")]
 pub enum Order {
     /// The highest power kept, or what the method counts.
     Power(u32),
-    /// Degrees of numerator and denominator.
-    Degrees([u32; 2]),
+    /// The degrees of an approximant.
+    Degrees(#[serde(deserialize_with = "degrees")] Degrees),
+}
+
+impl Order {
+    /// The whole number, where it is one.
+    pub fn power(self) -> Option<u32> {
+        match self {
+            Self::Power(order) => Some(order),
+            Self::Degrees(_) => None,
+        }
+    }
+
+    /// The degrees, where it is some.
+    pub fn degrees(self) -> Option<Degrees> {
+        match self {
+            Self::Power(_) => None,
+            Self::Degrees(degrees) => Some(degrees),
+        }
+    }
+}
+
+fn degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Degrees, D::Error> {
+    let list = Vec::<u32>::deserialize(deserializer)?;
+    // What an order is is said by the type.
+    Degrees::of(&list).ok_or_else(|| D::Error::custom("no degrees"))
 }
 
 /// `[pendulum]`: released from rest at `x = -amplitude`.

@@ -210,11 +210,6 @@ impl TryFrom<&Problem> for Setup {
         let has_stiffness = |force: &Expr| force.contains(Symbol::new("gamma"));
         let gamma_follows = !gives_stiffness && force.as_ref().is_none_or(has_stiffness);
         let units = problem.units(is_hertz, gamma_follows).map_err(ProblemError::from)?;
-        let (order, degrees) = match problem.order {
-            None => (None, None),
-            Some(Order::Power(order)) => (Some(order), None),
-            Some(Order::Degrees([numerator, denominator])) => (None, Some((numerator, denominator))),
-        };
         let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
         Ok(Self {
             swing,
@@ -227,8 +222,8 @@ impl TryFrom<&Problem> for Setup {
             units,
             force,
             method: method(problem)?,
-            order,
-            degrees,
+            order: problem.order.and_then(Order::power),
+            degrees: problem.order.and_then(Order::degrees),
             amplitude_convention: convention(problem)?,
             rule: linearisation(problem).map_err(ProblemError::from)?,
             contact_law: match contact.law.as_deref() {

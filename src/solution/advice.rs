@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::note::Position;
-use super::{AmplitudeConvention, Method};
+use super::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::Symbol;
 
 /// A sentence with options in it.
@@ -24,8 +24,8 @@ pub enum Setting {
     Method(Method),
     /// The order.
     Order(u32),
-    /// The degrees of numerator and denominator.
-    Degrees(u32, u32),
+    /// The degrees of an approximant.
+    Degrees(Degrees),
     /// The meaning of the amplitude.
     Amplitude(AmplitudeConvention),
     /// The small parameter.
@@ -86,7 +86,7 @@ impl fmt::Display for Setting {
         match self {
             Self::Method(method) => write!(formatter, "method {}", method.name()),
             Self::Order(order) => write!(formatter, "order {order}"),
-            Self::Degrees(above, below) => write!(formatter, "degrees {above},{below}"),
+            Self::Degrees(degrees) => write!(formatter, "degrees {}", degrees.separated()),
             Self::Amplitude(convention) => write!(formatter, "amplitude {}", convention.name()),
             Self::Small(name) => write!(formatter, "small {name}"),
             Self::Taylor => formatter.write_str("a Taylor degree"),

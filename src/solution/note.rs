@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Definition, LeadingCycle, Method};
+use super::{Definition, Degrees, LeadingCycle, Method};
 use crate::decimal::decimal;
 use crate::exact::Polynomial;
 use crate::expr::Expr;
@@ -62,8 +62,8 @@ pub enum Note {
     },
     /// How far a quotient agrees with the series that it comes from.
     AgreesThrough {
-        /// The degrees of numerator and denominator.
-        degrees: (u32, u32),
+        /// The degrees.
+        degrees: Degrees,
         /// The symbol of the series.
         small: Symbol,
         /// The power of the symbol that one degree counts: 1 or 2.
@@ -482,7 +482,7 @@ fn balanced(formatter: &mut fmt::Formatter<'_>, harmonics: &[usize], by_numbers:
 
 fn agreement(
     formatter: &mut fmt::Formatter<'_>,
-    (above, below): (u32, u32),
+    degrees: Degrees,
     small: Symbol,
     step: u32,
     order: u32,
@@ -491,6 +491,7 @@ fn agreement(
         1 => small.to_string(),
         _ => format!("{small}^{step}"),
     };
+    let Degrees::Quotient(above, below) = degrees;
     write!(
         formatter,
         "degree {above} over degree {below} in {variable}: agrees with the exact series through {small}^{}",

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::method::{Options, solve};
-use lindstedt::solution::{AmplitudeConvention, Method, Modulation, Solution};
+use lindstedt::solution::{AmplitudeConvention, Degrees, Method, Modulation, Solution};
 use lindstedt::trajectory::Course;
 use lindstedt::verify::{Verdict, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
@@ -414,7 +414,7 @@ fn van_der_pol_beyond_the_radius_of_its_series() {
     );
     let quotient = Options {
         method: Some(Method::Pade),
-        pade: Some((2, 2)),
+        degrees: Some(Degrees::Quotient(2, 2)),
         ..Options::default()
     };
     let verdict = judge(

@@ -3,7 +3,7 @@
 use lindstedt::exact::{Integer, Rational, ratio, to_f64};
 use lindstedt::method::numbers::evaluate;
 use lindstedt::series::singularity::Estimate;
-use lindstedt::solution::Convergence;
+use lindstedt::solution::{Convergence, Degrees};
 use lindstedt::verify::{converges, nearest_singularity};
 use lindstedt::{Method, Options, Oscillator, Solution, Symbol, judge, solve};
 
@@ -224,7 +224,7 @@ fn quotients_of_high_degree_hold_far_beyond_the_radius() {
     let oscillator = Oscillator::parse(VAN_DER_POL).expect("an equation");
     let options = Options {
         method: Some(Method::Pade),
-        pade: Some((40, 40)),
+        degrees: Some(Degrees::Quotient(40, 40)),
         ..Options::default()
     };
     let quotient = solve(&oscillator, &options).expect("a quotient");
@@ -243,7 +243,7 @@ fn a_quotient_of_high_degree_is_the_elliptic_integral() {
     let oscillator = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
     let options = Options {
         method: Some(Method::Pade),
-        pade: Some((31, 30)),
+        degrees: Some(Degrees::Quotient(31, 30)),
         ..Options::default()
     };
     let quotient = solve(&oscillator, &options).expect("a quotient");

@@ -4,7 +4,7 @@
 use lindstedt::Values;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::{Options, solve};
-use lindstedt::solution::{Method, Note};
+use lindstedt::solution::{Degrees, Method, Note};
 use lindstedt::verify::{Range, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
 
@@ -99,7 +99,7 @@ fn a_pole_of_a_law_is_no_zero() {
         let equation = format!("x'' + x + {cubic}*x^3 + {quintic}*x^5 = 0");
         let options = Options {
             method: Some(Method::Pade),
-            pade: Some((1, 1)),
+            degrees: Some(Degrees::Quotient(1, 1)),
             ..Options::default()
         };
         let found = judged_by(&Oscillator::parse(&equation).unwrap(), &options, &[("A", amplitude)]);

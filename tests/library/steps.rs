@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use lindstedt::export::{latex, text};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::method::{Options, solve};
-use lindstedt::solution::{AmplitudeConvention, Method};
+use lindstedt::solution::{AmplitudeConvention, Degrees, Method};
 use lindstedt::{Oscillator, Solution, Symbol};
 use nalgebra::{DMatrix, DVector};
 
@@ -370,7 +370,7 @@ fn pade_shows_the_system_it_solves() {
     ] {
         let options = Options {
             method: Some(Method::Pade),
-            pade: Some(degrees),
+            degrees: Some(Degrees::Quotient(degrees.0, degrees.1)),
             ..Options::default()
         };
         let solution = solution(equation, &options);

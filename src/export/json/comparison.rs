@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::number::finite;
 use super::solution::{numbers, values};
 use super::{Constant, Kind, Map, methods};
+use crate::solution::Degrees;
 use crate::verify::comparison::{Comparison, Refused, Row};
 use crate::verify::{Verdict, validity};
 
@@ -52,7 +53,7 @@ pub struct ApplyingRow {
     /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
     pub order: u32,
     /// The degrees of numerator and denominator of a Pade approximant; null for every other method.
-    pub degrees: Option<[u32; 2]>,
+    pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
     #[schemars(extend("const" = true))]
     pub applies: bool,
@@ -143,7 +144,7 @@ fn applying(row: &Row) -> MethodRow {
     MethodRow::Applying(Box::new(ApplyingRow {
         method: row.solution.method.name().to_owned(),
         order: row.solution.order,
-        degrees: row.solution.degrees.map(<[u32; 2]>::from),
+        degrees: row.solution.degrees.map(Degrees::list),
         applies: true,
         reason: row.reason.as_ref().map(ToString::to_string),
         chosen: numbers(&row.chosen),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Kind;
 use super::impact::{Judged, Parameters};
 use crate::impact::{ImpactComparison, ImpactRow};
+use crate::solution::Degrees;
 use crate::verify::Verdict;
 
 /// Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a document of kind `impact`.
@@ -52,7 +53,7 @@ pub struct Row {
     /// The order that was chosen; null for a method without one.
     pub order: Option<u32>,
     /// The degrees of a Pade approximant; null for every other method.
-    pub degrees: Option<[u32; 2]>,
+    pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
     pub applies: bool,
     /// Why it does not, in words; null where it does.
@@ -134,7 +135,7 @@ fn applying(row: &ImpactRow, tolerance: f64) -> Row {
     Row {
         method: row.method.name().to_owned(),
         order: row.order,
-        degrees: row.degrees.map(<[u32; 2]>::from),
+        degrees: row.degrees.map(Degrees::list),
         applies: true,
         reason: None,
         time_to_contact,

@@ -12,7 +12,8 @@ use crate::expr::parse_equation;
 use crate::series::FourierSeries;
 use crate::series::singularity::{self, Singularity};
 use crate::solution::{
-    self, AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Note, Root, Solution, modulation,
+    self, AmplitudeConvention, ClosedForm, Definition, Degrees, Law, LeadingCycle, Method, Note, Root, Solution,
+    modulation,
 };
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -34,7 +35,7 @@ pub struct SolutionDocument {
     /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
     pub order: u32,
     /// The degrees of numerator and denominator of a Pade approximant; null for every other method.
-    pub degrees: Option<[u32; 2]>,
+    pub degrees: Option<Vec<u32>>,
     /// The symbol in which the expansion runs: a parameter, or the symbol of the amplitude.
     pub small_parameter: String,
     /// What the amplitude measures: `initial` is `A` = x(0) minus the equilibrium with x'(0) = 0, `first-harmonic` is `a`, the
@@ -499,7 +500,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         equation: solution.equation.to_string(),
         method: solution.method.name().to_owned(),
         order: solution.order,
-        degrees: solution.degrees.map(<[u32; 2]>::from),
+        degrees: solution.degrees.map(Degrees::list),
         small_parameter: solution.small_parameter.to_string(),
         amplitude: solution.amplitude.name().to_owned(),
         parameters: names(&solution.parameters),
@@ -756,7 +757,10 @@ impl SolutionDocument {
             equation: parse_equation(&self.equation).or_else(|_| unexpected("equation", "an equation of motion"))?,
             method,
             order: self.order,
-            degrees: self.degrees.map(<(u32, u32)>::from),
+            degrees: match self.degrees.as_deref().map(Degrees::of) {
+                Some(None) => return unexpected("degrees", "those of an approximant"),
+                degrees => degrees.flatten(),
+            },
             small_parameter: Symbol::new(&self.small_parameter),
             amplitude,
             parameters: symbols(&self.parameters),

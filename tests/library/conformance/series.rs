@@ -8,7 +8,7 @@ use lindstedt::exact::ratio;
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, Refusal};
-use lindstedt::solution::{AmplitudeConvention, Method, Solution};
+use lindstedt::solution::{AmplitudeConvention, Degrees, Method, Solution};
 use lindstedt::verify::judge;
 use lindstedt::{Oscillator, Symbol};
 
@@ -99,7 +99,7 @@ fn pade_approximants_agree_with_the_series() {
         for degrees in degrees {
             let options = Options {
                 method: Some(Method::Pade),
-                pade: Some(degrees),
+                degrees: Some(Degrees::Quotient(degrees.0, degrees.1)),
                 ..Options::default()
             };
             let solution = by_options(equation, options).expect(equation);
@@ -144,19 +144,22 @@ fn pade_approximants_agree_with_the_series() {
     // omega^2 = 1 - 5/6 A^2 + ... has no A^1: [1/1] in A does not exist.
     let singular = Options {
         method: Some(Method::Pade),
-        pade: Some((1, 1)),
+        degrees: Some(Degrees::Quotient(1, 1)),
         ..Options::default()
     };
     assert!(matches!(
         by_options("x'' + x + x^2 = 0", singular),
-        Err(Refusal::Pade { .. })
+        Err(Refusal::Approximant { .. })
     ));
     let linear = Options {
         method: Some(Method::Pade),
-        pade: Some((1, 1)),
+        degrees: Some(Degrees::Quotient(1, 1)),
         ..Options::default()
     };
-    assert!(matches!(by_options("x'' + x = 0", linear), Err(Refusal::Pade { .. })));
+    assert!(matches!(
+        by_options("x'' + x = 0", linear),
+        Err(Refusal::Approximant { .. })
+    ));
 }
 
 /// Lindstedt-Poincare at order n is the expansion of the exact frequency to order n: the elliptic law, expanded exactly by

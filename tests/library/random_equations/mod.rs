@@ -37,7 +37,7 @@ use lindstedt::Values;
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::{self, NoNumbers};
 use lindstedt::method::{Options, Refusal, solve};
-use lindstedt::solution::Method;
+use lindstedt::solution::{Degrees, Method};
 use lindstedt::{Oscillator, Symbol};
 use random::Random;
 
@@ -137,7 +137,7 @@ fn variants(case: &Case, question: &Question, random: &mut Random) -> Vec<(Optio
     list.push((of(Method::LindstedtPoincare, Some(order as u32)), series, linear));
     let (above, below) = random.choose(&[(1, 1), (2, 1), (2, 2), (3, 2)]);
     let pade = Options {
-        pade: Some((above as u32, below as u32)),
+        degrees: Some(Degrees::Quotient(above as u32, below as u32)),
         ..of(Method::Pade, None)
     };
     let step = if in_amplitude { None } else { Some(rate) };
@@ -241,7 +241,9 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
         let method = options.method.expect("a method");
         let named = |complaint: String| {
             let order = options.order.map_or(String::new(), |order| format!(" --order {order}"));
-            let degrees = options.pade.map_or(String::new(), |(l, m)| format!(" --order {l},{m}"));
+            let degrees = options
+                .degrees
+                .map_or(String::new(), |degrees| format!(" --order {}", degrees.separated()));
             let hbar = options
                 .hbar
                 .as_ref()

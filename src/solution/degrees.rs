@@ -1,0 +1,56 @@
+//! The degrees of the polynomials that an approximant is made of.
+
+use std::fmt;
+
+/// As many as the approximant has polynomials.
+///
+/// ```
+/// use lindstedt::solution::Degrees;
+///
+/// assert_eq!(Degrees::Quotient(2, 1).to_string(), "[2/1]");
+/// assert_eq!(Degrees::of(&[3, 2]), Some(Degrees::Quotient(3, 2)));
+/// assert_eq!(Degrees::of(&[3]), None);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Degrees {
+    /// Of numerator and denominator.
+    Quotient(u32, u32),
+}
+
+impl Degrees {
+    /// The degrees in a list; `None` for a list that no approximant has.
+    pub fn of(list: &[u32]) -> Option<Self> {
+        match *list {
+            [numerator, denominator] => Some(Self::Quotient(numerator, denominator)),
+            _ => None,
+        }
+    }
+
+    /// All of them.
+    pub fn list(self) -> Vec<u32> {
+        match self {
+            Self::Quotient(numerator, denominator) => vec![numerator, denominator],
+        }
+    }
+
+    /// What they add up to.
+    pub fn sum(self) -> u32 {
+        self.list().into_iter().fold(0, u32::saturating_add)
+    }
+
+    /// As options have them: `2,1`.
+    pub fn separated(self) -> String {
+        self.joined(",")
+    }
+
+    fn joined(self, separator: &str) -> String {
+        let degrees: Vec<String> = self.list().iter().map(u32::to_string).collect();
+        degrees.join(separator)
+    }
+}
+
+impl fmt::Display for Degrees {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "[{}]", self.joined("/"))
+    }
+}

@@ -558,6 +558,7 @@ pub(super) fn written(mut scene: Scene, caption: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::axes::thinned;
     use super::*;
 
     const WAVE: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 2.0), (2.0, -1.0), (3.0, 0.5)];

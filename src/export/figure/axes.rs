@@ -168,7 +168,7 @@ pub(in crate::export) fn power_of_ten(exponent: i32) -> String {
 }
 
 /// At most [`MOST_POINTS`] points and the last one: of each run the first, the lowest and the highest.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+pub(super) fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= MOST_POINTS {
         return points.to_vec();
     }

@@ -11,7 +11,7 @@ use num_traits::{One, ToPrimitive, Zero};
 
 use super::secular::{
     Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError, expand_numbers_supervised,
-    expand_polynomials, expand_supervised,
+    expand_polynomials_supervised, expand_supervised,
 };
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
@@ -106,7 +106,7 @@ pub fn expand_exactly(
         _ => {
             let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
             let expansion = match inverse_slope {
-                None => expand_polynomials(&force, order as usize, scheme, extent)?,
+                None => expand_polynomials_supervised(&force, order as usize, scheme, extent, supervision)?,
                 Some(inverse) => {
                     let inverse = over_integers(&without(inverse, &scales));
                     let ring = Polynomials(Integers);

@@ -438,14 +438,41 @@ fn an_expansion_that_is_stopped_keeps_its_orders() {
     assert_eq!(shorter["frequency"], document["frequency"]);
 }
 
+/// The same where letters stay.
+#[test]
+fn an_expansion_with_letters_that_is_stopped_keeps_its_orders() {
+    const LETTERS: &str = "x'' + x + eps*(a2*x^2 + a3*x^3 + a5*x^5) = 0";
+    let output = run(&[
+        "derive",
+        LETTERS,
+        "--order",
+        "70",
+        "--omega-only",
+        "--format",
+        "json",
+        "--timeout",
+        "2",
+    ]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("of 70"), "{message}");
+    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    let order = document["order"].as_u64().expect("an order");
+    assert!((1..70).contains(&order), "{order}");
+    let shorter = json(&["derive", LETTERS, "--order", &order.to_string(), "--omega-only"]);
+    assert_eq!(shorter["frequency"], document["frequency"]);
+}
+
 #[test]
 fn the_threads_of_an_expansion_change_nothing() {
-    let on = |jobs: &str| {
-        let output = run(&["derive", "van-der-pol", "--order", "80", "--jobs", jobs]);
-        assert!(output.status.success());
-        output.stdout
-    };
-    assert_eq!(on("1"), on("3"));
+    for (problem, order) in [("van-der-pol", "80"), ("x'' + x + eps*(b*x^2 + c*x^3) = 0", "14")] {
+        let on = |jobs: &str| {
+            let output = run(&["derive", problem, "--order", order, "--jobs", jobs]);
+            assert!(output.status.success());
+            output.stdout
+        };
+        assert_eq!(on("1"), on("3"), "{problem}");
+    }
 }
 
 #[test]

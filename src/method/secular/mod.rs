@@ -309,6 +309,20 @@ pub fn expand_polynomials(
     scheme: &Scheme,
     extent: Extent,
 ) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
+    expand_polynomials_supervised(force, highest, scheme, extent, Supervision::default())
+}
+
+/// As [`expand_polynomials`], to the order that it has reached where it is stopped.
+///
+/// # Errors
+/// See [`SecularError`].
+pub(crate) fn expand_polynomials_supervised(
+    force: &[ForceTerm<Polynomials<Integers>>],
+    highest: usize,
+    scheme: &Scheme,
+    extent: Extent,
+    supervision: Supervision,
+) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
     /// Below, there are few products.
     const MANY: usize = 2;
     bounded(
@@ -316,11 +330,11 @@ pub fn expand_polynomials(
         highest,
     )?;
     if highest >= MANY
-        && let Some(expansion) = symbolic::expand(force, highest, scheme, extent)
+        && let Some(expansion) = symbolic::expand(force, highest, scheme, extent, supervision)
     {
         return Ok(expansion);
     }
-    let mut expansion = expand(&Polynomials(Integers), force, highest, scheme)?;
+    let mut expansion = expand_supervised(&Polynomials(Integers), force, highest, scheme, None, supervision)?;
     if extent == Extent::Frequency {
         expansion.forget_motion();
     }

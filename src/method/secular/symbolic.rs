@@ -12,37 +12,45 @@
 //! [residues](super::modular); the fractions are found by the remainders of a few primes, and tried modulo one prime more.
 //!
 //! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each prime, where products of
-//! polynomials would take `P^2` products of coefficients each.
+//! polynomials would take `P^2` products of coefficients each. The points are independent, and run on all threads with one result;
+//! those of the lowest orders come first, so that what is there when the work is stopped is all that the lower orders need.
+//!
+//! Memory: the residues of all coefficients, 8 bytes for each prime, at most half a gigabyte.
 
 use std::collections::HashMap;
 
 use num_traits::{One, Zero};
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 
 use super::modular::{Field, Plan, Recursion, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
+use crate::interrupt::Supervision;
 use crate::series::FourierSeries;
 use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
 
-/// The expansion; `None` where the equation has no symmetry to use, no term of the first order, an amplitude that is determined, or
-/// too many symbols: the ring's own recursion answers then.
+/// The expansion, to the order that it has reached where it is stopped; `None` where the equation has no symmetry to use, no term of
+/// the first order, an amplitude that is determined, or too many symbols, and where it is stopped before any order is there: the
+/// ring's own recursion answers then.
 pub(super) fn expand(
     force: &[ForceTerm<Symbols>],
     highest: usize,
     scheme: &Scheme,
     extent: Extent,
+    supervision: Supervision,
 ) -> Option<Expansion<Symbols>> {
     match scheme.amplitude {
-        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent)),
+        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent, supervision)),
         Amplitude::Determined => None,
     }
 }
 
-struct Expand<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, Extent);
+struct Expand<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, Extent, Supervision);
 
 impl Work for Expand<'_> {
     type Output = Option<Expansion<Symbols>>;
@@ -50,24 +58,42 @@ impl Work for Expand<'_> {
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// More are as slow as polynomials.
         const MOST_POINTS: usize = 5000;
-        let Self(force, highest, scheme, extent) = self;
+        /// Expansions to this order are done at once.
+        const SHORT: usize = 12;
+        let Self(force, highest, scheme, extent, supervision) = self;
         let (terms, groups) = grouped(force)?;
         let base = groups.kinds.iter().position(|kind| kind.0 == 1)?;
         let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
-        let lower_set = LowerSet::new(&weights, base, highest, MOST_POINTS)?;
-        let plan = Plan::new(&terms, None, highest, scheme, extent == Extent::Frequency)?;
-        let mut search = Search {
-            arithmetic,
-            plan: &plan,
-            groups: &groups,
-            lower_set: &lower_set,
-            extent,
-            primes: Box::new(primes_below(A::BITS, plan.circle())),
-            images: vec![],
-        };
-        let orders = search.orders()?;
-        let monomials = lower_set.monomials(&groups.kinds, base);
-        Some(expansion(&plan, &orders, &monomials, extent))
+        // Half of the orders cost a thirtieth: they are there where the work is stopped on the way to all.
+        let halves = std::iter::successors(Some(highest), |order| (*order > SHORT).then_some(order / 2));
+        let stages: Vec<usize> = halves.collect();
+        let lower_set = |highest: usize| LowerSet::new(&weights, base, highest, MOST_POINTS);
+        lower_set(highest)?;
+        let mut best: Option<Expansion<Symbols>> = None;
+        for highest in stages.into_iter().rev() {
+            let lower_set = lower_set(highest)?;
+            let plan = Plan::new(&terms, None, highest, scheme, extent == Extent::Frequency)?;
+            let mut search = Search {
+                arithmetic,
+                plan: &plan,
+                groups: &groups,
+                lower_set: &lower_set,
+                extent,
+                supervision,
+                primes: Box::new(primes_below(A::BITS, plan.circle())),
+                images: vec![],
+            };
+            let orders = search.orders()?;
+            if best.as_ref().is_none_or(|best| best.frequency.len() < orders.len()) {
+                let monomials = lower_set.monomials(&groups.kinds, base);
+                best = Some(expansion(&plan, &orders, &monomials, extent));
+            }
+            if supervision.interrupt.is_requested() {
+                break;
+            }
+        }
+        // Stopped before the first correction there is nothing.
+        best.filter(|best| best.frequency.len() > highest.min(1))
     }
 }
 
@@ -219,8 +245,8 @@ impl LowerSet {
     }
 }
 
-/// What one prime sees of all orders: for each the plain residues of the coefficients, point by point; of the frequency, of its
-/// square, and of the harmonics where they are wanted.
+/// What one prime sees of all orders, or of the lower ones where it was stopped: for each the plain residues of the coefficients,
+/// point by point; of the frequency, of its square, and of the harmonics where they are wanted.
 struct Image {
     modulus: Modulus,
     orders: Vec<Vec<u64>>,
@@ -240,7 +266,8 @@ struct Search<'a, A> {
     groups: &'a Groups,
     lower_set: &'a LowerSet,
     extent: Extent,
-    primes: Box<dyn Iterator<Item = u64>>,
+    supervision: Supervision,
+    primes: Box<dyn Iterator<Item = u64> + Send + Sync>,
     images: Vec<Image>,
 }
 
@@ -252,15 +279,17 @@ impl<A: Arithmetic> Search<'_, A> {
         }
     }
 
-    fn image(&self, recursion: &mut Recursion<A>, prime: u64) -> Option<Image> {
-        let modulus = Modulus::new(prime, A::RADIX);
+    /// The numbers of all orders at these points, as far as the work is not stopped.
+    fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
         let mut field = Field::new(self.plan, modulus)?;
-        let highest = self.plan.highest;
-        let sizes = (0..=highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
-        let mut orders: Vec<Vec<u64>> = sizes.map(Vec::with_capacity).collect();
+        let mut recursion = Recursion::new(self.arithmetic, self.plan);
         let own = std::mem::take(&mut field.coefficients);
         let mut coefficients = own.clone();
-        for (place, point) in self.lower_set.points.iter().enumerate() {
+        let mut found = Vec::with_capacity(points.len());
+        for point in points {
+            if self.supervision.interrupt.is_requested() {
+                break;
+            }
             for ((coefficient, own), group) in coefficients.iter_mut().zip(&own).zip(&self.groups.of_terms) {
                 *coefficient = match self.lower_set.lines[*group].is_empty() {
                     true => *own,
@@ -268,51 +297,112 @@ impl<A: Arithmetic> Search<'_, A> {
                 };
             }
             recursion.expand(&mut field, &coefficients)?;
-            for (order, values) in orders.iter_mut().enumerate() {
-                if place < self.lower_set.counts[order] {
-                    values.extend([recursion.frequency()[order], recursion.frequency_squared()[order]]);
-                    if self.extent == Extent::Motion {
-                        values.extend(recursion.displacement(order));
-                    }
+            let weight: usize = point
+                .iter()
+                .zip(&self.groups.kinds)
+                .map(|(exponent, kind)| exponent * kind.0)
+                .sum();
+            let mut values = vec![];
+            for order in weight..=self.plan.highest {
+                values.extend([recursion.frequency()[order], recursion.frequency_squared()[order]]);
+                if self.extent == Extent::Motion {
+                    values.extend(recursion.displacement(order));
                 }
             }
+            found.push(values);
+            self.supervision.progress.advance();
         }
+        Some(found)
+    }
+
+    /// The numbers at all points, in their order; where the work is stopped, at as many of the first ones as there are.
+    fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
+        let points = &self.lower_set.points;
+        #[cfg(feature = "parallel")]
+        {
+            /// So many lots for each thread let none of them wait for long.
+            const LOTS: usize = 4;
+            let length = points.len().div_ceil(LOTS * rayon::current_num_threads()).max(1);
+            let lots: Option<Vec<Vec<Vec<u64>>>> = points
+                .par_chunks(length)
+                .map(|points| self.values(modulus, points))
+                .collect();
+            let mut values = Vec::with_capacity(points.len());
+            for (own, points) in lots?.into_iter().zip(points.chunks(length)) {
+                let whole = own.len() == points.len();
+                values.extend(own);
+                if !whole {
+                    break;
+                }
+            }
+            Some(values)
+        }
+        #[cfg(not(feature = "parallel"))]
+        self.values(modulus, points)
+    }
+
+    fn image(&self, prime: u64) -> Option<Image> {
+        let modulus = Modulus::new(prime, A::RADIX);
+        self.interpolated(modulus, &self.values_at_points(modulus)?)
+    }
+
+    /// The orders that these numbers at the first points are enough for.
+    fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<Image> {
+        let highest = self.plan.highest;
         let mut inverses: Vec<u64> = (1..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
         modulus.invert(&mut inverses)?;
         inverses.insert(0, 0);
-        for (order, values) in orders.iter_mut().enumerate() {
+        // An order is there where all its points are.
+        let counts = &self.lower_set.counts;
+        let reached = counts.partition_point(|count| *count <= at_points.len());
+        let mut taken = vec![0; at_points.len()];
+        let mut orders = Vec::with_capacity(reached);
+        for (order, count) in counts.iter().enumerate().take(reached) {
             let numbers = self.numbers(order);
-            self.lower_set.interpolate(&modulus, &inverses, order, values, numbers);
+            let mut values = Vec::with_capacity(count * numbers);
+            for (own, taken) in at_points.iter().zip(&mut taken).take(*count) {
+                values.extend_from_slice(&own[*taken..*taken + numbers]);
+                *taken += numbers;
+            }
+            self.lower_set
+                .interpolate(&modulus, &inverses, order, &mut values, numbers);
             values.iter_mut().for_each(|value| *value = modulus.plain(*value));
+            orders.push(values);
         }
         Some(Image { modulus, orders })
     }
 
-    /// All orders, by as many primes as their fractions need.
+    /// All orders, by as many primes as their fractions need; those for which there are enough where the work is stopped.
     fn orders(&mut self) -> Option<Vec<Order>> {
         /// Residues kept at once, half a gigabyte of them.
         const MOST_RESIDUES: usize = 1 << 26;
         let plan = self.plan;
-        let mut recursion = Recursion::new(self.arithmetic, plan);
         let mut orders = Vec::with_capacity(plan.highest + 1);
         let residues = (0..=plan.highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
         let most = MOST_RESIDUES / residues.sum::<usize>().max(1);
         let mut count = 2;
-        while orders.len() <= plan.highest {
+        let mut stopped = false;
+        while orders.len() <= plan.highest && !stopped {
             if count >= most {
                 return None;
             }
             // One prime more, to test.
-            while self.images.len() <= count {
+            let runs = (count + 1 - self.images.len()) * self.lower_set.points.len();
+            self.supervision.progress.begin(runs);
+            while self.images.len() <= count && !stopped {
                 let prime = self.primes.next()?;
-                let image = self.image(&mut recursion, prime)?;
+                let image = self.image(prime)?;
+                stopped = image.orders.len() <= plan.highest;
                 self.images.push(image);
             }
             let (test, images) = self.images.split_last()?;
             let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
+            if moduli.is_empty() {
+                break;
+            }
             let remainders = Remainders::new(self.arithmetic, &moduli);
             let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-            while orders.len() <= plan.highest {
+            while let Some(in_test) = test.orders.get(orders.len()) {
                 let order = orders.len();
                 let Some(found) = fractions(images, &remainders, &product, order) else {
                     break;
@@ -321,7 +411,7 @@ impl<A: Arithmetic> Search<'_, A> {
                     numbers: self.numbers(order),
                     ..found
                 };
-                if !found.agrees(&test.modulus, &test.orders[order]) {
+                if !found.agrees(&test.modulus, in_test) {
                     break;
                 }
                 orders.push(found);
@@ -498,9 +588,10 @@ mod tests {
                 };
                 let exact =
                     super::super::expand(&Polynomials(Integers), force, highest, &scheme).expect("an expansion");
-                let widest = expand(force, highest, &scheme, Extent::Motion).expect("the same by primes");
-                let portable = Expand(force, highest, scheme, Extent::Motion).by(Portable::new());
-                let alone = expand(force, highest, &scheme, Extent::Frequency).expect("the frequency");
+                let nobody = Supervision::default();
+                let widest = expand(force, highest, &scheme, Extent::Motion, nobody).expect("the same by primes");
+                let portable = Expand(force, highest, scheme, Extent::Motion, nobody).by(Portable::new());
+                let alone = expand(force, highest, &scheme, Extent::Frequency, nobody).expect("the frequency");
                 assert_eq!(alone.frequency_squared, exact.frequency_squared);
                 assert_eq!(alone.frequency, exact.frequency);
                 assert!(alone.displacement.is_empty());
@@ -569,6 +660,47 @@ mod tests {
         assert_eq!(values, expected);
     }
 
+    /// What is there when the work is stopped, after any number of points, are the lower orders as they are.
+    #[test]
+    fn the_first_points_are_enough_for_the_lower_orders() {
+        let [a, b] = ["a", "b"].map(letter);
+        let force = [
+            term(1, 2, 0, (a.clone(), 1)),
+            term(1, 3, 0, (b.clone(), 3)),
+            term(2, 5, 0, (a, 7)),
+        ];
+        let scheme = Scheme {
+            normalisation: AmplitudeConvention::Initial,
+            amplitude: Amplitude::Free,
+            detuning: Detuning::Acceleration,
+        };
+        let (terms, groups) = grouped(&force).expect("terms");
+        let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
+        let lower_set = LowerSet::new(&weights, 0, 6, 1000).expect("few points");
+        let plan = Plan::new(&terms, None, 6, scheme, false).expect("symmetry");
+        let search = Search {
+            arithmetic: Portable::new(),
+            plan: &plan,
+            groups: &groups,
+            lower_set: &lower_set,
+            extent: Extent::Motion,
+            supervision: Supervision::default(),
+            primes: Box::new(primes_below(30, plan.circle())),
+            images: vec![],
+        };
+        let prime = primes_below(30, plan.circle()).next().expect("a prime");
+        let modulus = Modulus::new(prime, 32);
+        let values = search.values_at_points(modulus).expect("numbers");
+        let all = search.interpolated(modulus, &values).expect("all orders");
+        assert_eq!((values.len(), all.orders.len()), (lower_set.points.len(), 7));
+        for count in 0..values.len() {
+            let some = search.interpolated(modulus, &values[..count]).expect("some orders");
+            let reached = some.orders.len();
+            assert_eq!(some.orders, all.orders[..reached]);
+            assert!(lower_set.counts[reached] > count, "{count} points are enough for more");
+        }
+    }
+
     #[test]
     fn what_has_no_term_of_the_first_order_is_left_to_the_ring() {
         let scheme = Scheme {
@@ -577,8 +709,8 @@ mod tests {
             detuning: Detuning::Acceleration,
         };
         let terms = [term(2, 3, 0, (letter("a"), 1)), term(3, 5, 0, (letter("b"), 1))];
-        assert!(expand(&terms, 6, &scheme, Extent::Motion).is_none());
+        assert!(expand(&terms, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
         let damped = [term(1, 0, 1, (letter("a"), 1)), term(1, 3, 0, (letter("b"), 1))];
-        assert!(expand(&damped, 6, &scheme, Extent::Motion).is_none());
+        assert!(expand(&damped, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
     }
 }

@@ -377,7 +377,7 @@ impl Solution {
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method.counts() {
-            Counts::Degrees => self.degrees.unwrap_or(Degrees::Quotient(order, 0)).to_string(),
+            Counts::Degrees(_) => self.degrees.unwrap_or(Degrees::Quotient(order, 0)).to_string(),
             Counts::Powers => {
                 let names: Vec<&str> = self.small_parameters().map(|symbol| symbol.name()).collect();
                 format!("to order {order} in {}", names.join(" and "))

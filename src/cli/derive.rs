@@ -11,7 +11,7 @@ use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal};
 use lindstedt::problem::{Formula, Order, Problem, Reader};
-use lindstedt::solution::{AmplitudeConvention, Degrees, Method, Note, Solution};
+use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
@@ -25,10 +25,11 @@ pub struct Arguments {
     pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
     /// parameter-expansion, harmonic-balance, energy-balance, max-min, amplitude-frequency, hamiltonian,
-    /// variational-iteration, frequency-formula, averaging, pade, multiple-scales or exact
+    /// variational-iteration, frequency-formula, averaging, pade, hermite-pade, multiple-scales or exact
     #[arg(long)]
     method: Option<String>,
-    /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade
+    /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade,
+    /// P,Q,R of hermite-pade
     #[arg(long, value_parser = order, allow_hyphen_values = true)]
     order: Option<Order>,
     /// What the amplitude measures
@@ -343,16 +344,17 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
             return without("--order, or `order` in the file,", "the methods that approximate");
         }
-        Some(Order::Degrees(..)) if !entry.takes(Choice::Degrees) => {
-            return usage(format!(
-                "degrees L,M are those of --method {}",
-                that_take(Choice::Degrees)
-            ));
+        Some(Order::Degrees(_)) if !entry.takes(Choice::Degrees) => {
+            return usage(format!("degrees are those of --method {}", that_take(Choice::Degrees)));
         }
+        Some(order) if entry.takes(Choice::Degrees) => match (chosen.counts(), order.degrees()) {
+            (Counts::Degrees(count), Some(degrees)) if degrees.list().len() == count => (None, Some(degrees)),
+            (Counts::Degrees(3), _) => {
+                return usage(format!("--method {} takes three degrees: --order 2,2,2", chosen.name()));
+            }
+            _ => return usage(format!("--method {} takes two degrees: --order 2,1", chosen.name())),
+        },
         Some(Order::Degrees(degrees)) => (None, Some(degrees)),
-        Some(Order::Power(_)) if entry.takes(Choice::Degrees) => {
-            return usage(format!("--method {} takes two degrees: --order 2,1", chosen.name()));
-        }
         Some(Order::Power(order)) => (Some(order), None),
         None => (None, None),
     };

@@ -15,9 +15,10 @@ pub(crate) mod real_roots;
 pub(crate) mod residue;
 pub(crate) mod ring;
 pub(crate) mod scaled;
+pub(crate) mod zero_clusters;
 
 pub use integer::{Integer, ParseIntegerError};
 pub use polynomial::{Monomial, POLYNOMIALS, Polynomial, Polynomials};
-pub use rational::{Rational, factorial, from_f64, ratio, to_f64};
+pub use rational::{Rational, convergent, factorial, from_f64, ratio, to_f64};
 pub use ring::{Doubles, Indivisible, Integers, Number, Rationals, Ring};
 pub use scaled::Scaled;

@@ -122,6 +122,29 @@ pub fn from_f64(value: f64) -> Option<Rational> {
     Some(if value < 0.0 { -size } else { size })
 }
 
+/// The first convergent of the continued fraction of a value that is as near to it as this, which is mostly a short one.
+///
+/// ```
+/// use lindstedt::exact::{convergent, ratio};
+///
+/// assert_eq!(convergent(&ratio(314_159_265, 100_000_000), &ratio(1, 100)), ratio(22, 7));
+/// ```
+pub fn convergent(value: &Rational, tolerance: &Rational) -> Rational {
+    let (mut before, mut last) = ((Integer::zero(), Integer::one()), (Integer::one(), Integer::zero()));
+    let mut rest = value.clone();
+    loop {
+        let whole = rest.floor().to_integer();
+        let next = (&whole * &last.0 + &before.0, &whole * &last.1 + &before.1);
+        (before, last) = (last, next);
+        let found = Rational::new(last.0.clone(), last.1.clone());
+        let beyond = &rest - Rational::from_integer(whole);
+        if beyond.is_zero() || (&found - value).abs() <= *tolerance {
+            return found;
+        }
+        rest = beyond.recip();
+    }
+}
+
 /// The exact `p/q`-th power, where one exists among the fractions: `(4/9)^(1/2) = 2/3`.
 ///
 /// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None` where the result is

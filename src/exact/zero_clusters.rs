@@ -14,7 +14,7 @@ use super::big_float::BigFloat;
 /// One or two zeros in a disc about a place on the axis, and no other there.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
-    /// The zero, or the middle of two.
+    /// The zero, or the middle of two: where the slope vanishes between them.
     pub place: BigFloat,
     /// One or two.
     pub count: usize,
@@ -34,24 +34,26 @@ pub(crate) fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     let mut found = vec![];
     let mut at = BigFloat::zero(walk.bits);
     for _ in 0..MOST_STEPS {
-        let near = walk.about(&at);
         if walk.is_last(&at) {
             return Some(found);
         }
+        let near = walk.about(&at);
         let step = near.radius_of_none()?;
         let share = step - logarithm(&at);
         if share < NONE {
             return None;
         }
+        // Within the disc, for its radius is rounded.
+        let next = &at + &power_of_two(step - 0.1, walk.bits);
         let cluster = (share < SHORT).then(|| walk.cluster(&at, &near)).flatten();
         at = match cluster {
-            Some((cluster, radius)) => {
-                let beyond = &cluster.place + &power_of_two(radius, walk.bits);
+            // Nothing lies between what is known to be empty and the disc about what was found.
+            Some((cluster, radius)) if &cluster.place - &radius <= next => {
+                let beyond = &cluster.place + &radius;
                 found.push(cluster);
                 beyond
             }
-            // Within the disc, for its radius is rounded.
-            None => &at + &power_of_two(step - 0.1, walk.bits),
+            _ => next,
         };
     }
     None
@@ -131,16 +133,223 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The zero or the two ahead of a place, with the radius of a disc that holds nothing else.
-    fn cluster(&self, at: &BigFloat, near: &About) -> Option<(Cluster, f64)> {
-        /// Half of that to the next zeros must be farther.
-        const WIDEST: f64 = -3.0;
-        let [first, second, third] = [0, 1, 2].map(|k| near.coefficients.get(k));
-        let guesses = [
-            (1, second.map(|second| -&(first? / second))),
-            (2, None),
-        ];
-        let _ = (guesses, third, at, WIDEST);
+    /// The zero or the two ahead of a place, and the radius of a disc that holds nothing else.
+    fn cluster(&self, at: &BigFloat, near: &About) -> Option<(Cluster, BigFloat)> {
+        // Two first: of a close pair either may be reached alone.
+        [2, 1].into_iter().find_map(|count| {
+            let place = self.centre(at, near, count)?;
+            let about = self.about(&place);
+            let radius = power_of_two(about.radius_of(count)?, self.bits);
+            let ratio = match count {
+                1 => 0.0,
+                _ => {
+                    let square = about.coefficients.first()? / about.coefficients.get(2)?;
+                    (&square / &(&place * &place)).to_f64()
+                }
+            };
+            let distance = ratio.abs().sqrt().copysign(ratio);
+            Some((Cluster { place, count, distance }, radius))
+        })
+    }
+
+    /// By Newton's steps, the zero ahead of a place, or the middle of two.
+    fn centre(&self, at: &BigFloat, near: &About, count: usize) -> Option<BigFloat> {
+        const STEPS: usize = 12;
+        /// The last step over the place.
+        const EXACT: f64 = -100.0;
+        /// The farthest that is ahead, likewise.
+        const FAR: f64 = -2.0;
+        let step = |about: &About| {
+            let slope = about.coefficients.get(count).filter(|slope| !slope.is_zero())?;
+            let times = BigFloat::of_f64(count as f64, self.bits);
+            Some(-&(&(about.coefficients.get(count - 1)? / slope) / &times))
+        };
+        let zero = BigFloat::zero(self.bits);
+        let mut place = at + &step(near)?;
+        for _ in 0..STEPS {
+            let ahead = &place - at;
+            if ahead < zero || logarithm(&ahead) > near.largest + FAR {
+                return None;
+            }
+            let next = step(&self.about(&place))?;
+            place = &place + &next;
+            if logarithm(&next) < near.largest + EXACT {
+                break;
+            }
+        }
+        Some(place)
+    }
+}
+
+impl About {
+    /// The logarithm of the radius of a disc without zeros.
+    fn radius_of_none(&self) -> Option<f64> {
+        const HALVINGS: usize = 6;
+        let first = self.sizes[0];
+        let terms = self.sizes.iter().zip(0..).skip(1);
+        // Each term by itself reaches the first there; at half of that all together do not.
+        let bound = terms
+            .map(|(size, k)| (first - size) / f64::from(k))
+            .fold(f64::INFINITY, f64::min);
+        let (mut inside, mut outside) = (bound.min(self.largest) - 1.0, bound.min(self.largest));
+        if !(inside.is_finite() && dominates(&self.sizes, 0, inside, self.noise)) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            match dominates(&self.sizes, 0, middle, self.noise) {
+                true => inside = middle,
+                false => outside = middle,
+            }
+        }
+        Some(inside)
+    }
+
+    /// The logarithm of the radius of the largest disc with so many zeros, not far beyond the place.
+    fn radius_of(&self, count: usize) -> Option<f64> {
+        /// Over the place.
+        const LEAST: f64 = -100.0;
+        /// Two that are farther apart are found one by one.
+        const WIDEST: [f64; 2] = [-3.0, -5.0];
+        const STEP: f64 = 0.25;
+        self.sizes.get(count)?;
+        let mut radius = self.largest + WIDEST[count - 1];
+        while radius > self.largest + LEAST {
+            if dominates(&self.sizes, count, radius, self.noise) {
+                return Some(radius);
+            }
+            radius -= STEP;
+        }
         None
+    }
+}
+
+/// Whether one term is larger than all others and the noise together; everything by its logarithm.
+fn dominates(sizes: &[f64], term: usize, radius: f64, noise: f64) -> bool {
+    /// Logarithms are rounded.
+    const SURELY: f64 = 0.99;
+    // Zero, of which nothing is known with the radius of infinity.
+    let at = |k: usize| match k {
+        0 => sizes[0],
+        _ => sizes[k] + k as f64 * radius,
+    };
+    let own = at(term);
+    let others = (0..sizes.len()).filter(|k| *k != term).map(|k| (at(k) - own).exp2());
+    own.is_finite() && others.sum::<f64>() + (noise - own).exp2() < SURELY
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BITS: usize = 512;
+
+    fn number(value: f64) -> BigFloat {
+        BigFloat::of_f64(value, BITS)
+    }
+
+    fn times(left: &[BigFloat], right: &[BigFloat]) -> Vec<BigFloat> {
+        let mut product = vec![BigFloat::zero(BITS); left.len() + right.len() - 1];
+        for (i, a) in left.iter().enumerate() {
+            for (k, b) in right.iter().enumerate() {
+                product[i + k] = &product[i + k] + &(a * b);
+            }
+        }
+        product
+    }
+
+    /// The product of factors `c_0 + c_1 s + c_2 s^2`.
+    fn product(factors: &[[f64; 3]]) -> Vec<BigFloat> {
+        let one = vec![number(1.0)];
+        factors.iter().fold(one, |all, factor| times(&all, &factor.map(number)))
+    }
+
+    fn found(polynomial: &[BigFloat]) -> Vec<(f64, usize, f64)> {
+        let clusters = clusters(polynomial).expect("zeros that are told apart");
+        clusters
+            .iter()
+            .map(|own| (own.place.to_f64(), own.count, own.distance))
+            .collect()
+    }
+
+    fn same(found: &[(f64, usize, f64)], expected: &[(f64, usize, f64)]) {
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert_eq!(found.1, expected.1, "{found:?} {expected:?}");
+            // The middle is where the slope vanishes.
+            let allowed = 1e-9 + 10.0 * expected.2.powi(2);
+            assert!((found.0 / expected.0 - 1.0).abs() < allowed, "{found:?} {expected:?}");
+            assert!(
+                (found.2 - expected.2).abs() <= 1e-3 * expected.2.abs(),
+                "{found:?} {expected:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn single_zeros_are_found_at_every_scale() {
+        let linear = |zero: f64| [-zero, 1.0, 0.0];
+        let polynomial = product(&[linear(1e-9), linear(0.3), linear(0.4), linear(-2.0), linear(1e12)]);
+        same(
+            &found(&polynomial),
+            &[(1e-9, 1, 0.0), (0.3, 1, 0.0), (0.4, 1, 0.0), (1e12, 1, 0.0)],
+        );
+        assert!(found(&product(&[linear(-1.0), [1.0, 1.0, 1.0]])).is_empty());
+    }
+
+    /// `(s - m)^2 + h^2` with `h` far below the digits of a double, and real pairs likewise.
+    #[test]
+    fn close_pairs_are_counted_as_two() {
+        for (exponent, sign) in [(-30, 1.0), (-30, -1.0), (-90, 1.0), (-90, -1.0), (-12, 1.0)] {
+            let middle = 3.0;
+            let small = number(sign).shifted(2 * exponent);
+            let pair = [&number(middle * middle) + &small, number(-2.0 * middle), number(1.0)];
+            let others = product(&[[-0.5, 1.0, 0.0], [50.0, 3.0, 1.0], [-700.0, 1.0, 0.0]]);
+            let distance = sign * 2_f64.powi(exponent as i32) / middle;
+            let expected = [(0.5, 1, 0.0), (middle, 2, distance), (700.0, 1, 0.0)];
+            same(&found(&times(&pair, &others)), &expected);
+        }
+        // An exact double zero.
+        let double = found(&product(&[[9.0, -6.0, 1.0], [-1.0, 2.0, 0.0]]));
+        assert!(
+            double.len() == 2 && double[1].1 == 2 && double[1].2.abs() < 1e-40,
+            "{double:?}"
+        );
+    }
+
+    /// Chebyshev's polynomial of degree 40, moved to `0 < s < 2`: zeros `1 + cos((2k + 1) pi/80)`, close to each other at the ends.
+    #[test]
+    fn many_zeros_are_all_found() {
+        let mut last = vec![number(1.0)];
+        let mut next = vec![number(-1.0), number(1.0)];
+        for _ in 1..40 {
+            let twice = times(&[number(-2.0), number(2.0)], &next);
+            let new = twice.iter().enumerate();
+            let zero = number(0.0);
+            let new = new.map(|(k, value)| value - last.get(k).unwrap_or(&zero)).collect();
+            (last, next) = (next, new);
+        }
+        let zeros = found(&next);
+        let expected: Vec<f64> = (0..40)
+            .map(|k| 1.0 + (f64::from(79 - 2 * k) * std::f64::consts::PI / 80.0).cos())
+            .collect();
+        let mut rest = expected.iter();
+        for (place, count, distance) in zeros {
+            for sign in [-1.0, 1.0].into_iter().take(count) {
+                let expected = rest.next().expect("no more than there are");
+                let zero = place * (1.0 + sign * distance.abs());
+                assert!((zero - expected).abs() < 1e-3, "{place} {count} {distance} {expected}");
+                assert!(count == 2 || (zero - expected).abs() < 1e-12, "{place} {expected}");
+            }
+        }
+        assert!(rest.next().is_none());
+    }
+
+    #[test]
+    fn what_cannot_be_told_is_not_said() {
+        // A fourfold zero, a zero at the origin, nothing at all.
+        assert!(clusters(&product(&[[1.0, -2.0, 1.0], [1.0, -2.0, 1.0]])).is_none());
+        assert!(clusters(&product(&[[0.0, 1.0, 1.0]])).is_none());
+        assert!(clusters(&[]).is_none());
     }
 }

@@ -15,7 +15,7 @@ use super::setup::{ContactLoss, Equations, Setup, SetupError};
 use crate::method::table::{Choice, Entry};
 use crate::method::{self, Refusal};
 use crate::numeric::ode::Options;
-use crate::solution::{Degrees, Method, Solution};
+use crate::solution::{Counts, Degrees, Method, Solution};
 
 /// A method that was tried for the derived column.
 #[derive(Clone, Debug, PartialEq)]
@@ -208,10 +208,12 @@ impl Trial<'_> {
     fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
         let setup = self.setup;
         let takes = |choice| Entry::of(method).takes(choice);
+        let same = |n| match method.counts() {
+            Counts::Degrees(count) => Degrees::of(&vec![n; count]),
+            _ => None,
+        };
         let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
-            (None, None) if takes(Choice::Degrees) => (1..=highest_order(method))
-                .map(|n| (None, Some(Degrees::Quotient(n, n))))
-                .collect(),
+            (None, None) if takes(Choice::Degrees) => (1..=highest_order(method)).map(|n| (None, same(n))).collect(),
             (None, None) if takes(Choice::Order) => {
                 (1..=highest_order(method)).map(|order| (Some(order), None)).collect()
             }

@@ -22,6 +22,7 @@ pub(crate) mod frequency_formula;
 mod frequency_response;
 pub(crate) mod hamiltonian;
 pub(crate) mod harmonic_balance;
+pub(crate) mod hermite_pade;
 pub(crate) mod homotopy_analysis;
 pub(crate) mod homotopy_perturbation;
 pub(crate) mod inertia;
@@ -501,8 +502,12 @@ impl Refusal {
             Self::Unbounded { .. } | Self::NoSlope { .. } => {
                 Advice::words("try ").choose(Setting::Method(Method::Hamiltonian))
             }
-            Self::Approximant { .. } => {
-                Advice::words("try other degrees, such as ").choose(Setting::Degrees(Degrees::Quotient(1, 1)))
+            Self::Approximant { method, .. } => {
+                let degrees = match method {
+                    Method::HermitePade => Degrees::Quadratic(2, 2, 2),
+                    _ => Degrees::Quotient(1, 1),
+                };
+                Advice::words("try other degrees, such as ").choose(Setting::Degrees(degrees))
             }
             Self::AmplitudeNotFree { .. } => {
                 let small = Setting::Small(AmplitudeConvention::Initial.symbol());

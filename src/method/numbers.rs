@@ -384,9 +384,9 @@ fn frequency_squared(
         rounding = rounding.max(error.unwrap_or(0.0));
     }
     let undefined = || {
-        let value = |name| solution.evaluate(&Polynomial::symbol(name), &value_of);
+        let missing = solution.defined_values(&value_of).err()?;
         let mut names = solution.definitions.iter().map(|definition| definition.symbol);
-        names.find(|&name| value(name).is_err())
+        names.find(|name| *name == missing)
     };
     let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
         match (undefined(), overflow(oscillator, solution, numbers)) {
@@ -402,10 +402,14 @@ fn frequency_squared(
 fn rounded(solution: &Solution, name: Symbol, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Rounded> {
     match value_of(name) {
         Some(value) => Some((value, 0.0)),
-        None => {
-            let value = solution.evaluate(&Polynomial::symbol(name), value_of).ok()?;
-            Some((value, f64::EPSILON * value.abs()))
-        }
+        None => match solution.definitions.iter().find(|own| own.symbol == name) {
+            // One may use those before it.
+            Some(own) => own.meaning.evaluate_rounded(&|name| rounded(solution, name, value_of)),
+            None => {
+                let value = solution.evaluate(&Polynomial::symbol(name), value_of).ok()?;
+                Some((value, f64::EPSILON * value.abs()))
+            }
+        },
     }
 }
 

@@ -61,7 +61,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         degrees,
         reason,
     };
-    let Degrees::Quotient(numerator_degree, denominator_degree) = degrees;
+    let Degrees::Quotient(numerator_degree, denominator_degree) = degrees else {
+        return Err(refused("it has two, those of numerator and denominator"));
+    };
     if numerator_degree > LARGEST_DEGREE || denominator_degree > LARGEST_DEGREE {
         return Err(refused("degrees go up to [60/60]"));
     }

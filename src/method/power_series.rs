@@ -1,7 +1,7 @@
 //! omega^2 as a power series in one variable, with what its symbols have in common taken out; and what the methods share that sum
 //! it up in another way.
 
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
 use super::{Options, Refusal, Unsuited, lindstedt_poincare};
 use crate::derivation::Line;
@@ -138,7 +138,9 @@ impl Resummed {
         };
         // The frequency of a limit cycle is mostly the same for both signs of what is small.
         let of_cycle = solution.limit_cycle.is_some() && order > 0;
-        if of_cycle {
+        // Quadratic approximants of an even series are not unique in the parameter itself.
+        let even = method == Method::HermitePade && !in_amplitude && PowerSeries::of(&solution, true).step == 2;
+        if of_cycle || even {
             let Some(further) = series_to(2 * order, long)? else {
                 return Ok(None);
             };
@@ -146,7 +148,7 @@ impl Resummed {
                 solution = further;
             }
         }
-        let series = PowerSeries::of(&solution, in_amplitude || of_cycle);
+        let series = PowerSeries::of(&solution, in_amplitude || of_cycle || even);
         if long {
             let Some(first) = series_to(u32::try_from(series.step).unwrap_or(1), false)? else {
                 return Ok(None);
@@ -166,6 +168,21 @@ impl Resummed {
     /// The names that mean something already.
     pub fn names(&self) -> Vec<Symbol> {
         self.solution.names()
+    }
+
+    /// Puts `omega0^2` for a symbol of which `omega0` is the root, so that one of the two is left.
+    pub fn write_squares_by_their_roots(&mut self) {
+        for definition in &self.solution.definitions {
+            let square = definition
+                .meaning
+                .integer_power(2)
+                .ok()
+                .and_then(|square| square.as_symbol());
+            let root = Polynomial::term(Monomial::power_of(definition.symbol, 2), Rational::one());
+            if let Some(law) = square.and_then(|square| self.series.law.substitute(square, &root)) {
+                self.series.law = law;
+            }
+        }
     }
 
     /// How far an approximant of these degrees agrees with the series.

@@ -4,8 +4,8 @@
 
 use super::{
     Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula, hamiltonian,
-    harmonic_balance, homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation, lindstedt_poincare,
-    max_min, multiple_scales, one_term, pade, parameter_expansion, variational_iteration,
+    harmonic_balance, hermite_pade, homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation,
+    lindstedt_poincare, max_min, multiple_scales, one_term, pade, parameter_expansion, variational_iteration,
 };
 use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
@@ -86,7 +86,7 @@ impl Choice {
     pub fn words(self) -> &'static str {
         match self {
             Self::Order => "order",
-            Self::Degrees => "degrees of numerator and denominator",
+            Self::Degrees => "degrees of an approximant",
             Self::Taylor => "Taylor polynomial in place of the force",
             Self::Hbar => "convergence-control parameter",
             Self::Cycle => "choice among limit cycles",
@@ -219,6 +219,16 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         ..OF_THE_SHARED_INTEGRAL
     },
     Entry {
+        method: Method::HermitePade,
+        solve: hermite_pade::solve,
+        takes: &[Choice::Degrees, Choice::Cycle],
+        sees: Sees::Derivatives,
+        rounded_degree: |options, _| Some(beyond_twice(options.degrees.map_or(3, Degrees::sum).saturating_add(1))),
+        definition: None,
+        signed: true,
+        ..OF_THE_SHARED_INTEGRAL
+    },
+    Entry {
         method: Method::MultipleScales,
         solve: multiple_scales::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::Resonance],
@@ -292,6 +302,9 @@ mod tests {
             assert_eq!(Entry::of(method).method, method);
         }
         assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
-        assert_eq!(that_take(Choice::Cycle), "lindstedt-poincare, pade and multiple-scales");
+        assert_eq!(
+            that_take(Choice::Cycle),
+            "lindstedt-poincare, pade, hermite-pade and multiple-scales"
+        );
     }
 }

@@ -50,8 +50,11 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
         let others = other_cycles(cycle, solution).into_iter().map(Block::Remark);
         sections.push(std::iter::once(amplitude).chain(others).collect());
     }
-    let definitions = solution.definitions.iter().map(Block::Definition);
-    sections.push(std::iter::once(Block::Motion(solution)).chain(definitions).collect());
+    sections.push(
+        std::iter::once(Block::Motion(solution))
+            .chain(definitions(solution))
+            .collect(),
+    );
     if let Some(slow) = solution.slow() {
         sections.extend(slow_motion(slow));
     } else if solution.limit_cycle.is_some() {
@@ -101,20 +104,17 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
     }
 }
 
+/// Binary digits of a number that is read as it is: some six hundred decimal ones.
+const LONGEST: u64 = 2000;
+
 /// A quotient of polynomials whose coefficients are too long for eyes, in decimals; `None` for everything else.
 fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec<Block<'a>>> {
-    /// Binary digits of a number that is read as it is: some six hundred decimal ones.
-    const LONGEST: u64 = 2000;
     solution.degrees?;
     let fraction = value.fraction();
     let polynomial = |factors: Vec<Expr>| Expr::product(factors).to_polynomial(&mut |_| None).ok().flatten();
     let above = polynomial(fraction.numerator)?;
     let below = polynomial(fraction.denominator)?;
-    let longest = above
-        .terms()
-        .chain(below.terms())
-        .map(|(_, number)| number.numer().bits())
-        .max()?;
+    let longest = longest([&above, &below])?;
     if longest < LONGEST {
         return None;
     }
@@ -127,26 +127,59 @@ fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec
     let over = |polynomial: &Polynomial, factor: &Rational| polynomial.map(|number| number * factor / &first);
     let letters = ["P", "Q"].map(|letter| fresh(letter, &solution.names()));
     let quotient = Monomial::power_of(letters[0], 1).product(&Monomial::power_of(letters[1], -1));
-    let sum =
-        |polynomial: &Polynomial, rounded: bool| Sum::new(polynomial, rounded, |monomial| solution.order_of(monomial));
-    let law = |name: Symbol, polynomial: &Polynomial| Block::Law {
-        left: Expr::from(name),
-        right: sum(polynomial, true),
-    };
+    let quotient = Polynomial::term(quotient, Rational::one());
     (!first.is_zero()).then(|| {
         vec![
             Block::Law {
                 left: left.clone(),
-                right: sum(&Polynomial::term(quotient, Rational::one()), false),
+                right: Sum::new(&quotient, false, |monomial| solution.order_of(monomial)),
             },
-            law(letters[0], &over(&above, &sign)),
-            law(letters[1], &over(&below, &Rational::one())),
-            Block::Remark(format!(
-                "in decimals of six digits here, for they have {} digits; as JSON they are exact",
-                (longest as f64 * std::f64::consts::LOG10_2).ceil()
-            )),
+            rounded(solution, letters[0], &over(&above, &sign)),
+            rounded(solution, letters[1], &over(&below, &Rational::one())),
+            rounded_to(longest),
         ]
     })
+}
+
+/// The binary digits of the longest numerator.
+fn longest<'a>(polynomials: impl IntoIterator<Item = &'a Polynomial>) -> Option<u64> {
+    let numbers = polynomials.into_iter().flat_map(Polynomial::terms);
+    numbers.map(|(_, number)| number.numer().bits()).max()
+}
+
+/// A polynomial with long coefficients.
+fn rounded<'a>(solution: &Solution, name: Symbol, polynomial: &Polynomial) -> Block<'a> {
+    Block::Law {
+        left: Expr::from(name),
+        right: Sum::new(polynomial, true, |monomial| solution.order_of(monomial)),
+    }
+}
+
+fn rounded_to<'a>(longest: u64) -> Block<'a> {
+    Block::Remark(format!(
+        "in decimals of six digits here, for they have {} digits; as JSON they are exact",
+        (longest as f64 * std::f64::consts::LOG10_2).ceil()
+    ))
+}
+
+/// The definitions, polynomials with coefficients that are too long for eyes in decimals.
+fn definitions(solution: &Solution) -> Vec<Block<'_>> {
+    let polynomial = |meaning: &Expr| meaning.to_polynomial(&mut |_| None).ok().flatten();
+    let mut blocks = vec![];
+    let mut digits = None;
+    for definition in &solution.definitions {
+        let polynomial = solution.degrees.and_then(|_| polynomial(&definition.meaning));
+        let long = polynomial.and_then(|own| Some((longest([&own])?, own)));
+        blocks.push(match long.filter(|(bits, _)| *bits >= LONGEST) {
+            Some((bits, polynomial)) => {
+                digits = digits.max(Some(bits));
+                rounded(solution, definition.symbol, &polynomial)
+            }
+            None => Block::Definition(definition),
+        });
+    }
+    blocks.extend(digits.map(rounded_to));
+    blocks
 }
 
 /// The slow equations: `a' = ...`, `psi' = ...`.

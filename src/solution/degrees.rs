@@ -15,6 +15,8 @@ use std::fmt;
 pub enum Degrees {
     /// Of numerator and denominator.
     Quotient(u32, u32),
+    /// Of the coefficients P, Q and R of `P + Q f + R f^2`.
+    Quadratic(u32, u32, u32),
 }
 
 impl Degrees {
@@ -22,6 +24,7 @@ impl Degrees {
     pub fn of(list: &[u32]) -> Option<Self> {
         match *list {
             [numerator, denominator] => Some(Self::Quotient(numerator, denominator)),
+            [p, q, r] => Some(Self::Quadratic(p, q, r)),
             _ => None,
         }
     }
@@ -30,6 +33,7 @@ impl Degrees {
     pub fn list(self) -> Vec<u32> {
         match self {
             Self::Quotient(numerator, denominator) => vec![numerator, denominator],
+            Self::Quadratic(p, q, r) => vec![p, q, r],
         }
     }
 

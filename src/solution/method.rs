@@ -31,6 +31,8 @@ pub enum Method {
     Averaging,
     /// A quotient of polynomials that agrees with the exact series.
     Pade,
+    /// A root of a quadratic equation in polynomials that agrees with it.
+    HermitePade,
     /// Amplitude and phase on slow times, one for each order.
     MultipleScales,
     /// The period by elliptic integrals or Gamma functions, else by quadrature.
@@ -50,15 +52,15 @@ pub enum Counts {
     Passes,
     /// Harmonics.
     Harmonics,
-    /// The degrees of a numerator and a denominator.
-    Degrees,
+    /// The degrees of so many polynomials.
+    Degrees(usize),
     /// Nothing: there is one order.
     Nothing,
 }
 
 impl Method {
     /// Every method, in the order in which they are listed to users.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::LindstedtPoincare,
         Self::HomotopyPerturbation,
         Self::HomotopyAnalysis,
@@ -73,6 +75,7 @@ impl Method {
         Self::FrequencyFormula,
         Self::Averaging,
         Self::Pade,
+        Self::HermitePade,
         Self::MultipleScales,
         Self::Exact,
     ];
@@ -105,7 +108,8 @@ impl Method {
             Self::VariationalIteration => ("variational-iteration", "Variational iteration", Counts::Nothing),
             Self::FrequencyFormula => ("frequency-formula", "Frequency formula", Counts::Nothing),
             Self::Averaging => ("averaging", "Averaging", Counts::Powers),
-            Self::Pade => ("pade", "Pade approximant", Counts::Degrees),
+            Self::Pade => ("pade", "Pade approximant", Counts::Degrees(2)),
+            Self::HermitePade => ("hermite-pade", "Hermite-Pade approximant", Counts::Degrees(3)),
             Self::MultipleScales => ("multiple-scales", "Multiple scales", Counts::Powers),
             Self::Exact => ("exact", "Exact frequency", Counts::Nothing),
         }

@@ -73,7 +73,9 @@ pub enum Note {
     },
     /// The real zeros of the denominator of a quotient.
     Poles(Poles),
-    /// A quotient has the motion of the series to its first correction.
+    /// How the root of a quadratic equation goes from rest on, where its formula alone does not say so.
+    Followed(FollowedRoot),
+    /// A resummation has the motion of the series to its first correction.
     MotionOfSeries,
     /// The law is that of the true motion.
     Exact(ExactBy),
@@ -271,6 +273,28 @@ pub enum Poles {
     },
 }
 
+/// How a root of a quadratic equation is followed from rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FollowedRoot {
+    /// What the coefficients of the equation depend on.
+    pub variable: Expr,
+    /// What stands before the square root.
+    pub sign: Symbol,
+    /// Where both roots cross, the nearest first.
+    pub crossings: Vec<f64>,
+    /// Where it ends, and why.
+    pub ends: Vec<(f64, RootEnd)>,
+}
+
+/// Why a root ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RootEnd {
+    /// It meets the other root.
+    Meets,
+    /// It is infinite.
+    Infinite,
+}
+
 /// How an exact law is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExactBy {
@@ -332,6 +356,7 @@ impl fmt::Display for Note {
                 order,
             } => agreement(formatter, *degrees, *small, *step, *order),
             Self::Poles(poles) => poles.fmt(formatter),
+            Self::Followed(root) => root.fmt(formatter),
             Self::Exact(by) => by.fmt(formatter),
             Self::Stability(cycle) => write!(formatter, "the limit cycle {}", cycle.stability()),
             Self::RoundedAmplitude {
@@ -491,10 +516,13 @@ fn agreement(
         1 => small.to_string(),
         _ => format!("{small}^{step}"),
     };
-    let Degrees::Quotient(above, below) = degrees;
+    match degrees {
+        Degrees::Quotient(above, below) => write!(formatter, "degree {above} over degree {below} in {variable}")?,
+        Degrees::Quadratic(p, q, r) => write!(formatter, "degrees {p}, {q} and {r} in {variable}")?,
+    }
     write!(
         formatter,
-        "degree {above} over degree {below} in {variable}: agrees with the exact series through {small}^{}",
+        ": agrees with the exact series through {small}^{}",
         step * order
     )
 }
@@ -637,6 +665,33 @@ impl fmt::Display for Poles {
                 )
             }
         }
+    }
+}
+
+impl fmt::Display for FollowedRoot {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            variable,
+            sign,
+            crossings,
+            ends,
+        } = self;
+        let mut sentences = vec![];
+        if !crossings.is_empty() {
+            let places: Vec<String> = crossings.iter().map(|place| decimal(*place)).collect();
+            sentences.push(format!(
+                "the two roots cross at {variable} = {}: there {sign} changes its sign, and the root goes straight on",
+                places.join(", ")
+            ));
+        }
+        for (place, end) in ends {
+            let why = match end {
+                RootEnd::Meets => "where it meets the other one",
+                RootEnd::Infinite => "where it is infinite",
+            };
+            sentences.push(format!("the root ends at {variable} = {}, {why}", decimal(*place)));
+        }
+        formatter.write_str(&sentences.join("; "))
     }
 }
 

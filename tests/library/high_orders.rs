@@ -237,6 +237,36 @@ fn quotients_of_high_degree_hold_far_beyond_the_radius() {
     }
 }
 
+/// Quadratic approximants hold farther than quotients of as many coefficients, beyond the place where their two roots cross.
+#[test]
+fn roots_of_quadratic_equations_hold_farther_than_quotients() {
+    let oscillator = Oscillator::parse(VAN_DER_POL).expect("an equation");
+    let by = |method: Method, degrees: Degrees| {
+        let options = Options {
+            method: Some(method),
+            degrees: Some(degrees),
+            ..Options::default()
+        };
+        solve(&oscillator, &options).expect("an approximant")
+    };
+    let root = by(Method::HermitePade, Degrees::Quadratic(13, 13, 12));
+    let quotient = by(Method::Pade, Degrees::Quotient(20, 19));
+    let followed = root
+        .validity
+        .iter()
+        .map(ToString::to_string)
+        .find(|note| note.contains("cross"));
+    assert!(followed.is_some_and(|note| note.contains("mu^2 = 1.1397")));
+    for (mu, least) in [("mu = 3", 1e-10), ("mu = 5", 1e-5), ("mu = 8", 1e-3), ("mu = 12", 1e-2)] {
+        let error = |solution: &Solution| {
+            let judged = judge(&oscillator, solution, &mu.parse().expect("a value"), 1e-3).expect("a verdict");
+            judged.relative_error.expect("an error").abs()
+        };
+        let (found, other) = (error(&root), error(&quotient));
+        assert!(found < least && found < other, "{mu}: {found} {other}");
+    }
+}
+
 /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))).
 #[test]
 fn a_quotient_of_high_degree_is_the_elliptic_integral() {

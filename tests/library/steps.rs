@@ -361,6 +361,49 @@ fn homotopy_analysis_shows_its_residuals() {
     }
 }
 
+/// The printed coefficients solve the printed equations, and are those of the printed polynomials.
+#[test]
+fn hermite_pade_shows_the_system_it_solves() {
+    for (equation, degrees) in [("x'' + x + eps*x^3 = 0", [1, 2, 1]), ("x'' + k*sin(x) = 0", [2, 1, 2])] {
+        let [p, q, r] = degrees;
+        let options = Options {
+            method: Some(Method::HermitePade),
+            degrees: Some(Degrees::Quadratic(p, q, r)),
+            ..Options::default()
+        };
+        let solution = solution(equation, &options);
+        let lines = lines(&solution);
+        let mut values = numbers(&[("A", 0.9), ("eps", 0.4)]);
+        let s = value_of("s", &lines).evaluate(&values).expect("a number");
+        values.insert(Symbol::new("s"), s);
+        for (letter, degree) in ["p", "q", "r"].into_iter().zip(degrees) {
+            for k in 0..=degree {
+                let name = format!("{letter}{k}");
+                let value = value_of(&name, &lines).evaluate(&values).expect("a number");
+                values.insert(Symbol::new(&name), value);
+            }
+        }
+        let equations: Vec<&String> = lines.iter().filter(|line| line.ends_with(" = 0")).collect();
+        assert_eq!(equations.len(), (p + q + r + 2) as usize, "{equations:?}");
+        let size = values.values().fold(0.0_f64, |size, value| size.max(value.abs()));
+        for equation in equations {
+            let left = equation.rsplit(":  ").next().and_then(|line| line.strip_suffix(" = 0"));
+            let left = read(left.expect("an equation")).evaluate(&values).expect("a number");
+            assert!(left.abs() < 1e-13 * size, "{equation}: {left}");
+        }
+        for letter in ["P", "Q", "R"] {
+            let defined = solution.definitions.iter().find(|own| own.symbol.name() == letter);
+            let defined = defined
+                .expect("a definition")
+                .meaning
+                .evaluate(&values)
+                .expect("a number");
+            let printed = value_of(letter, &lines).evaluate(&values).expect("a number");
+            assert!((printed / defined - 1.0).abs() < 1e-12, "{letter}: {printed} {defined}");
+        }
+    }
+}
+
 #[test]
 fn pade_shows_the_system_it_solves() {
     for (equation, degrees, small) in [

@@ -511,6 +511,15 @@ fn exit_codes_are_those_of_the_manual() {
         (vec!["derive", "duffing", "--method", "pade", "--order", "3"], 2),
         (vec!["derive", "duffing", "--order", "3,2"], 2),
         (
+            vec!["derive", "duffing", "--method", "hermite-pade", "--order", "2,2,2"],
+            0,
+        ),
+        (
+            vec!["derive", "duffing", "--method", "hermite-pade", "--order", "2,2"],
+            2,
+        ),
+        (vec!["derive", "duffing", "--method", "pade", "--order", "2,2,2"], 2),
+        (
             vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "-1"],
             0,
         ),
@@ -576,6 +585,7 @@ fn latex_documents() -> Vec<(String, String)> {
         "harmonic-balance",
         "exact",
         "pade",
+        "hermite-pade",
         "energy-balance",
         "iteration-perturbation",
         "homotopy-analysis",

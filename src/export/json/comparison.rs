@@ -52,7 +52,7 @@ pub struct ApplyingRow {
     pub method: String,
     /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
     pub order: u32,
-    /// The degrees of numerator and denominator of a Pade approximant; null for every other method.
+    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
     pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
     #[schemars(extend("const" = true))]

@@ -52,7 +52,7 @@ pub struct Row {
     pub method: String,
     /// The order that was chosen; null for a method without one.
     pub order: Option<u32>,
-    /// The degrees of a Pade approximant; null for every other method.
+    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
     pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
     pub applies: bool,

@@ -34,7 +34,7 @@ pub struct SolutionDocument {
     pub method: String,
     /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
     pub order: u32,
-    /// The degrees of numerator and denominator of a Pade approximant; null for every other method.
+    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
     pub degrees: Option<Vec<u32>>,
     /// The symbol in which the expansion runs: a parameter, or the symbol of the amplitude.
     pub small_parameter: String,

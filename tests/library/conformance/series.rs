@@ -162,6 +162,65 @@ fn pade_approximants_agree_with_the_series() {
     ));
 }
 
+/// P + Q f + R f^2 of a quadratic approximant begins with the power that its degrees promise, f the exact series, and the root of its
+/// formula is that series near rest.
+#[test]
+fn hermite_pade_approximants_agree_with_the_series() {
+    for (equation, small, [p, q, r]) in [
+        ("x'' + x + eps*x^3 = 0", "eps", [1, 1, 1]),
+        ("x'' + x + eps*x^3 = 0", "eps", [3, 2, 4]),
+        ("x'' + k*x + eps*x^3 = 0", "eps", [2, 2, 2]),
+        ("x'' + sin(x) = 0", "A", [2, 3, 1]),
+        ("x'' + x + x^2 = 0", "A", [2, 2, 2]),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", "mu", [2, 2, 2]),
+    ] {
+        let options = Options {
+            method: Some(Method::HermitePade),
+            degrees: Some(Degrees::Quadratic(p, q, r)),
+            ..Options::default()
+        };
+        let solution = by_options(equation, options).expect(equation);
+        // Even series run in the square.
+        let step = if small == "eps" || equation.contains("x^2 = 0") {
+            1
+        } else {
+            2
+        };
+        let powers = step * (p + q + r + 2);
+        let series = Options {
+            method: Some(Method::LindstedtPoincare),
+            order: Some(powers + 2),
+            frequency_alone: true,
+            ..Options::default()
+        };
+        let series = by_options(equation, series).expect(equation);
+        let law = Expr::from(series.law.frequency_squared().expect("a series"));
+        let at_rest = law.substitute(small.into(), &Expr::zero()).expect("a number");
+        let f = Expr::divide(&law, &at_rest).expect("no division by zero");
+        let letter = |name: &str| {
+            let own = solution.definitions.iter().find(|own| own.symbol.name() == name);
+            own.expect("a definition").meaning.clone()
+        };
+        let defect = &(&letter("P") + &(&letter("Q") * &f)) + &(&letter("R") * &(&f * &f));
+        let defect = defect.expand().expect("a sum");
+        let polynomial = defect
+            .to_polynomial(&mut |_| None)
+            .expect("no error")
+            .expect("a polynomial");
+        let (lowest, _) = polynomial.exponent_range(small.into()).expect("terms");
+        assert_eq!(lowest, powers as i32, "{equation}: {defect}");
+        // Beside rest, where the series itself is good.
+        let size = if small == "eps" { 1e-3 } else { 0.03 };
+        let values: Vec<(&str, f64)> = vec![(small, size), ("A", if small == "A" { size } else { 1.0 }), ("k", 2.0)];
+        let values: Vec<(&str, f64)> = values
+            .into_iter()
+            .filter(|(name, value)| (*name == small) == (*value == size) && (*name != "k" || equation.contains("k*x")))
+            .collect();
+        let [found, expected] = [&solution, &series].map(|own| squared(equation, own, &values));
+        assert!((found / expected - 1.0).abs() < 1e-13, "{equation}: {found} {expected}");
+    }
+}
+
 /// Lindstedt-Poincare at order n is the expansion of the exact frequency to order n: the elliptic law, expanded exactly by
 /// the series of K and of a power, gives the same fractions.
 #[test]

@@ -1,0 +1,553 @@
+//! Quadratic Hermite-Pade approximants of omega^2: roots of a quadratic equation whose coefficients are polynomials.
+//!
+//! References: R. E. Shafer, *On quadratic approximation*, SIAM J. Numer. Anal. 11 (1974) 447-460; G. A. Baker, P. Graves-Morris,
+//! *Pade Approximants*, 2nd ed., Cambridge 1996, section 8.6.
+//!
+//! ```text
+//! omega^2 = c_0 f,   f = 1 + f_1 s + f_2 s^2 + ...,   s = A^2 or the small parameter, times the symbols that enter in step with it
+//! P + Q f + R f^2 = O(s^n),   deg P = p, deg Q = q, deg R = r,   n = p + q + r + 2
+//! f = (-Q + S sqrt(D))/(2 R) = -2 P/(Q + S sqrt(D)),   D = Q^2 - 4 P R,   2 R + Q > 0 and S = 1 at s = 0
+//! ```
+//!
+//! Where a quotient lines up poles along a cut of omega^2, this has branch points of its own. The root is followed from rest: it goes
+//! on without a jump as long as D does not vanish, and ends where D has a single zero or the root is infinite. Where both roots meet
+//! so closely that D has two zeros all but in one place, they cross: the difference of the roots passes through zero like `s - m`, and
+//! S is the other sign from there on. All zeros of D and of R on the way are [counted for certain](crate::exact::zero_clusters).
+//!
+//! ```
+//! use lindstedt::{Oscillator, method::{Options, solve}, solution::{Degrees, Method}};
+//! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+//! let options = Options { method: Some(Method::HermitePade), degrees: Some(Degrees::Quadratic(1, 1, 1)), ..Options::default() };
+//! let law = solve(&duffing, &options)?;
+//! assert_eq!(law.law.closed_form().unwrap().to_string(), "omega^2 = -(Q - S*sqrt(-4*P*R + Q^2))/(2*R)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::cmp::Ordering;
+
+use num_traits::{One, Signed, Zero};
+
+use super::power_series::{CONSTANT, Resummed, STOPPED, TOO_LONG, has_values};
+use super::{Options, Refusal};
+use crate::derivation::Line;
+use crate::exact::big_float::BigFloat;
+use crate::exact::zero_clusters::{Cluster, clusters};
+use crate::exact::{Integer, Monomial, Polynomial, Rational, convergent, to_f64};
+use crate::expr::{Expr, ExprError, Function};
+use crate::oscillator::Oscillator;
+use crate::series::hermite_pade::by_primes::exact;
+use crate::solution::note::{FollowedRoot, RootEnd};
+use crate::solution::{Definition, Degrees, Method, Note, Solution};
+use crate::symbol::{Symbol, fresh, fresh_stem};
+
+const METHOD: Method = Method::HermitePade;
+
+/// The largest degree of each of the three.
+const LARGEST_DEGREE: u32 = 40;
+
+/// The approximant of the degrees in the options, `[1/1/1]` by default.
+///
+/// # Errors
+/// As for the method of Lindstedt and Poincare; degrees without an approximant, and one whose root cannot be followed.
+pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let degrees = options.degrees.unwrap_or(Degrees::Quadratic(1, 1, 1));
+    let refused = |reason| Refusal::Approximant {
+        method: METHOD,
+        degrees,
+        reason,
+    };
+    let Degrees::Quadratic(p, q, r) = degrees else {
+        return Err(refused("it has three, those of P, Q and R"));
+    };
+    if [p, q, r].iter().any(|degree| *degree > LARGEST_DEGREE) {
+        return Err(refused("degrees go up to [40/40/40]"));
+    }
+    let order = p + q + r + 1;
+    let resummed = Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+    let mut resummed = resummed;
+    resummed.write_squares_by_their_roots();
+    let series = &resummed.series;
+    if (1..=i64::from(order)).all(|power| series.coefficient(power).is_zero()) {
+        return Err(refused(CONSTANT));
+    }
+    let (variable, mut numbers) = series
+        .in_one_variable()
+        .ok_or_else(|| refused("its symbols do not enter in one combination; give numbers for them"))?;
+    numbers.resize(order as usize + 1, Rational::zero());
+    let quadratic = Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
+    // What is squared has one sign.
+    let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
+    let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
+    let root = quadratic
+        .followed(sides)
+        .ok_or_else(|| refused("its root cannot be followed: zeros of its discriminant are too close to each other"))?;
+    let in_words = Words::new(&resummed.names(), variable);
+    let (value, definitions) = in_words.law(&quadratic, &root)?;
+    if !definitions[..3].iter().all(|own| has_values(&own.meaning)) {
+        return Err(refused(TOO_LONG));
+    }
+    let value = &Expr::from(&series.coefficient(0)) * &value;
+    let notes = [resummed.agreement(degrees)]
+        .into_iter()
+        .chain(in_words.note(&root))
+        .chain([Note::MotionOfSeries])
+        .collect();
+    let derivation = match resummed.long {
+        true => vec![Line::words(format!(
+            "the {} linear equations for P, Q and R are solved modulo many primes, and put together",
+            order + 1
+        ))],
+        false => in_words.linear_system(&numbers, &quadratic)?,
+    };
+    Ok(resummed.answer(degrees, (value, definitions), (notes, derivation)))
+}
+
+/// `P + Q f + R f^2`, the lowest powers first: whole numbers without a common factor, `2 R + Q` positive at zero.
+struct Quadratic {
+    lists: [Vec<Integer>; 3],
+}
+
+/// Where the root goes on either side of zero.
+struct Followed {
+    /// Where the sign of the root of D changes.
+    crossings: Vec<Rational>,
+    /// Where it ends, and whether D says so itself everywhere beyond.
+    ends: Vec<(Rational, RootEnd, bool)>,
+}
+
+impl Quadratic {
+    /// The approximant of a series that begins with one, or why there is none.
+    fn of(series: &[Rational], degrees: [usize; 3]) -> Result<Self, &'static str> {
+        let mut one = vec![Rational::zero(); series.len()];
+        one[0] = Rational::one();
+        let square: Vec<Rational> = (0..series.len())
+            .map(|n| (0..=n).map(|k| &series[k] * &series[n - k]).sum())
+            .collect();
+        let [p, q, r] = degrees;
+        let lists = exact(&[(one, p), (series.to_vec(), q), (square, r)]);
+        let lists = lists.and_then(|lists| <[Vec<Integer>; 3]>::try_from(lists).ok());
+        let mut own = Self {
+            lists: lists.ok_or("the equations for P, Q and R are singular")?,
+        };
+        match own.slope_at_zero().cmp(&Integer::zero()) {
+            Ordering::Equal => return Err("both roots of its equation are the same at rest"),
+            Ordering::Less => own
+                .lists
+                .iter_mut()
+                .flatten()
+                .for_each(|number| *number = -std::mem::take(number)),
+            Ordering::Greater => {}
+        }
+        Ok(own)
+    }
+
+    /// `2 R + Q` at zero, where f is one: the root of D there.
+    fn slope_at_zero(&self) -> Integer {
+        let [_, q, r] = &self.lists;
+        &r[0] + &r[0] + &q[0]
+    }
+
+    /// `Q^2 - 4 P R`.
+    fn discriminant(&self) -> Vec<Integer> {
+        let [p, q, r] = &self.lists;
+        let four = Integer::from(4);
+        let mut sum = vec![Integer::zero(); (2 * q.len()).max(p.len() + r.len()) - 1];
+        for (i, own) in q.iter().enumerate() {
+            for (k, other) in q.iter().enumerate() {
+                sum[i + k] += own * other;
+            }
+        }
+        for (i, own) in p.iter().enumerate() {
+            for (k, other) in r.iter().enumerate() {
+                sum[i + k] -= &four * &(own * other);
+            }
+        }
+        sum
+    }
+
+    /// The root on these sides of zero; `None` where its way cannot be told.
+    fn followed(&self, sides: &[i64]) -> Option<Followed> {
+        let mut followed = Followed {
+            crossings: vec![],
+            ends: vec![],
+        };
+        for side in sides {
+            self.follow(*side, &mut followed)?;
+        }
+        Some(followed)
+    }
+
+    /// The root on one side of zero.
+    fn follow(&self, side: i64, followed: &mut Followed) -> Option<()> {
+        /// Roots whose crossing is this close, over the place, cross; what is less close is an end.
+        const CROSSES: f64 = 0.01;
+        let degree: usize = self.lists.iter().map(Vec::len).sum();
+        let bits = 512 + 16 * degree;
+        let floats = |list: &[Integer]| -> Vec<BigFloat> {
+            let mut sign = Integer::one();
+            let mut turned = |number: &Integer| {
+                let value = BigFloat::of_integer(&(number * &sign), bits);
+                sign = &sign * &Integer::from(side);
+                value
+            };
+            list.iter().map(&mut turned).collect()
+        };
+        let [_, q, r] = &self.lists;
+        let (q, r) = (floats(q), floats(r));
+        let is_zero = r.iter().all(BigFloat::is_zero);
+        // What is common to all coefficients of R vanishes at zero alone.
+        let first = r.iter().position(|value| !value.is_zero()).unwrap_or(0);
+        let meetings = clusters(&floats(&self.discriminant()))?;
+        let zeros = if is_zero { vec![] } else { clusters(&r[first..])? };
+        let mut is_upper = true;
+        let place = |cluster: &Cluster| Rational::from_integer(side.into()) * cluster.place.to_fraction();
+        let mut poles = zeros.iter().peekable();
+        for (index, meeting) in meetings.iter().enumerate() {
+            let before = |pole: &&&Cluster| pole.place < meeting.place;
+            if let Some(pole) = first_pole(std::iter::from_fn(|| poles.next_if(|pole| before(&pole))), &q, is_upper) {
+                followed.ends.push((place(pole), RootEnd::Infinite, false));
+                return Some(());
+            }
+            if meeting.count == 2 && meeting.distance.abs() <= CROSSES {
+                is_upper = !is_upper;
+                followed.crossings.push(place(meeting));
+                continue;
+            }
+            // D is negative from here on, if nothing follows.
+            let says_so = meeting.count == 1 && index + 1 == meetings.len();
+            let middle = place(meeting);
+            let distance = crate::exact::from_f64(meeting.distance.abs())?;
+            followed
+                .ends
+                .push((&middle - &middle * distance, RootEnd::Meets, says_so));
+            return Some(());
+        }
+        if let Some(pole) = first_pole(poles, &q, is_upper) {
+            followed.ends.push((place(pole), RootEnd::Infinite, false));
+        }
+        Some(())
+    }
+}
+
+/// The first of these zeros of R where the root is infinite: the other one is, where Q has the sign of the root of D.
+fn first_pole<'a>(zeros: impl Iterator<Item = &'a Cluster>, q: &[BigFloat], is_upper: bool) -> Option<&'a Cluster> {
+    let mut zeros = zeros;
+    zeros.find(|zero| {
+        let nothing = BigFloat::zero(zero.place.bits());
+        let value = q
+            .iter()
+            .rev()
+            .fold(nothing.clone(), |sum, number| &(&sum * &zero.place) + number);
+        (value > nothing) != is_upper
+    })
+}
+
+/// The names with which it is written.
+struct Words {
+    /// Of P, Q, R, and of the sign.
+    letters: [Symbol; 4],
+    /// Of their coefficients, the variable and the series.
+    stems: [String; 3],
+    short: [Symbol; 2],
+    variable: Monomial,
+}
+
+impl Words {
+    fn new(taken: &[Symbol], variable: Monomial) -> Self {
+        Self {
+            letters: ["P", "Q", "R", "S"].map(|letter| fresh(letter, taken)),
+            stems: ["p", "q", "r"].map(|letter| fresh_stem(letter, taken)),
+            short: ["s", "f"].map(|letter| fresh(letter, taken)),
+            variable,
+        }
+    }
+
+    /// f by the letters, and what they stand for; the first three are P, Q and R.
+    fn law(&self, quadratic: &Quadratic, root: &Followed) -> Result<(Expr, Vec<Definition>), ExprError> {
+        let [p, q, r, s] = self.letters.map(Expr::from);
+        let two = Expr::from(2);
+        let square = (&(&q * &q) - &(&Expr::from(4) * &(&p * &r))).sqrt()?;
+        let sign = self.sign(root)?;
+        let upper = match sign.is_one() {
+            true => square,
+            false => &s * &square,
+        };
+        // Of the two forms the one in which nothing cancels at rest.
+        let value = match !quadratic.lists[1][0].is_positive() {
+            true => Expr::divide(&(&upper - &q), &(&two * &r))?,
+            false => Expr::divide(&-&(&two * &p), &(&q + &upper))?,
+        };
+        let definition = |(symbol, meaning): (Symbol, Expr)| Definition { symbol, meaning };
+        let polynomials = self.letters.into_iter().zip(self.polynomials(quadratic));
+        let polynomials = polynomials.map(|(symbol, own)| (symbol, Expr::from(&own)));
+        let sign = (!sign.is_one()).then_some((self.letters[3], sign));
+        Ok((value, polynomials.chain(sign).map(definition).collect()))
+    }
+
+    /// P, Q and R as polynomials in the symbols; in units of the root of D at rest where they are too long for doubles.
+    fn polynomials(&self, quadratic: &Quadratic) -> [Polynomial; 3] {
+        /// Binary digits.
+        const LONG: u64 = 400;
+        let longest = quadratic.lists.iter().flatten().map(Integer::bits).max().unwrap_or(0);
+        let unit = match longest > LONG {
+            true => quadratic.slope_at_zero(),
+            false => Integer::one(),
+        };
+        quadratic.lists.each_ref().map(|list| {
+            let mut sum = Polynomial::zero();
+            for (power, number) in (0..).zip(list) {
+                sum.add_term(self.variable.power(power), Rational::new(number.clone(), unit.clone()));
+            }
+            sum
+        })
+    }
+
+    /// What the root of D is multiplied by: one up to the first crossing, not real beyond an end.
+    fn sign(&self, root: &Followed) -> Result<Expr, ExprError> {
+        let s = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
+        let before = |place: &Rational| -> Result<Expr, ExprError> {
+            let ahead = &Expr::number(place.clone()) - &s;
+            let ahead = if place.is_negative() { -&ahead } else { ahead };
+            Expr::function(Function::Sign, vec![ahead])
+        };
+        let mut sign = Expr::one();
+        for place in &root.crossings {
+            sign = &sign * &before(&short(place))?;
+        }
+        for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| !says_so) {
+            sign = &sign * &before(&short(place))?.sqrt()?;
+        }
+        Ok(sign)
+    }
+
+    /// Where the root crosses the other one and where it ends, if it does.
+    fn note(&self, root: &Followed) -> Option<Note> {
+        let mut crossings: Vec<f64> = root.crossings.iter().map(to_f64).collect();
+        crossings.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let ends: Vec<(f64, RootEnd)> = root.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
+        let says = !crossings.is_empty() || !ends.is_empty();
+        says.then(|| {
+            Note::Followed(FollowedRoot {
+                variable: Expr::from(&Polynomial::term(self.variable.clone(), Rational::one())),
+                sign: self.letters[3],
+                crossings,
+                ends,
+            })
+        })
+    }
+
+    /// The equations for the coefficients, with the numbers of this series in them, and their solution.
+    fn linear_system(&self, series: &[Rational], quadratic: &Quadratic) -> Result<Vec<Line>, ExprError> {
+        let [s, f] = self.short;
+        let power = |k: usize| Expr::from(s).integer_power(k as i64);
+        let in_powers = |numbers: &[Rational]| -> Result<Expr, ExprError> {
+            let terms = numbers.iter().enumerate();
+            let terms = terms.map(|(k, number)| Ok(&Expr::number(number.clone()) * &power(k)?));
+            Ok(Expr::sum(terms.collect::<Result<Vec<_>, ExprError>>()?))
+        };
+        let square: Vec<Rational> = (0..series.len())
+            .map(|n| (0..=n).map(|k| &series[k] * &series[n - k]).sum())
+            .collect();
+        let mut one = vec![Rational::zero(); series.len()];
+        one[0] = Rational::one();
+        let variable = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
+        let name = |list: usize, k: usize| Expr::symbol(&format!("{}{k}", self.stems[list]));
+        let mut lines = vec![
+            Line::equation(s, variable).because("the series runs in"),
+            Line::equation(f, in_powers(series)?).because("over its first coefficient it begins"),
+            Line::equation(Expr::from(f).integer_power(2)?, in_powers(&square)?),
+        ];
+        let [p, q, r] = [0, 1, 2].map(|list| {
+            let terms = 0..quadratic.lists[list].len();
+            let terms = terms.map(|k| Ok(&name(list, k) * &power(k)?));
+            terms.collect::<Result<Vec<_>, ExprError>>().map(Expr::sum)
+        });
+        let [upper, middle, lower] = self.letters.first_chunk::<3>().copied().unwrap_or([s; 3]);
+        for (letter, sum) in [(upper, p?), (middle, q?), (lower, r?)] {
+            lines.push(Line::equation(letter, sum));
+        }
+        for n in 0..series.len() {
+            let mut terms = vec![];
+            for (list, numbers) in [&one[..], series, &square].into_iter().enumerate() {
+                for k in 0..quadratic.lists[list].len().min(n + 1) {
+                    terms.push(&Expr::number(numbers[n - k].clone()) * &name(list, k));
+                }
+            }
+            let words = match n {
+                0 => format!("in {upper} + {middle}*{f} + {lower}*{f}^2 each power of {s} vanishes"),
+                _ => String::new(),
+            };
+            lines.push(Line::equation(Expr::sum(terms), Expr::zero()).because(words));
+        }
+        for (list, numbers) in quadratic.lists.iter().enumerate() {
+            for (k, number) in numbers.iter().enumerate() {
+                let words = match (list, k) {
+                    (0, 0) => "up to a common factor",
+                    _ => "",
+                };
+                let value = Expr::number(Rational::from_integer(number.clone()));
+                lines.push(Line::equation(name(list, k), value).because(words));
+            }
+        }
+        Ok(lines)
+    }
+}
+
+/// A short fraction so near to a place that no value is on the wrong side of it but by rounding.
+fn short(place: &Rational) -> Rational {
+    let tolerance = place.abs() * Rational::new(Integer::one(), Integer::from(10_000_000_000_000_i64));
+    convergent(place, &tolerance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn derived(equation: &str, degrees: [u32; 3]) -> Result<Solution, Refusal> {
+        let [p, q, r] = degrees;
+        let options = Options {
+            method: Some(METHOD),
+            degrees: Some(Degrees::Quadratic(p, q, r)),
+            ..Options::default()
+        };
+        crate::method::solve(&Oscillator::parse(equation).unwrap(), &options)
+    }
+
+    fn at(solution: &Solution, values: &[(&str, f64)]) -> Option<f64> {
+        solution.frequency_squared_at(&|name| {
+            let found = values.iter().find(|(own, _)| *own == name.name());
+            found.map(|(_, value)| *value)
+        })
+    }
+
+    fn of(series: &[Rational], degrees: [usize; 3]) -> Quadratic {
+        Quadratic::of(series, degrees).unwrap_or_else(|reason| panic!("{reason}"))
+    }
+
+    /// The series of the root of `P + Q f + R f^2` that is one at zero, by Newton's method on its coefficients.
+    fn root_series(lists: [&[i64]; 3], length: usize) -> Vec<Rational> {
+        let at = |list: usize, k: usize| Rational::from_integer(lists[list].get(k).copied().unwrap_or(0).into());
+        let slope = at(1, 0) + at(2, 0) + at(2, 0);
+        let mut f = vec![Rational::one()];
+        for n in 1..length {
+            f.push(Rational::zero());
+            let mut rest = at(0, n);
+            for k in 0..=n {
+                rest += at(1, k) * &f[n - k];
+                let square: Rational = (0..=n - k).map(|i| &f[i] * &f[n - k - i]).sum();
+                rest += at(2, k) * square;
+            }
+            f[n] = -rest / &slope;
+        }
+        f
+    }
+
+    #[test]
+    fn an_algebraic_function_is_its_own_approximant() {
+        let lists: [&[i64]; 3] = [&[-3, 2, 5], &[2, 0, -7], &[1, 4, 1]];
+        let found = of(&root_series(lists, 8), [2, 2, 2]);
+        let expected = lists.map(|list| list.iter().map(|number| Integer::from(*number)).collect::<Vec<_>>());
+        assert_eq!(found.lists, expected);
+    }
+
+    /// Two roots that cross: `(f - 1 - s)(f - 3 + s) = 0` at s = 1, exactly; where they nearly do, at the middle of the gap.
+    #[test]
+    fn roots_that_cross_go_straight_on() {
+        for gap in [0, 1, -1] {
+            // (f - 1 - s)(f - 3 + s) + gap s/10^8: all but crossing.
+            let scale = 100_000_000;
+            let lists: [Vec<i64>; 3] = [vec![-3 * scale, -2 * scale + gap, scale], vec![4 * scale], vec![-scale]];
+            let quadratic = Quadratic {
+                lists: lists.map(|list| list.into_iter().map(Integer::from).collect()),
+            };
+            let followed = quadratic.followed(&[1, -1]).expect("a way");
+            assert_eq!(followed.crossings.len(), 1, "{gap}");
+            assert!((to_f64(&followed.crossings[0]) - 1.0).abs() < 1e-6, "{gap}");
+            assert!(followed.ends.is_empty(), "{gap}");
+            let words = Words::new(&[], Monomial::power_of("s".into(), 1));
+            let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
+            let value = |s: f64| {
+                let known = [(Symbol::new("s"), s)].into();
+                let letters = definitions
+                    .iter()
+                    .map(|own| (own.symbol, own.meaning.evaluate(&known).expect("a number")));
+                value.evaluate(&letters.collect()).expect("a root")
+            };
+            for s in [-3.0, 0.0, 0.5, 1.5, 2.5, 10.0] {
+                assert!((value(s) - 1.0 - s).abs() < 1e-6, "{gap}: {} at {s}", value(s));
+            }
+        }
+    }
+
+    /// `f^2 = 1 - s` ends at one, `f (1 - s) = 1` is infinite there, and both say so; `f^2 = (1 - s)(2 - s)/2` does not come back.
+    #[test]
+    fn a_root_that_ends_has_no_value_beyond() {
+        let followed = |lists: [&[i64]; 3]| {
+            let quadratic = Quadratic {
+                lists: lists.map(|list| list.iter().map(|number| Integer::from(*number)).collect()),
+            };
+            let followed = quadratic.followed(&[1, -1]).expect("a way");
+            let ends: Vec<(f64, RootEnd)> = followed
+                .ends
+                .iter()
+                .map(|(place, end, _)| (to_f64(place), *end))
+                .collect();
+            let words = Words::new(&[], Monomial::power_of("s".into(), 1));
+            let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
+            let value = move |s: f64| {
+                let known = [(Symbol::new("s"), s)].into();
+                let letters = definitions
+                    .iter()
+                    .map(|own| Some((own.symbol, own.meaning.evaluate(&known).ok()?)));
+                value.evaluate(&letters.collect::<Option<_>>()?).ok()
+            };
+            (ends, value)
+        };
+        let (ends, value) = followed([&[-1, 1], &[0], &[1]]);
+        assert_eq!(ends, [(1.0, RootEnd::Meets)]);
+        assert!(value(0.75).is_some_and(|found| (found - 0.5).abs() < 1e-15) && value(1.5).is_none());
+        let (ends, value) = followed([&[-2, 3, -1], &[0], &[2]]);
+        assert_eq!(ends, [(1.0, RootEnd::Meets)]);
+        assert!(value(0.5).is_some() && value(1.5).is_none() && value(3.0).is_none());
+        // f^2 (1 - s) - 2 f s - 1: one root is infinite at s = 1, that with which it begins.
+        let (ends, value) = followed([&[-1], &[0, -2], &[1, -1]]);
+        assert_eq!(ends, [(1.0, RootEnd::Infinite)]);
+        assert!(value(0.5).is_some() && value(1.5).is_none());
+        assert!(value(-5.0).is_some_and(|f| (f * f * 6.0 + 10.0 * f - 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn degrees_without_an_approximant_say_why() {
+        for (equation, degrees, reason) in [
+            ("x'' + 4*x = 0", [1, 1, 1], "does not depend"),
+            ("x'' + x + b*x^3 + c*x^5 = 0", [1, 1, 1], "give numbers"),
+            ("x'' + sin(x) = 0", [41, 1, 1], "[40/40/40]"),
+        ] {
+            let refusal = derived(equation, degrees).unwrap_err().to_string();
+            assert!(refusal.contains(reason), "{refusal}");
+        }
+        let quotient = Options {
+            method: Some(METHOD),
+            degrees: Some(Degrees::Quotient(2, 1)),
+            ..Options::default()
+        };
+        let pendulum = Oscillator::parse("x'' + sin(x) = 0").unwrap();
+        let refusal = crate::method::solve(&pendulum, &quotient).unwrap_err().to_string();
+        assert!(refusal.contains("it has three"), "{refusal}");
+    }
+
+    /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))), for a softening spring as well.
+    #[test]
+    fn the_elliptic_frequency_is_met() {
+        let solution = derived("x'' + x + eps*x^3 = 0", [8, 8, 8]).unwrap();
+        for (size, error) in [(-0.5, 1e-9), (0.5, 1e-13), (4.0, 1e-11), (100.0, 1e-8)] {
+            let (mut a, mut g) = (1.0, f64::sqrt(1.0 - size / (2.0 * (1.0 + size))));
+            for _ in 0..9 {
+                (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
+            }
+            let omega = f64::sqrt(1.0 + size) * a;
+            let found = at(&solution, &[("A", 1.0), ("eps", size)]).expect("a value").sqrt();
+            assert!((found / omega - 1.0).abs() < error, "{size}: {found} {omega}");
+        }
+    }
+}

@@ -1,11 +1,12 @@
 //! Contact: its begin and its end, and what happens in a step of the regularised equation.
 
-use super::{Event, Runner, turning_points};
+use super::{Event, Loaded, Runner, turning_points};
 use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
 use crate::impact::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
 use crate::impact::simulation::Regime;
 use crate::impact::simulation::{Turn, enter};
+use crate::impact::taylor::course::Course;
 use crate::impact::taylor::series::{End, HIGHEST_ORDER};
 
 /// One step of the regularised equation: w, v and t as polynomials.
@@ -41,31 +42,52 @@ impl ContactStep<'_> {
 }
 
 impl Runner {
-    /// Takes a whole step in contact if its ends show that nothing happens in it and nobody wants to see it.
-    pub(super) fn press_on(&mut self, (side, barrier): (Side, f64), end: End) -> bool {
-        let turns = self.velocity.abs() <= end.variation;
+    /// Takes a step in contact with a plain course, if nothing else ends it.
+    pub(super) fn press_on(
+        &mut self,
+        (side, barrier): (Side, f64),
+        end: End,
+        course: Course,
+        load: impl FnOnce() -> Loaded,
+    ) -> bool {
         let lowest = self.velocity - end.variation;
-        if turns
-            || self.model.would_pull(lowest)
-            || self.settings.keep_path
-            || self.released
-            || end.place <= 0.0
-            || self.settings.duration - self.t <= end.time
-        {
+        if self.model.would_pull(lowest) || self.settings.duration - self.t <= end.time {
             return false;
         }
-        let depth = end.place * end.place;
-        let (sine, cosine) = (barrier + side.sign() * depth).sin_cos();
+        let x = |w: f64| barrier + side.sign() * (w * w);
+        let (at, w, velocity, time) = match course.crossing {
+            None => (self.length, end.place, end.velocity, end.time),
+            Some((point, _)) => (point.at, 0.0, point.velocity, point.time),
+        };
+        let (sine, cosine) = self.angle(x(w));
         // What is stored in the barrier comes on top.
-        if self.is_at_rest_energy(end.velocity, cosine) {
+        if self.is_at_rest_energy(velocity, cosine) {
             return false;
+        }
+        let mut deepest = w * w;
+        if let Some(turn) = course.turn {
+            deepest = deepest.max(turn.place * turn.place);
+            self.turns.push(Turn {
+                t: self.t + turn.time,
+                x: x(turn.place),
+            });
         }
         if let Some(impact) = self.impacts.last_mut() {
-            impact.penetration = impact.penetration.max(depth);
+            impact.penetration = impact.penetration.max(deepest);
         }
-        self.t += end.time.max(0.0);
-        (self.place, self.velocity, self.sine, self.cosine) = (end.place, end.velocity, sine, cosine);
-        self.adapt();
+        let start = self.t;
+        self.t = start + time.max(0.0);
+        if self.settings.keep_path {
+            let series = load();
+            let series = series.each_ref().map(|series| &series[..=self.order]);
+            self.path
+                .push_contact([start, self.t], (side, barrier), at, self.unit, series);
+        }
+        (self.place, self.velocity, self.sine, self.cosine) = (w, velocity, sine, cosine);
+        match course.crossing {
+            None => self.adapt(),
+            Some(_) => self.leave(side.sign() * velocity),
+        }
         true
     }
 

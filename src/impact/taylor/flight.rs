@@ -1,41 +1,53 @@
 //! Free flight: what ends a step of it, a touch at the barrier, the onset of a contact from rest on it, a turning point.
 
-use super::{Event, LIGHT, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
+use super::{Event, LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
 use crate::impact::model::Side;
 use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
 use crate::impact::simulation::Regime;
 use crate::impact::simulation::{Turn, enter};
+use crate::impact::taylor::course::Course;
 use crate::impact::taylor::series::{End, HIGHEST_ORDER};
 
 impl Runner {
-    /// Takes a whole step of free flight if its ends show that nothing happens in it and nobody wants to see it.
-    pub(super) fn fly_on(&mut self, end: End) -> bool {
-        let turns = self.velocity.abs() <= end.variation;
-        let beyond = |side: Side| {
-            self.model
-                .barrier(side)
-                .is_some_and(|barrier| side.sign() * (end.place - barrier) > 0.0)
+    /// Takes a step of free flight with a plain course, if nothing else ends it.
+    pub(super) fn fly_on(&mut self, end: End, course: Course, load: impl FnOnce() -> Loaded) -> bool {
+        let (x, velocity, touched) = match course.crossing {
+            None => (end.place, end.velocity, None),
+            Some((point, rises)) => {
+                let side = if rises { Side::Right } else { Side::Left };
+                if side.sign() * point.velocity <= SLOWEST_TOUCH {
+                    return false;
+                }
+                let barrier = self.model.barrier(side).unwrap_or_default();
+                (barrier, point.velocity, Some((side, point.at)))
+            }
         };
-        if turns
-            || self.settings.keep_path
-            || self.released
-            || self.regime != Regime::Free
-            || beyond(Side::Left)
-            || beyond(Side::Right)
-        {
+        let (sine, cosine) = self.angle(x);
+        if self.regime != Regime::Free || self.is_at_rest_energy(velocity, cosine) {
             return false;
         }
-        let (sine, cosine) = end.place.sin_cos();
-        if self.is_at_rest_energy(end.velocity, cosine) {
-            return false;
+        if let Some(turn) = course.turn {
+            self.turns.push(Turn {
+                t: self.t + turn.at * self.unit,
+                x: turn.place,
+            });
         }
-        self.t = if self.last {
-            self.settings.duration
-        } else {
-            self.t + self.length * self.unit
+        let start = self.t;
+        self.t = match touched {
+            None if self.last => self.settings.duration,
+            None => start + self.length * self.unit,
+            Some((_, at)) => start + at * self.unit,
         };
-        (self.place, self.velocity, self.sine, self.cosine) = (end.place, end.velocity, sine, cosine);
-        self.adapt();
+        if self.settings.keep_path {
+            let [x, v, _] = load();
+            let (x, v) = (&x[..=self.order], &v[..=self.order]);
+            self.path.push_flight([start, self.t], self.regime, self.unit, x, v);
+        }
+        (self.place, self.velocity, self.sine, self.cosine) = (x, velocity, sine, cosine);
+        match touched {
+            None => self.adapt(),
+            Some((side, _)) => self.touch(side, side.sign() * velocity),
+        }
         true
     }
 
@@ -53,7 +65,10 @@ impl Runner {
         } else {
             (value(x, end), value(v, end))
         };
-        let (mut sine, mut cosine) = x_end.sin_cos();
+        if let Some(Event::Touch(side)) = event {
+            x_end = self.model.barrier(side).unwrap_or(x_end);
+        }
+        let (mut sine, mut cosine) = self.angle(x_end);
         if let Some(rest_energy) = self.settings.rest_energy
             && self.is_at_rest_energy(v_end, cosine)
             && matches!(self.regime, Regime::Free)

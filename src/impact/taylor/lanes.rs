@@ -6,14 +6,16 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::course::{Courses, courses};
 use super::series::{Coefficients, Ends, HIGHEST_ORDER, Inputs, Terms, contact, flight};
+use super::step::step_lengths;
 use super::{Equation, Runner};
 
 /// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
 const LANES: usize = 8;
 
-/// Runs under way at once: so many that eight of them nearly always want the same series.
-const POOL: usize = 48;
+/// Runs under way at once: so many that eight of them always want the same series, and so few that they stay in the cache.
+const POOL: usize = 16;
 
 /// The series of one group; always compiled into its caller, so that it gets the widest registers there are.
 struct Expansion<'a> {
@@ -25,30 +27,41 @@ struct Expansion<'a> {
 }
 
 impl WithSimd for Expansion<'_> {
-    type Output = ();
+    /// How far they reach.
+    type Output = [f64; LANES];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, _: S) -> [f64; LANES] {
         match self.equation {
             Equation::Flight => flight(self.inputs, self.order, self.terms, self.series),
             Equation::Contact => contact(self.inputs, self.order, self.terms, self.series),
         }
+        step_lengths(
+            &self.series.velocity,
+            self.order,
+            &self.inputs.size,
+            &self.inputs.allowed,
+        )
     }
 }
 
-/// Its values at the ends of the steps.
+/// Its values at the ends of the steps, and what happens in them.
 struct Evaluation<'a> {
     series: &'a Coefficients<LANES>,
+    inputs: &'a Inputs<LANES>,
     lengths: &'a [f64; LANES],
     order: usize,
+    equation: Equation,
 }
 
 impl WithSimd for Evaluation<'_> {
-    type Output = Ends<LANES>;
+    type Output = (Ends<LANES>, Courses<LANES>);
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Ends<LANES> {
-        self.series.ends(self.lengths, self.order)
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let ends = self.series.ends(self.lengths, self.order, self.equation);
+        let step = (self.order, self.equation);
+        (ends, courses(self.series, step, self.inputs, self.lengths, &ends))
     }
 }
 
@@ -117,7 +130,7 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
                 order = runner.order();
             }
         }
-        arch.dispatch(Expansion {
+        let proposed = arch.dispatch(Expansion {
             inputs: &inputs,
             order,
             terms,
@@ -127,17 +140,19 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
         let mut lengths = [0.0; LANES];
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                lengths[lane] = runner.reach(series.last(order, lane));
+                lengths[lane] = runner.reach(proposed[lane]);
             }
         }
-        let ends = arch.dispatch(Evaluation {
+        let (ends, courses) = arch.dispatch(Evaluation {
             series: &series,
+            inputs: &inputs,
             lengths: &lengths,
             order,
+            equation,
         });
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                runner.advance(ends.lane(lane), || series.lane(order, lane));
+                runner.advance(ends.lane(lane), courses.lane(lane), || series.lane(order, lane));
             }
             fresh.push(place);
         }

@@ -15,10 +15,12 @@
 //! ```
 //!
 //! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is given its coefficients
-//! ([`Runner::advance`]); who computes them, for one motion or for several side by side, it does not know. What may end a step
-//! stands in `flight` and `contact`, what dry friction does at a turning point in `friction`, the length of a step in `step`.
+//! ([`Runner::advance`]); who computes them, for one motion or for several side by side, it does not know. What happens in most
+//! steps, a turning point and a touch or a release, is found side by side too, in `course`; what else may end a step stands in
+//! `flight` and `contact`, what dry friction does at a turning point in `friction`, the length of a step in `step`.
 
 mod contact;
+mod course;
 mod flight;
 mod friction;
 mod lanes;
@@ -33,9 +35,10 @@ use super::simulation::{
     Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter, first_swing, has_rested,
     scaled,
 };
+use course::{Course, courses};
 pub(super) use lanes::follow;
-use series::{Coefficients, End, HIGHEST_ORDER, Inputs, LAST, Terms};
-use step::step_length;
+use series::{Coefficients, End, HIGHEST_ORDER, Inputs, Terms};
+use step::step_lengths;
 
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
@@ -59,6 +62,9 @@ const VANISHING: f64 = 1e-280;
 /// Events in a row without progress of time after which a run is called stalled.
 const MOST_IDLE: usize = 100;
 
+/// The coefficients of a step of one motion: x or w, v, t.
+type Loaded = [[f64; HIGHEST_ORDER + 1]; 3];
+
 /// Which series is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Equation {
@@ -78,6 +84,8 @@ pub(super) struct Runner {
     velocity: f64,
     sine: f64,
     cosine: f64,
+    /// Sine and cosine of the barriers, the left one first.
+    angles: [(f64, f64); 2],
     /// Coulomb friction alone: the direction of the motion.
     direction: f64,
     /// Let go by friction just now: the acceleration is still zero.
@@ -126,9 +134,11 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
             Equation::Flight => series::flight(&inputs, order, terms, &mut series),
             Equation::Contact => series::contact(&inputs, order, terms, &mut series),
         }
-        let length = runner.reach(series.last(order, 0));
-        let ends = series.ends(&[length], order);
-        runner.advance(ends.lane(0), || series.lane(order, 0));
+        let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
+        let length = runner.reach(proposed);
+        let ends = series.ends(&[length], order, equation);
+        let courses = courses(&series, (order, equation), &inputs, &[length], &ends);
+        runner.advance(ends.lane(0), courses.lane(0), || series.lane(order, 0));
     }
     runner.finish(start)
 }
@@ -153,6 +163,7 @@ impl Runner {
             velocity: start.velocity,
             sine: 0.0,
             cosine: 0.0,
+            angles: [model.left, model.right].map(|barrier| barrier.unwrap_or_default().sin_cos()),
             direction: 0.0,
             released: false,
             unit: 1.0,
@@ -297,30 +308,38 @@ impl Runner {
         inputs.eta[lane] = model.frequency_ratio;
         inputs.gamma[lane] = model.gamma;
         inputs.mu[lane] = model.mu;
+        (inputs.size[lane], inputs.allowed[lane]) = self.allowance();
+        (inputs.lower[lane], inputs.upper[lane]) = match self.regime {
+            Regime::Contact(_) => (0.0, f64::INFINITY),
+            _ => (
+                model.left.unwrap_or(f64::NEG_INFINITY),
+                model.right.unwrap_or(f64::INFINITY),
+            ),
+        };
     }
 
-    /// How far the series reaches, in its unit: from the last coefficients of the velocity. The step ends there if
-    /// nothing happens before.
-    fn reach(&mut self, last: [f64; LAST]) -> f64 {
+    /// How large the motion is now, and what the first term left out of a step may be.
+    fn allowance(&self) -> (f64, f64) {
         let tolerance = &self.settings;
+        let place = match self.regime {
+            Regime::Contact(_) => self.impacts.last().map_or(0.0, |impact| impact.speed_in),
+            _ => self.place.abs(),
+        };
+        let size = place.max(self.velocity.abs()).max(tolerance.absolute_tolerance);
+        let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
+        (size, allowed)
+    }
+
+    /// How far the step goes, in its unit, where the series reaches so far: it ends there if nothing happens before.
+    fn reach(&mut self, proposed: f64) -> f64 {
+        self.proposed = proposed;
+        self.last = false;
         if matches!(self.regime, Regime::Contact(_)) {
-            let entry = self.impacts.last().map_or(0.0, |impact| impact.speed_in);
-            let size = entry.max(self.velocity.abs()).max(tolerance.absolute_tolerance);
-            let allowed = SAFETY * (tolerance.relative_tolerance * size + tolerance.absolute_tolerance);
-            self.proposed = step_length(size, allowed, last, self.order);
-            self.length = self.proposed.min(LONGEST_CONTACT_STEP);
-            self.last = false;
+            self.length = proposed.min(LONGEST_CONTACT_STEP);
             return self.length;
         }
-        let size = self
-            .place
-            .abs()
-            .max(self.velocity.abs())
-            .max(tolerance.absolute_tolerance);
-        let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
-        self.proposed = step_length(size, allowed, last, self.order);
         let remaining = self.settings.duration - self.t;
-        let length = self.proposed.min(LONGEST_STEP / self.unit);
+        let length = proposed.min(LONGEST_STEP / self.unit);
         self.last = length * self.unit >= remaining;
         self.length = if self.last { remaining / self.unit } else { length };
         self.length
@@ -328,7 +347,7 @@ impl Runner {
 
     /// Goes on with the series at the present moment: its values at the end of the step, and where they do not say
     /// enough, its coefficients: x and v, or w, v and t.
-    fn advance(&mut self, end: End, load: impl FnOnce() -> [[f64; HIGHEST_ORDER + 1]; 3]) {
+    fn advance(&mut self, end: End, course: Option<Course>, load: impl Fn() -> Loaded) {
         let (before, turns) = (self.t, self.turns.len());
         if !(end.place.is_finite() && end.variation.is_finite()) {
             self.stop = Some(Stop::NotFinite { t: self.t });
@@ -339,11 +358,15 @@ impl Runner {
             self.stop = Some(Stop::StepTooSmall { t: self.t });
             return;
         }
-        let uneventful = match contact {
-            Some(contact) => self.press_on(contact, end),
-            None => self.fly_on(end),
-        };
-        if !uneventful {
+        let plain = course.filter(|course| {
+            let sticks = course.turn.is_some() && self.model.sticks();
+            !(sticks || self.released)
+        });
+        let done = plain.is_some_and(|course| match contact {
+            Some(contact) => self.press_on(contact, end, course, &load),
+            None => self.fly_on(end, course, &load),
+        });
+        if !done {
             let [mut place, mut velocity, time] = load();
             if self.released {
                 (velocity[1], place[2]) = (0.0, 0.0);
@@ -387,7 +410,16 @@ impl Runner {
     }
 
     fn set_angle(&mut self, x: f64) {
-        (self.sine, self.cosine) = x.sin_cos();
+        (self.sine, self.cosine) = self.angle(x);
+    }
+
+    /// Sine and cosine of x; those of the barriers are known.
+    fn angle(&self, x: f64) -> (f64, f64) {
+        match x {
+            _ if self.model.right == Some(x) => self.angles[1],
+            _ if self.model.left == Some(x) => self.angles[0],
+            _ => x.sin_cos(),
+        }
     }
 
     /// Keeps the unit near the length of the steps.

@@ -17,7 +17,9 @@
 //! Times are counted in a unit of choice, so that no coefficient over- or underflows. `L` motions go through the same
 //! operations side by side; each gets bit for bit what it would get alone.
 
+use super::{Equation, Loaded};
 use crate::impact::model::STEEPNESS;
+use crate::impact::polynomial::lanes::{values, variations};
 
 /// Highest order of a series.
 pub(super) const HIGHEST_ORDER: usize = 30;
@@ -49,6 +51,7 @@ impl Terms {
 
 /// What the series of `L` motions start from: where they are now, and their parameters. In contact everything is seen in the mirror of its side.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 pub(super) struct Inputs<const L: usize> {
     /// x in flight, w = sqrt(x - x_r) in contact.
     pub(super) place: [f64; L],
@@ -68,6 +71,12 @@ pub(super) struct Inputs<const L: usize> {
     pub(super) eta: [f64; L],
     pub(super) gamma: [f64; L],
     pub(super) mu: [f64; L],
+    /// How large the motion is, and what the first term left out of a step may be.
+    pub(super) size: [f64; L],
+    pub(super) allowed: [f64; L],
+    /// Between which x or w stays in this phase.
+    pub(super) lower: [f64; L],
+    pub(super) upper: [f64; L],
 }
 
 impl<const L: usize> Inputs<L> {
@@ -87,11 +96,17 @@ impl<const L: usize> Inputs<L> {
             eta: zero,
             gamma: zero,
             mu: zero,
+            size: zero,
+            allowed: zero,
+            lower: zero,
+            upper: zero,
         }
     }
 }
 
-/// What a step is made of: two or three series, all but the first two scratch outside contact.
+/// What a step is made of: two or three series, all but the first two scratch outside contact. No coefficient of eight lanes lies
+/// across two lines of the cache.
+#[repr(align(64))]
 pub(super) struct Coefficients<const L: usize> {
     /// x in flight, w in contact.
     pub(super) place: Series<L>,
@@ -132,10 +147,10 @@ impl<const L: usize> Coefficients<L> {
 /// The values of the series at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ends<const L: usize> {
-    place: [f64; L],
-    velocity: [f64; L],
-    time: [f64; L],
-    variation: [f64; L],
+    pub(super) place: [f64; L],
+    pub(super) velocity: [f64; L],
+    pub(super) time: [f64; L],
+    pub(super) variation: [f64; L],
 }
 
 /// Those of one motion.
@@ -161,18 +176,8 @@ impl<const L: usize> Ends<L> {
 }
 
 impl<const L: usize> Coefficients<L> {
-    /// The last coefficients of v, the very last first.
-    #[inline(always)]
-    pub(super) fn last(&self, order: usize, lane: usize) -> [f64; LAST] {
-        let mut last = [0.0; LAST];
-        for (back, coefficient) in last.iter_mut().enumerate() {
-            *coefficient = self.velocity[order - back][lane];
-        }
-        last
-    }
-
     /// The series of one motion: x or w, v, t.
-    pub(super) fn lane(&self, order: usize, lane: usize) -> [[f64; HIGHEST_ORDER + 1]; 3] {
+    pub(super) fn lane(&self, order: usize, lane: usize) -> Loaded {
         let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
         for (own, all) in own.iter_mut().zip([&self.place, &self.velocity, &self.time]) {
             for (coefficient, lanes) in own.iter_mut().zip(all).take(order + 1) {
@@ -182,42 +187,18 @@ impl<const L: usize> Coefficients<L> {
         own
     }
 
-    /// The values of the series where the steps end, all four at once, in the order of operations of
-    /// [`value`](super::polynomial::value).
+    /// The values of the series where the steps end.
     #[inline(always)]
-    pub(super) fn ends(&self, lengths: &[f64; L], order: usize) -> Ends<L> {
+    pub(super) fn ends(&self, lengths: &[f64; L], order: usize, equation: Equation) -> Ends<L> {
         let order = order.min(HIGHEST_ORDER);
-        let zero = [0.0; L];
-        let (mut even, mut odd, mut variation) = ([zero; 3], [zero; 3], zero);
-        let square: [f64; L] = each(|lane| lengths[lane] * lengths[lane]);
-        let all = [&self.place, &self.velocity, &self.time];
-        if order.is_multiple_of(2) {
-            even = all.map(|series| series[order]);
-            variation = each(|lane| self.velocity[order][lane].abs() * lengths[lane]);
-        }
-        for pair in (0..order.div_ceil(2)).rev() {
-            for (series, (even, odd)) in all.iter().zip(even.iter_mut().zip(&mut odd)) {
-                for lane in 0..L {
-                    even[lane] = even[lane] * square[lane] + series[2 * pair][lane];
-                    odd[lane] = odd[lane] * square[lane] + series[2 * pair + 1][lane];
-                }
-            }
-            for lane in 0..L {
-                let outer = (variation[lane] + self.velocity[2 * pair + 1][lane].abs()) * lengths[lane];
-                variation[lane] = if pair == 0 {
-                    outer
-                } else {
-                    (outer + self.velocity[2 * pair][lane].abs()) * lengths[lane]
-                };
-            }
-        }
-        let [place, velocity, time] =
-            [0, 1, 2].map(|part| each(|lane| even[part][lane] + lengths[lane] * odd[part][lane]));
         Ends {
-            place,
-            velocity,
-            time,
-            variation,
+            place: values(&self.place[..=order], lengths),
+            velocity: values(&self.velocity[..=order], lengths),
+            time: match equation {
+                Equation::Flight => [0.0; L],
+                Equation::Contact => values(&self.time[..=order], lengths),
+            },
+            variation: variations(&self.velocity[..=order], lengths),
         }
     }
 }
@@ -226,38 +207,69 @@ impl<const L: usize> Coefficients<L> {
 #[inline(always)]
 fn product<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize) -> [f64; L] {
     let (mut even, mut odd) = ([0.0; L], [0.0; L]);
-    let (a, b) = (&a[..=n], &b[..=n]);
-    let mut k = 0;
-    while k < n {
+    let (a, middle) = a[..=n].as_chunks::<2>();
+    let (first, b) = b[..=n].as_rchunks::<2>();
+    for (a, b) in a.iter().zip(b.iter().rev()) {
         for lane in 0..L {
-            even[lane] += a[k][lane] * b[n - k][lane];
-            odd[lane] += a[k + 1][lane] * b[n - k - 1][lane];
-        }
-        k += 2;
-    }
-    if k == n {
-        for lane in 0..L {
-            even[lane] += a[n][lane] * b[0][lane];
+            even[lane] += a[0][lane] * b[1][lane];
+            odd[lane] += a[1][lane] * b[0][lane];
         }
     }
-    each(|lane| even[lane] + odd[lane])
+    for (a, b) in middle.iter().zip(first) {
+        for lane in 0..L {
+            even[lane] += a[lane] * b[lane];
+        }
+    }
+    for lane in 0..L {
+        even[lane] += odd[lane];
+    }
+    even
+}
+
+/// (a b)_n and (a c)_n, with every a_k read once.
+#[inline(always)]
+fn products<const L: usize>(a: &Series<L>, [b, c]: [&Series<L>; 2], n: usize) -> [[f64; L]; 2] {
+    let zero = [0.0; L];
+    let (mut b_even, mut b_odd, mut c_even, mut c_odd) = (zero, zero, zero, zero);
+    let (a, last) = a[..=n].as_chunks::<2>();
+    let ((b_first, b), (c_first, c)) = (b[..=n].as_rchunks::<2>(), c[..=n].as_rchunks::<2>());
+    for (a, (b, c)) in a.iter().zip(b.iter().zip(c).rev()) {
+        for lane in 0..L {
+            b_even[lane] += a[0][lane] * b[1][lane];
+            b_odd[lane] += a[1][lane] * b[0][lane];
+            c_even[lane] += a[0][lane] * c[1][lane];
+            c_odd[lane] += a[1][lane] * c[0][lane];
+        }
+    }
+    for (a, (b, c)) in last.iter().zip(b_first.iter().zip(c_first)) {
+        for lane in 0..L {
+            b_even[lane] += a[lane] * b[lane];
+            c_even[lane] += a[lane] * c[lane];
+        }
+    }
+    for lane in 0..L {
+        b_even[lane] += b_odd[lane];
+        c_even[lane] += c_odd[lane];
+    }
+    [b_even, c_even]
 }
 
 /// (a a)_n.
 #[inline(always)]
 fn square<const L: usize>(a: &Series<L>, n: usize) -> [f64; L] {
     let mut sum = [0.0; L];
+    let half = n.div_ceil(2);
     let a = &a[..=n];
-    for k in 0..n.div_ceil(2) {
+    for (low, high) in a[..half].iter().zip(a.iter().rev()) {
         for lane in 0..L {
-            sum[lane] += a[k][lane] * a[n - k][lane];
+            sum[lane] += low[lane] * high[lane];
         }
     }
-    if n.is_multiple_of(2) {
-        each(|lane| 2.0 * sum[lane] + a[n / 2][lane] * a[n / 2][lane])
-    } else {
-        each(|lane| 2.0 * sum[lane])
+    let middle = if n.is_multiple_of(2) { a[half] } else { [0.0; L] };
+    for lane in 0..L {
+        sum[lane] = 2.0 * sum[lane] + middle[lane] * middle[lane];
     }
+    sum
 }
 
 #[inline(always)]
@@ -289,7 +301,7 @@ fn sine_and_cosine<const L: usize>(
     factor: &[f64; L],
     n: usize,
 ) {
-    let (up, down) = (product(rate, cosine, n - 1), product(rate, sine, n - 1));
+    let [up, down] = products(rate, [cosine, sine], n - 1);
     for lane in 0..L {
         sine[n][lane] = factor[lane] * INVERSE[n] * up[lane];
         cosine[n][lane] = -factor[lane] * INVERSE[n] * down[lane];
@@ -374,8 +386,6 @@ pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: T
         }
     }
     for n in 0..order {
-        // dx/ds = w v, and the depth w^2 has the same derivative.
-        series.rate[n] = product(&series.place, &series.velocity, n);
         if n > 0 {
             let rate = series.rate[n - 1];
             series.depth[n] = each(|lane| inputs.unit[lane] * INVERSE[n] * rate[lane]);
@@ -400,7 +410,9 @@ pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: T
             slow = each(|lane| slow[lane] - inputs.beta[lane] * push[lane]);
         }
         series.slow[n] = slow;
-        let carried = product(&series.place, &series.slow, n);
+        // dx/ds = w v, and the depth w^2 has the same derivative.
+        let [rate, carried] = products(&series.place, [&series.velocity, &series.slow], n);
+        series.rate[n] = rate;
         let mut force: [f64; L] = each(|lane| {
             -carried[lane] - inputs.viscous[lane] * series.rate[n][lane] - inputs.gamma[lane] * series.fourth[n][lane]
         });
@@ -445,6 +457,7 @@ mod tests {
             eta: [1.3],
             gamma: [500.0],
             mu: on(terms.damped_contact, 70.0),
+            ..Inputs::new()
         }
     }
 

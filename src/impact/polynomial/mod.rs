@@ -6,11 +6,15 @@
 //! max|p''| <= sum k (k - 1) |c_k| h^(k-2)
 //! ```
 //!
-//! An interval on which the line through the middle stays further from zero than the second bound holds no root; one
-//! on which the slope stays further from zero than the first bound on p'' holds at most one; any other is halved. So no
+//! Where Bernstein's form says that there is no change of sign, or one, nothing is searched (`lanes`, for several polynomials side
+//! by side). Otherwise an interval on which the line through the middle stays further from zero than the second bound holds no
+//! root; one on which the slope stays further from zero than the first bound on p'' holds at most one; any other is halved. So no
 //! root is missed, however close two of them lie, down to the rounding of the polynomial itself.
 
+pub(super) mod lanes;
+
 use crate::numeric::ode::root::find_root;
+use lanes::{changes_of_sign, crossings, values, values_and_slopes, variations};
 
 /// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series never has more.
 #[derive(Debug, Clone, Copy)]
@@ -45,51 +49,27 @@ impl Roots {
     }
 }
 
-/// p(u), as even part + u odd part: two short chains of operations instead of a long one.
+/// p(u).
 pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
-    let square = u * u;
-    let pairs = coefficients.chunks_exact(2);
-    let mut even = pairs.remainder().first().copied().unwrap_or(0.0);
-    let mut odd = 0.0;
-    for pair in pairs.rev() {
-        even = even * square + pair[0];
-        odd = odd * square + pair[1];
-    }
-    even + u * odd
+    let [value] = values(alone(coefficients), &[u]);
+    value
 }
 
-/// p(u) and p'(u), likewise.
-pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
-    let square = u * u;
-    let pairs = coefficients.chunks_exact(2);
-    let mut even = pairs.remainder().first().copied().unwrap_or(0.0);
-    let (mut odd, mut even_slope, mut odd_slope) = (0.0, 0.0, 0.0);
-    for pair in pairs.rev() {
-        even_slope = even_slope * square + even;
-        odd_slope = odd_slope * square + odd;
-        even = even * square + pair[0];
-        odd = odd * square + pair[1];
-    }
-    // The slopes so far are those by u^2.
-    (even + u * odd, 2.0 * u * (even_slope + u * odd_slope) + odd)
+/// p(u) and p'(u).
+fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
+    let ([value], [slope]) = values_and_slopes(alone(coefficients), &[u]);
+    (value, slope)
 }
 
 /// A bound on |p(u) - p(0)| for 0 <= u <= h.
 pub(super) fn variation(coefficients: &[f64], h: f64) -> f64 {
-    let mut sum = 0.0;
-    for coefficient in coefficients.iter().skip(1).rev() {
-        sum = (sum + coefficient.abs()) * h;
-    }
+    let [sum] = variations(alone(coefficients), &[h]);
     sum
 }
 
-/// A bound on |p'(u) - p'(0)| for 0 <= u <= h.
-fn slope_variation(coefficients: &[f64], h: f64) -> f64 {
-    let mut sum = 0.0;
-    for (k, coefficient) in coefficients.iter().enumerate().skip(2).rev() {
-        sum = (sum + k as f64 * coefficient.abs()) * h;
-    }
-    sum
+/// One polynomial as one lane.
+fn alone(coefficients: &[f64]) -> &[[f64; 1]] {
+    coefficients.as_chunks().0
 }
 
 /// A bound on |p''(u)| for 0 <= u <= h.
@@ -125,20 +105,16 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
     let Some(&first) = coefficients.first() else {
         return found;
     };
-    // One that only rises or only falls has at most one root.
-    if let [_, slope, ..] = coefficients
-        && slope.abs() > slope_variation(coefficients, h)
-    {
-        // The sign at the end is that of p/u^k too.
-        if end == 0.0 {
-            found.push(h);
-        } else if end.signum() != first.signum() {
-            let end = if zeros == 0 { end } else { value(coefficients, h) };
-            found.push(bracketed(coefficients, 0.0, (0.0, first), (h, end)));
-        }
+    // Where it leaves zero its value at the end is that of p/u^k.
+    let end = if zeros == 0 { end } else { value(coefficients, h) };
+    let [changes] = changes_of_sign(alone(coefficients), &[h]);
+    if changes == 0.0 && first * end > 0.0 {
         return found;
     }
-    let end = if zeros == 0 { end } else { value(coefficients, h) };
+    if changes == 1.0 && first * end < 0.0 {
+        found.push(bracketed(coefficients, 0.0, (0.0, first), (h, end)));
+        return found;
+    }
     let mut search = Search {
         coefficients,
         curvature: curvature(coefficients, h),
@@ -220,45 +196,14 @@ pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f6
 
 /// The same where the values of p - level at both ends are known, and of opposite sign.
 pub(super) fn bracketed(coefficients: &[f64], level: f64, (from, start): (f64, f64), (to, end): (f64, f64)) -> f64 {
-    let (mut left, mut right) = (from, to);
-    let mut u = from + (to - from) * (start / (start - end));
-    // From the beginning of the series: the parabola with the slope there is a better guess than the chord.
-    if from == 0.0
-        && let [_, slope, ..] = *coefficients
-    {
-        let bend = (end - start - slope * to) / (to * to);
-        let root = (slope * slope - 4.0 * bend * start).sqrt();
-        let guess = -2.0 * start / (slope + root.copysign(slope));
-        if guess > left && guess < right {
-            u = guess;
-        }
-    }
-    // Newton's steps converge in a few, halvings in 60.
-    for _ in 0..100 {
-        let (sum, slope) = value_and_slope(coefficients, u);
-        let height = sum - level;
-        if height == 0.0 {
-            return u;
-        }
-        if (height > 0.0) == (start > 0.0) {
-            left = u;
-        } else {
-            right = u;
-        }
-        let newton = u - height / slope;
-        let next = if newton > left && newton < right {
-            newton
-        } else {
-            0.5 * (left + right)
-        };
-        // The error of a step of Newton's is about the square of the one before.
-        let settled = next == newton && (next - u).abs() <= 1e-8 * (to - from);
-        if settled || next <= left || next >= right {
-            return next;
-        }
-        u = next;
-    }
-    u
+    let [place] = crossings(
+        alone(coefficients),
+        &[level],
+        (&[from], &[start]),
+        (&[to], &[end]),
+        &[true],
+    );
+    place
 }
 
 /// The same for any function with one change of sign.

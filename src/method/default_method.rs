@@ -130,8 +130,13 @@ fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Optio
         return None;
     };
     let parts = oscillator.parts().ok()?;
-    let conservative = parts.damping.is_zero() && parts.forcing.is_zero();
+    // A mass that depends on position without an expansion may have no value at rest.
+    let conservative = [&parts.damping, &parts.forcing, &parts.inertia].map(|part| part.is_zero()) == [true; 3];
     if !conservative || !has_no_expansion(error) || options.small.is_some() {
+        return None;
+    }
+    // A linear force that pushes away is a reason of its own: rest is unstable.
+    if matches!(error, OscillatorError::NoRestoringForce(linear) if !linear.is_zero()) {
         return None;
     }
     let by = |method: Method| solve_by(method, oscillator, options).ok();

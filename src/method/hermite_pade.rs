@@ -73,6 +73,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let (variable, mut numbers) = series
         .in_one_variable()
         .ok_or_else(|| refused("its symbols do not enter in one combination; give numbers for them"))?;
+    // f begins with one; what it is a multiple of stands before the law.
+    let first = numbers[0].clone();
+    numbers.iter_mut().for_each(|number| *number = &*number / &first);
     numbers.resize(order as usize + 1, Rational::zero());
     let quadratic = Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
     // What is squared has one sign.

@@ -107,6 +107,7 @@ pub(super) fn follow(
         steps: vec![],
         occurrences: vec![],
         stuck: 0,
+        met: None,
         last: None,
         halvings: 0,
     };
@@ -151,6 +152,8 @@ struct Run<'a> {
     occurrences: Vec<Occurrence>,
     /// How often in a row it was back on a corner at once.
     stuck: usize,
+    /// The corner that the last step ended on, and how fast its argument changed there.
+    met: Option<(usize, f64)>,
     /// The last step, where it ended by itself and may be taken back.
     last: Option<Last>,
     /// How often in a row a step from here was taken back.
@@ -203,6 +206,10 @@ impl Run<'_> {
         let reach = self.reach(now);
         if reach.is_nan() || reach <= 0.0 || now + reach == now {
             return Ok(Some(End::Singular));
+        }
+        let met = self.met.take();
+        if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach)) {
+            return Ok(Some(End::Sticks));
         }
         Ok(self.go(reach))
     }
@@ -265,6 +272,7 @@ impl Run<'_> {
         }
         let (corner, _) = corner?;
         self.halvings = 0;
+        self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
         self.expansion.cross(corner);
         // Leaving a corner and being back at once, over and over, is to stay on it.
         const OFTEN: usize = 20;
@@ -503,6 +511,26 @@ impl Expansion {
         };
         let found = self.tape.corners().enumerate().filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    /// How fast the argument of a corner changes behind so much time.
+    fn speed_at(&self, corner: usize, time: f64) -> Option<f64> {
+        let (series, _) = self.tape.corners().nth(corner)?;
+        let terms = series.iter().enumerate().skip(1).rev();
+        let slope = terms.fold(0.0, |sum, (order, coefficient)| sum * time + order as f64 * coefficient);
+        Some(slope.abs())
+    }
+
+    /// Whether nothing but rounding leads away from a corner within a step, on which its argument has changed by so much before. One that is zero
+    /// altogether is no corner to stay on: the motion goes on.
+    fn stays_on(&self, corner: usize, change: f64, length: f64) -> bool {
+        /// Of the change on the other side.
+        const ROUNDING: f64 = 1e-12;
+        let Some((series, _)) = self.tape.corners().nth(corner) else {
+            return false;
+        };
+        let reached = series.iter().rev().fold(0.0, |sum, value| sum * length + value.abs());
+        reached > 0.0 && reached <= ROUNDING * change
     }
 
     /// The sides of the corners.

@@ -98,7 +98,7 @@ pub enum ResponseError {
     },
     /// Somebody asked it to end before there was anything.
     #[error(
-        "interrupted before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
+        "interrupted, by hand or a timeout, before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
         .tried.starts,
         .tried.values,
         .tried.motions

@@ -131,9 +131,7 @@ fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Optio
     };
     let parts = oscillator.parts().ok()?;
     let conservative = parts.damping.is_zero() && parts.forcing.is_zero();
-    // A mass that depends on position and has no expansion itself may have no value at rest.
-    let mass_is_known = parts.inertia.is_zero() || matches!(error, OscillatorError::NoRestoringForce(_));
-    if !conservative || !mass_is_known || !has_no_expansion(error) || options.small.is_some() {
+    if !conservative || !has_no_expansion(error) || options.small.is_some() {
         return None;
     }
     // A linear force that pushes away is a reason of its own: rest is unstable.

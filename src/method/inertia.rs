@@ -84,6 +84,15 @@ impl VariableMass {
         Ok(is_odd(&self.force, oscillator.coordinate)? && is_odd(&self.growth, oscillator.coordinate)?)
     }
 
+    /// Whether the inertia has a value at the equilibrium, from where `M` is measured, and is not zero there.
+    fn has_value_at_rest(&self, oscillator: &Oscillator) -> bool {
+        let at_rest = |function: &Expr| function.substitute(oscillator.coordinate, &Expr::zero());
+        match &self.mass {
+            Some(mass) => at_rest(mass).is_ok_and(|mass| !mass.is_zero()),
+            None => at_rest(&self.growth).is_ok(),
+        }
+    }
+
     /// `M h`, whose integral is the potential energy.
     fn weighted_force(&self) -> Option<Expr> {
         (self.mass.as_ref()? * &self.force).expand().ok()
@@ -172,6 +181,10 @@ pub(super) fn solve(entry: &Entry, oscillator: &Oscillator, options: &Options) -
     };
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Unsuited::Convention.to(entry.method));
+    }
+    if !moving.has_value_at_rest(oscillator) {
+        let term = oscillator.parts()?.inertia.into();
+        return Err(Unsuited::NoInertiaAtRest { term }.to(entry.method));
     }
     (approach.solve)(&moving, oscillator, options).map(Some)
 }

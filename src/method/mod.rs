@@ -294,6 +294,12 @@ pub enum Unsuited {
         /// The equilibrium.
         position: Expr,
     },
+    /// Inertia that grows beyond all bounds towards the equilibrium, or has no value there: no motion passes it.
+    #[error("needs inertia with a value where the force vanishes, but the term `{term}` leaves it none there")]
+    NoInertiaAtRest {
+        /// The inertia term.
+        term: Quotation,
+    },
     /// An order beyond what a method has.
     #[error("has no order above {highest}")]
     HighestOrder {
@@ -433,6 +439,9 @@ impl Unsuited {
             Self::NotOdd { .. } | Self::NotOddAbout { .. } => Advice::words("try ")
                 .choose(Setting::Method(Method::HarmonicBalance))
                 .then(", which balances the drift as well"),
+            Self::NoInertiaAtRest { .. } => Advice::words(
+                "no swing about that place is known; in numbers `lindstedt simulate` follows the motion up to it",
+            ),
             Self::FirstOrderOfPower { .. } => Advice::words("try ")
                 .choose(Setting::Order(1))
                 .then(", which holds at any amplitude; in numbers `lindstedt simulate` follows the motion"),
@@ -480,6 +489,7 @@ impl Refusal {
                     | Unsuited::NoProjection { term }
                     | Unsuited::NoLinearForce { term, .. }
                     | Unsuited::FirstOrderOfPower { term }
+                    | Unsuited::NoInertiaAtRest { term }
                     | Unsuited::PolynomialOnly { term },
                 ..
             }

@@ -65,6 +65,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         | Unsuited::NoProjection { term }
         | Unsuited::NoLinearForce { term, .. }
         | Unsuited::FirstOrderOfPower { term }
+        | Unsuited::NoInertiaAtRest { term }
         | Unsuited::PolynomialOnly { term } => {
             replace(term, typed(term, oscillator, centred));
         }

@@ -60,6 +60,8 @@ pub(super) struct FreeMotion {
     end: f64,
     /// Times and distances from the equilibrium at which it turns, the start left out.
     pub(super) turns: Vec<(f64, f64)>,
+    /// When and where friction takes hold of it, from the equilibrium.
+    held: Option<(f64, f64)>,
     /// Times at which it goes through the equilibrium.
     pub(super) crossings: Vec<f64>,
 }
@@ -100,6 +102,7 @@ impl FreeMotion {
             motion,
             equilibrium: start.equilibrium,
             turns: vec![],
+            held: None,
             crossings: vec![],
         };
         followed.look(start.step);
@@ -143,10 +146,14 @@ impl FreeMotion {
             {
                 crossings.push(t);
             }
-            // At the very start it is at rest, and where friction holds it for good it does not turn.
+            // At the very start it is at rest, and where friction holds it it does not turn.
             let turned = v0 * v1 < 0.0;
             if turned && let Ok(t) = find_root(|t| self.at(t).1, t0, t1) {
                 turns.push((t, self.at(t).0));
+            }
+            if v0 != 0.0 && v1 == 0.0 {
+                let t = self.begin_of_rest(t0, t1);
+                self.held = Some((t, self.at(t).0));
             }
             before = now;
         }
@@ -154,11 +161,27 @@ impl FreeMotion {
         self.crossings = crossings;
     }
 
-    /// When the line through the sizes at the turning points, straight on the logarithm, comes down to this size.
+    /// When the velocity becomes zero and stays so, between a time at which it moves and one at which it is held.
+    fn begin_of_rest(&self, mut moves: f64, mut held: f64) -> f64 {
+        loop {
+            let middle = 0.5 * (moves + held);
+            if middle <= moves || middle >= held {
+                return held;
+            }
+            match self.at(middle).1 == 0.0 {
+                true => held = middle,
+                false => moves = middle,
+            }
+        }
+    }
+
+    /// When the line through the sizes at the turning points, and where it is held, straight on the logarithm, comes down to this
+    /// size.
     pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
         let start = (0.0, self.at(0.0).0);
         let points: Vec<(f64, f64)> = std::iter::once(start)
             .chain(self.turns.iter().copied())
+            .chain(self.held)
             .map(|(t, x)| (t, x.abs()))
             .collect();
         let index = points

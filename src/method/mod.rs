@@ -295,7 +295,7 @@ pub enum Unsuited {
         position: Expr,
     },
     /// Inertia that grows beyond all bounds towards the equilibrium, or has no value there: no motion passes it.
-    #[error("needs inertia with a value where the force vanishes, but the term `{term}` leaves it none there")]
+    #[error("needs inertia that has a value at the equilibrium, but with the term `{term}` it has none")]
     NoInertiaAtRest {
         /// The inertia term.
         term: Quotation,

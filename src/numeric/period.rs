@@ -204,6 +204,13 @@ pub fn swing_with_cuts(
     };
     match swing.path.stop_reason() {
         StopReason::Event { .. } => Ok(swing),
+        StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => {
+            let ended = swing.end().x;
+            let at_rest = (ended - equilibrium).abs() < 1e-9 * length.abs();
+            Err(PeriodError::Pole {
+                place: if at_rest { equilibrium } else { ended },
+            })
+        }
         _ => Err(PeriodError::NoReturn(swing.end().t)),
     }
 }

@@ -7,8 +7,9 @@ use num_integer::Integer as _;
 
 use super::waves::Wave;
 
-/// Numerators and all sums on the way to them stay below this.
-const BOUND: u128 = 1 << 126;
+/// Numerators and all sums on the way to them stay below this. Half of what fits is room enough for the rounding of what they can
+/// grow to.
+const BOUND: f64 = (1_u128 << 126) as f64;
 
 /// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones.
 #[derive(Clone, Debug)]
@@ -18,8 +19,8 @@ pub struct ShortSeries {
     harmonics: Harmonics,
     denominator: i128,
     numerators: Vec<i128>,
-    /// The largest numerator, without its sign.
-    largest: u128,
+    /// The largest numerator, without its sign, rounded.
+    largest: f64,
 }
 
 /// Which harmonics stand side by side.
@@ -57,7 +58,7 @@ impl ShortSeries {
     /// From numerators over a positive denominator; `None` where they are too long.
     pub fn new(wave: Wave, harmonics: Harmonics, denominator: i128, numerators: Vec<i128>) -> Option<Self> {
         let largest = numerators.iter().map(|numerator| numerator.unsigned_abs()).max();
-        let largest = largest.unwrap_or(0);
+        let largest = largest.unwrap_or(0) as f64;
         (largest < BOUND && denominator > 0).then_some(Self {
             wave,
             harmonics,
@@ -94,7 +95,7 @@ impl ShortSeries {
 
     /// Whether every number is zero.
     pub fn is_zero(&self) -> bool {
-        self.largest == 0
+        self.largest == 0.0
     }
 
     /// The number at a place as a constant series.
@@ -106,38 +107,64 @@ impl ShortSeries {
         Self::constant(harmonics, self.numerator(index), self.denominator).map(Self::reduced)
     }
 
+    /// Minus it.
+    pub fn negative(mut self) -> Self {
+        self.numerators
+            .iter_mut()
+            .for_each(|numerator| *numerator = -*numerator);
+        self
+    }
+
+    /// With another numerator at a place.
+    pub fn with_numerator(mut self, index: usize, numerator: i128) -> Option<Self> {
+        if self.numerators.len() <= index {
+            self.numerators.resize(index + 1, 0);
+        }
+        self.numerators[index] = numerator;
+        Self::new(self.wave, self.harmonics, self.denominator, self.numerators)
+    }
+
     /// In lowest terms.
     pub fn reduced(mut self) -> Self {
-        let mut common = self.denominator;
+        // Halvings first: mostly nothing else is left to look for.
+        let all = self.numerators.iter().fold(0, |all, numerator| all | numerator);
+        let halvings = self.denominator.trailing_zeros();
+        let mut odd = self.denominator >> halvings;
         for numerator in &self.numerators {
-            if common == 1 {
-                return self;
+            if odd == 1 {
+                break;
             }
-            common = greatest_common_divisor(common, *numerator);
+            odd = greatest_common_divisor(odd, *numerator);
         }
+        let common = odd << halvings.min(all.trailing_zeros());
         if common > 1 {
-            let halvings = common.trailing_zeros();
-            if common == 1 << halvings {
-                self.numerators.iter_mut().for_each(|numerator| *numerator >>= halvings);
-            } else {
-                self.numerators.iter_mut().for_each(|numerator| *numerator /= common);
+            for numerator in &mut self.numerators {
+                *numerator = exact_quotient(*numerator, common);
             }
-            self.denominator /= common;
-            self.largest /= common.unsigned_abs();
+            self.denominator = exact_quotient(self.denominator, common);
+            self.largest /= common as f64;
         }
         self
     }
 
     /// The derivative.
     pub fn derivative(&self) -> Option<Self> {
-        let (wave, sign) = match self.wave {
-            Wave::Cosine => (Wave::Sine, -1),
-            Wave::Sine => (Wave::Cosine, 1),
-        };
+        match self.wave {
+            Wave::Cosine => self.times_harmonics(Wave::Sine, |harmonic| -harmonic),
+            Wave::Sine => self.times_harmonics(Wave::Cosine, |harmonic| harmonic),
+        }
+    }
+
+    /// The second derivative.
+    pub fn second_derivative(&self) -> Option<Self> {
+        self.times_harmonics(self.wave, |harmonic| -(harmonic * harmonic))
+    }
+
+    fn times_harmonics(&self, wave: Wave, factor: impl Fn(i128) -> i128) -> Option<Self> {
         let mut numerators = Vec::with_capacity(self.numerators.len());
         for (index, numerator) in self.numerators.iter().enumerate() {
-            let harmonic = i128::try_from(self.harmonics.at(index)).ok()?;
-            numerators.push(numerator.checked_mul(sign * harmonic)?);
+            let harmonic = u32::try_from(self.harmonics.at(index)).ok()?;
+            numerators.push(numerator.checked_mul(factor(harmonic.into()))?);
         }
         Self::new(wave, self.harmonics, self.denominator, numerators)
     }
@@ -145,38 +172,63 @@ impl ShortSeries {
     /// The solution of `u'' + u = self` without first harmonic: every number over `1 - k^2`.
     pub fn without_resonance_over_divisors(&self) -> Option<Self> {
         let divisor = |index: usize| {
-            let harmonic = i128::try_from(self.harmonics.at(index)).ok()?;
-            harmonic.checked_mul(harmonic)?.checked_sub(1)
+            let harmonic = i128::from(u32::try_from(self.harmonics.at(index)).ok()?);
+            Some(harmonic * harmonic - 1)
         };
         // What is left of each divisor when it has taken from its numerator what it can.
-        let mut parts = Vec::with_capacity(self.numerators.len());
+        let mut left = Vec::with_capacity(self.numerators.len());
+        let mut numerators = Vec::with_capacity(self.numerators.len());
         let mut common = 1_i128;
         for (index, &numerator) in self.numerators.iter().enumerate() {
             let divisor = divisor(index)?;
             if divisor == 0 || numerator == 0 {
-                parts.push((0, 1));
+                numerators.push(0);
+                left.push(1);
                 continue;
             }
+            // Of the zeroth harmonic it is minus one.
             let shared = greatest_common_divisor(divisor.abs(), numerator);
-            let left = divisor / shared;
-            parts.push((numerator / shared, left));
-            common = least_common_multiple(common, left.abs())?;
+            let rest = exact_quotient(divisor.abs(), shared);
+            numerators.push(exact_quotient(numerator, shared) * -divisor.signum());
+            left.push(rest);
+            common = least_common_multiple(common, rest)?;
         }
-        let bound = self.largest.checked_mul(common.unsigned_abs())?;
-        if bound >= BOUND {
+        if self.largest * common as f64 >= BOUND {
             return None;
         }
-        let numerators = parts.iter().map(|(numerator, left)| -numerator * (common / left));
+        for (numerator, left) in numerators.iter_mut().zip(left) {
+            *numerator *= exact_quotient(common, left);
+        }
         let denominator = self.denominator.checked_mul(common)?;
-        Self::new(self.wave, self.harmonics, denominator, numerators.collect())
+        Self::new(self.wave, self.harmonics, denominator, numerators)
     }
 }
 
+/// Whether a positive number is one.
+fn is_power_of_two(number: i128) -> bool {
+    number & (number - 1) == 0
+}
+
+/// A quotient without remainder by a positive divisor; most are powers of two, and most of the others words.
+fn exact_quotient(number: i128, divisor: i128) -> i128 {
+    if is_power_of_two(divisor) {
+        return number >> divisor.trailing_zeros();
+    }
+    match (i64::try_from(number), i64::try_from(divisor)) {
+        (Ok(number), Ok(divisor)) => i128::from(number / divisor),
+        _ => number / divisor,
+    }
+}
+
+/// Of a positive number and any other.
 fn greatest_common_divisor(left: i128, right: i128) -> i128 {
+    if is_power_of_two(left) {
+        return 1 << left.trailing_zeros().min(right.trailing_zeros());
+    }
     match (i64::try_from(left), i64::try_from(right)) {
-        (Ok(left), Ok(right)) if left != i64::MIN && right != i64::MIN => left.gcd(&right).into(),
+        (Ok(left), Ok(right)) if right != i64::MIN => left.gcd(&right).into(),
         // A divisor of one word: one division leaves words.
-        (Ok(left), Err(_)) if left > 0 => match i64::try_from(right % i128::from(left)) {
+        (Ok(left), _) => match i64::try_from(right % i128::from(left)) {
             Ok(rest) => left.gcd(&rest).into(),
             Err(_) => i128::from(left).gcd(&right),
         },
@@ -184,14 +236,15 @@ fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     }
 }
 
+/// Of positive numbers.
 fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
     if left == right || right == 1 {
         return Some(left);
     }
-    if left == 1 {
-        return Some(right);
+    if left == 1 || (is_power_of_two(left) && is_power_of_two(right)) {
+        return Some(left.max(right));
     }
-    (left / greatest_common_divisor(left, right)).checked_mul(right)
+    exact_quotient(left, greatest_common_divisor(left, right)).checked_mul(right)
 }
 
 /// `sum of (numerator / denominator) series`, all of the same waves.
@@ -203,11 +256,11 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
         common = least_common_multiple(common, denominator.checked_mul(series.denominator)?)?;
         length = length.max(series.numerators.len());
     }
-    let mut bound = 0_u128;
+    let mut bound = 0.0;
     let mut sums = vec![0_i128; length];
     for (numerator, denominator, series) in terms {
-        let factor = numerator.checked_mul(common / (denominator * series.denominator))?;
-        bound = bound.checked_add(factor.unsigned_abs().checked_mul(series.largest)?)?;
+        let factor = numerator.checked_mul(exact_quotient(common, denominator * series.denominator))?;
+        bound += (factor as f64).abs() * series.largest;
         if bound >= BOUND {
             return None;
         }
@@ -218,12 +271,28 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
     ShortSeries::new(first.wave, first.harmonics, common, sums)
 }
 
-/// `sum of weight left right`, all products of the same waves; zero as a constant where there are none.
-pub fn sum_of_products(terms: &[(i128, &ShortSeries, &ShortSeries)]) -> Option<ShortSeries> {
+/// `sum_i left_i right_(n-i)` over two lists of the same length, all products of the same waves.
+pub fn convolution(left: &[ShortSeries], right: &[ShortSeries]) -> Option<ShortSeries> {
+    let last = right.len().checked_sub(1)?;
+    let terms = left.iter().enumerate().map(|(i, left)| (1, left, &right[last - i]));
+    sum_of_products(terms)
+}
+
+/// `sum_i series_i series_(n-i)`, each pair once.
+pub fn square(series: &[ShortSeries]) -> Option<ShortSeries> {
+    let last = series.len().checked_sub(1)?;
+    let terms = (0..=last / 2).map(|i| (if 2 * i == last { 1 } else { 2 }, &series[i], &series[last - i]));
+    sum_of_products(terms)
+}
+
+/// `sum of weight left right`, all products of the same waves.
+fn sum_of_products<'a>(
+    terms: impl Iterator<Item = (i128, &'a ShortSeries, &'a ShortSeries)> + Clone,
+) -> Option<ShortSeries> {
     let mut common = 1;
     let mut length = 1;
     let mut kind = (Wave::Cosine, Harmonics::Even);
-    for (_, left, right) in terms {
+    for (_, left, right) in terms.clone() {
         common = least_common_multiple(common, left.denominator.checked_mul(right.denominator)?)?;
         length = length.max(left.numerators.len() + right.numerators.len());
         let wave = if left.wave == right.wave {
@@ -233,31 +302,31 @@ pub fn sum_of_products(terms: &[(i128, &ShortSeries, &ShortSeries)]) -> Option<S
         };
         kind = (wave, left.harmonics.times(right.harmonics));
     }
-    let mut bound = 0_u128;
+    let mut bound = 0.0;
     let mut sums = vec![0_i128; length];
     for (weight, left, right) in terms {
-        let factor = weight.checked_mul(common / (left.denominator * right.denominator))?;
+        let factor = weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
         let shorter = left.numerators.len().min(right.numerators.len());
-        let scaled = factor.unsigned_abs().checked_mul(left.largest)?;
+        let scaled = (factor as f64).abs() * left.largest;
         // A sum is met once by sums of harmonics and twice by their differences.
-        let of_products = scaled.checked_mul(right.largest)?.checked_mul(3 * shorter as u128)?;
-        bound = bound.checked_add(of_products)?;
+        bound += scaled * right.largest * (3 * shorter) as f64;
         if bound >= BOUND {
             return None;
         }
         // The odd harmonics first.
-        let (left, right) = match (left.harmonics, right.harmonics) {
+        let (first, second) = match (left.harmonics, right.harmonics) {
             (Harmonics::Even, Harmonics::Odd) => (right, left),
             _ => (left, right),
         };
         // Where both factors are words, their product is a single instruction.
-        let words = factor.unsigned_abs().saturating_mul(left.largest).max(right.largest) < 1 << 63;
+        let largest = (factor as f64).abs() * first.largest;
+        let words = largest.max(second.largest) < (1_u64 << 62) as f64;
         let sums = &mut sums[..];
         match words {
-            true => add_doubled_product(sums, factor, (left, right), |one, other| {
+            true => add_doubled_product(sums, factor, (first, second), |one, other| {
                 i128::from(one as i64).wrapping_mul(i128::from(other as i64))
             }),
-            false => add_doubled_product(sums, factor, (left, right), i128::wrapping_mul),
+            false => add_doubled_product(sums, factor, (first, second), i128::wrapping_mul),
         }
     }
     if kind.0 == Wave::Sine && kind.1 != Harmonics::Odd {
@@ -348,6 +417,9 @@ mod tests {
         for left in examples() {
             assert_eq!(long(&left.clone().reduced()), long(&left));
             assert_eq!(long(&left.derivative().expect("short")), long(&left).derivative());
+            let second = left.second_derivative().expect("short");
+            assert_eq!(long(&second), long(&left).derivative().derivative());
+            assert_eq!(long(&left.clone().negative()), long(&left).times(-1));
             let solution = left.without_resonance_over_divisors().expect("short");
             assert_eq!(long(&solution), long(&left).solve_oscillator().0);
             for right in examples() {
@@ -356,9 +428,25 @@ mod tests {
                     continue;
                 }
                 products += 1;
-                let product = sum_of_products(&[(3, &left, &right)]).expect("short");
+                let product = sum_of_products([(3, &left, &right)].into_iter()).expect("short");
                 let expected = fourier::sum_of_products(&Integers, &[(3, &long(&left), &long(&right))]);
                 assert_eq!(long(&product), expected, "{left:?} {right:?}");
+                let [left_right, right_left] = [[left.clone(), right.clone()], [right.clone(), left.clone()]];
+                let sums = [
+                    convolution(&left_right, &left_right),
+                    convolution(&left_right, &right_left),
+                ];
+                let expected = [
+                    vec![(2, &long(&left), &long(&right))],
+                    vec![(1, &long(&left), &long(&left)), (1, &long(&right), &long(&right))],
+                ]
+                .map(|terms| fourier::sum_of_products(&Integers, &terms));
+                let same_waves = (left.wave, left.harmonics) == (right.wave, right.harmonics);
+                assert_eq!(long(sums[0].as_ref().expect("short")), expected[0]);
+                assert_eq!(long(&square(&left_right).expect("short")), expected[0]);
+                if same_waves {
+                    assert_eq!(long(sums[1].as_ref().expect("short")), expected[1]);
+                }
                 if (left.wave, left.harmonics) == (right.wave, right.harmonics) {
                     let sum = combination(&[(2, 7, &left), (-5, 1, &right)]).expect("short");
                     let expected =
@@ -374,7 +462,7 @@ mod tests {
     fn what_does_not_fit_is_no_series() {
         let half = 1 << 63;
         let long = ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![half, half]).expect("half of it");
-        assert!(sum_of_products(&[(1, &long, &long)]).is_none());
+        assert!(square(std::slice::from_ref(&long)).is_none());
         assert!(combination(&[(half, 1, &long)]).is_none());
         assert!(combination(&[(1, half, &long), (1, half - 1, &long)]).is_none());
         assert!(ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![i128::MIN]).is_none());

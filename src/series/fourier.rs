@@ -566,5 +566,8 @@ impl FourierSeries<Doubles> {
 
 /// A quotient of integers as a fraction, for [`FourierSeries::map`] from numerators to [`Rational`].
 pub fn fraction(numerator: &Integer, denominator: &Integer) -> Rational {
-    Rational::new(numerator.clone(), denominator.clone())
+    match denominator.is_one() {
+        true => Rational::from_integer(numerator.clone()),
+        false => Rational::new(numerator.clone(), denominator.clone()),
+    }
 }

@@ -11,7 +11,7 @@ use super::modular::{Plan, Term};
 use super::{Amplitude, Detuning};
 use crate::exact::residue::sums::Product;
 use crate::interrupt::Interrupt;
-use crate::series::fixed_width::{Harmonics, ShortSeries, combination, sum_of_products};
+use crate::series::fixed_width::{Harmonics, ShortSeries, combination, convolution, square};
 use crate::series::waves::Wave;
 use crate::solution::AmplitudeConvention;
 use num_traits::ToPrimitive;
@@ -33,10 +33,11 @@ pub(super) struct Beginning {
     pub slope: Option<ShortSeries>,
 }
 
+/// Beyond, two words are too short for anything that is known.
+const LONG: usize = 28;
+
 /// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than show how it goes on.
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
-    /// Beyond, two words are too short for anything that is known.
-    const LONG: usize = 28;
     /// So many orders are enough of a long one.
     const ENOUGH: usize = 16;
     let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
@@ -57,9 +58,8 @@ struct Recursion<'a> {
     plan: &'a Plan<'a>,
     /// The terms with their coefficients, each over the power whose derivative is meant; without one that does not fit.
     terms: Vec<(&'a Term, Option<(i128, i128)>)>,
-    /// The tables of the plan, an entry for each order.
+    /// The tables of the plan, an entry for each order; the first is the motion.
     tables: Vec<Vec<ShortSeries>>,
-    displacement: Vec<ShortSeries>,
     detuned: Vec<ShortSeries>,
     derived: Vec<ShortSeries>,
     /// The derivative of all terms with one velocity at each order, where there are any.
@@ -89,6 +89,8 @@ impl<'a> Recursion<'a> {
             Some((term.coefficient.numer().to_i128()?, denominator))
         };
         let terms = plan.terms.iter().zip(&plan.of_terms);
+        let orders = LONG.min(plan.highest) + 2;
+        let list = || Vec::with_capacity(orders);
         let mut recursion = Self {
             plan,
             terms: terms
@@ -98,13 +100,12 @@ impl<'a> Recursion<'a> {
                 Some((_, rate)) => Some(Sine::new((rate.numer().to_i128()?, rate.denom().to_i128()?))),
                 None => None,
             },
-            tables: vec![vec![]; plan.tables],
-            displacement: vec![],
-            detuned: vec![],
+            tables: (0..plan.tables).map(|_| list()).collect(),
+            detuned: list(),
             derived: vec![],
             damped: vec![None],
-            frequency_squared: vec![],
-            frequency: vec![],
+            frequency_squared: list(),
+            frequency: list(),
             variation: None,
             complete: 0,
         };
@@ -138,9 +139,9 @@ impl<'a> Recursion<'a> {
     }
 
     /// What is complete.
-    fn orders(self) -> Vec<Order> {
+    fn orders(mut self) -> Vec<Order> {
         let numbers = self.frequency_squared.into_iter().zip(self.frequency);
-        let orders = self.displacement.into_iter().zip(numbers).take(self.complete);
+        let orders = self.tables.swap_remove(0).into_iter().zip(numbers).take(self.complete);
         orders
             .map(|(displacement, (frequency_squared, frequency))| Order {
                 displacement,
@@ -153,7 +154,7 @@ impl<'a> Recursion<'a> {
     /// Solves the order after those that are known; the last one of a limit cycle gives nothing but the amplitude before it. `None`
     /// where a number does not fit, and where a secular sine stays.
     fn next_order(&mut self) -> Option<()> {
-        let (plan, order) = (self.plan, self.displacement.len());
+        let (plan, order) = (self.plan, self.tables[0].len());
         let mut right_side = self.right_side(order)?;
         if self.variation.is_some() {
             if order > 1 {
@@ -169,13 +170,9 @@ impl<'a> Recursion<'a> {
         let square = match right_side.wave {
             Wave::Sine if !resonance.is_zero() => return None,
             Wave::Sine => self.constant(0)?,
-            Wave::Cosine => combination(&[(-1, 1, &resonance)])?,
+            Wave::Cosine => resonance.negative(),
         };
-        let products: Vec<_> = (1..order)
-            .map(|i| (-1, &self.frequency[i], &self.frequency[order - i]))
-            .collect();
-        let products = sum_of_products(&products)?;
-        let frequency = combination(&[(1, 2, &square), (1, 2, &products)])?.reduced();
+        let frequency = self.frequency(order, &square)?;
         self.frequency_squared.push(square);
         self.frequency.push(frequency);
         let particular = right_side.without_resonance_over_divisors()?.reduced();
@@ -187,41 +184,50 @@ impl<'a> Recursion<'a> {
         Some(())
     }
 
+    /// `omega_n` from `W_n`.
+    fn frequency(&self, order: usize, square: &ShortSeries) -> Option<ShortSeries> {
+        let mut parts = Vec::with_capacity(order / 2 + 1);
+        parts.push((1, 2, square));
+        // Of the sum over all pairs, each pair once and the middle.
+        for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
+            let (own, other) = (&self.frequency[i], &self.frequency[order - i]);
+            let times = if 2 * i == order { 2 } else { 1 };
+            parts.push((-own.numerator(0), own.denominator().checked_mul(times)?, other));
+        }
+        combination(&parts).map(ShortSeries::reduced)
+    }
+
     /// `r_n` as in the head of the module.
     fn right_side(&mut self, order: usize) -> Option<ShortSeries> {
         if let Some(sine) = &mut self.sine {
             sine.prepare(order)?;
         }
         let at = |term: &Term, table: usize| self.tables[table].get(order.checked_sub(term.order)?);
-        let mut plain = self.parts(false, at)?;
-        let of_sine = self.sine.as_ref().and_then(|sine| sine.rest.as_ref());
-        plain.extend(of_sine.map(|rest| (1, 1, rest)));
-        let plain = sum_of_parts(&plain)?;
         let damped = derivative_of_parts(&self.parts(true, at)?)?;
         self.damped.push(damped);
-        let mut products = Vec::new();
+        let at = |term: &Term, table: usize| self.tables[table].get(order.checked_sub(term.order)?);
+        let mut parts = self.parts(false, at)?;
+        parts.reserve(2 * order);
+        let of_sine = self.sine.as_ref().and_then(|sine| sine.rest.as_ref());
+        parts.extend(of_sine.map(|rest| (1, 1, rest)));
+        for (numerator, _, _) in &mut parts {
+            *numerator = numerator.checked_neg()?;
+        }
+        let mut subtract = |factor: &ShortSeries, series| {
+            if !factor.is_zero() {
+                parts.push((-factor.numerator(0), factor.denominator(), series));
+            }
+        };
         for i in 1..=order {
-            let delayed = match self.plan.scheme.detuning {
-                Detuning::Acceleration => &self.frequency[(order - i).min(self.frequency.len() - 1)],
-                Detuning::Displacement => &self.frequency[0],
-            };
             let present = self.plan.scheme.detuning == Detuning::Acceleration || i == order;
             if let Some(damped) = self.damped[i].as_ref().filter(|_| present) {
-                products.push((-1, delayed, damped));
+                subtract(&self.frequency[order - i], damped);
+            }
+            if i < order {
+                subtract(&self.frequency_squared[order - i], &self.detuned[i]);
             }
         }
-        let detuned = (1..order).map(|i| (-1, &self.frequency_squared[order - i], &self.detuned[i]));
-        products.extend(detuned);
-        products.retain(|(_, factor, series)| !factor.is_zero() && !series.is_zero());
-        let products = match products.is_empty() {
-            true => None,
-            false => Some(sum_of_products(&products)?),
-        };
-        let parts: Vec<_> = plain.iter().map(|plain| (-1, 1, plain)).collect();
-        let parts: Vec<_> = parts
-            .into_iter()
-            .chain(products.iter().map(|sum| (1, 1, sum)))
-            .collect();
+        parts.retain(|(_, _, series)| !series.is_zero());
         match parts.is_empty() {
             true => ShortSeries::new(self.plan.wave(order), self.harmonics(), 1, vec![0]),
             false => combination(&parts),
@@ -234,7 +240,7 @@ impl<'a> Recursion<'a> {
         derivative: bool,
         at: impl Fn(&Term, usize) -> Option<&'b ShortSeries>,
     ) -> Option<Vec<(i128, i128, &'b ShortSeries)>> {
-        let mut parts = Vec::with_capacity(self.terms.len());
+        let mut parts = Vec::new();
         for ((term, coefficient), (table, own)) in self.terms.iter().zip(&self.plan.of_terms) {
             if let Some(series) = at(term, *table).filter(|_| *own == derivative) {
                 let (numerator, denominator) = (*coefficient)?;
@@ -278,7 +284,6 @@ impl<'a> Recursion<'a> {
         if plan.has_velocity {
             self.derived[order - 1] = corrected.derivative()?;
         }
-        self.displacement[order - 1] = corrected;
         Some(right_side)
     }
 
@@ -297,29 +302,26 @@ impl<'a> Recursion<'a> {
             };
             at_zero = at_zero.checked_add(numerator.checked_mul(weight)?)?;
         }
-        let mut numerators = particular.numerators().to_vec();
-        numerators.resize(numerators.len().max(plan.resonant() + 1), 0);
-        numerators[plan.resonant()] = at_zero.checked_neg()?;
-        ShortSeries::new(particular.wave, self.harmonics(), particular.denominator(), numerators)
+        particular.with_numerator(plan.resonant(), at_zero.checked_neg()?)
     }
 
     fn push_displacement(&mut self, order: usize, displacement: ShortSeries) -> Option<()> {
         let plan = self.plan;
         self.detuned.push(detuned(plan, &displacement)?);
-        self.tables[0].push(displacement.clone());
         if plan.has_velocity {
             self.derived.push(displacement.derivative()?);
             let velocity = match plan.scheme.detuning {
                 Detuning::Displacement => self.derived[order].clone(),
                 Detuning::Acceleration => {
-                    let products = (0..=order).map(|i| (1, &self.frequency[order - i], &self.derived[i]));
-                    let products: Vec<_> = products.filter(|(_, factor, _)| !factor.is_zero()).collect();
-                    sum_of_products(&products)?.reduced()
+                    let factors = self.frequency.iter().zip(self.derived.iter().rev());
+                    let factors = factors.filter(|(factor, _)| !factor.is_zero());
+                    let parts = factors.map(|(factor, own)| (factor.numerator(0), factor.denominator(), own));
+                    combination(&parts.collect::<Vec<_>>())?.reduced()
                 }
             };
             self.tables[1].push(velocity);
         }
-        self.displacement.push(displacement);
+        self.tables[0].push(displacement);
         for product in &plan.products {
             if order <= product.needed {
                 let series = self.convolution(product, order)?;
@@ -327,7 +329,7 @@ impl<'a> Recursion<'a> {
             }
         }
         match &mut self.sine {
-            Some(sine) => sine.push(order, &self.displacement[order]),
+            Some(sine) => sine.push(order, &self.tables[0][order]),
             None => Some(()),
         }
     }
@@ -335,15 +337,11 @@ impl<'a> Recursion<'a> {
     /// One order of a product.
     fn convolution(&self, product: &Product, order: usize) -> Option<ShortSeries> {
         let (left, right) = (&self.tables[product.left], &self.tables[product.right]);
-        let square = product.left == product.right;
-        let last = if square { order / 2 } else { order };
-        let terms: Vec<_> = (0..=last)
-            .map(|i| match square && 2 * i != order {
-                true => (2, &left[i], &right[order - i]),
-                false => (1, &left[i], &right[order - i]),
-            })
-            .collect();
-        sum_of_products(&terms).map(ShortSeries::reduced)
+        let sum = match product.left == product.right {
+            true => square(&left[..=order]),
+            false => convolution(&left[..=order], &right[..=order]),
+        };
+        sum.map(ShortSeries::reduced)
     }
 
     /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.
@@ -353,11 +351,15 @@ impl<'a> Recursion<'a> {
         let leaves = 1 + usize::from(plan.has_velocity);
         let mut tables: Vec<ShortSeries> = self.tables[..leaves].iter().map(|table| table[0].clone()).collect();
         for product in &plan.products {
-            let pairs = [
-                (1, &tables[product.left], &self.tables[product.right][0]),
-                (1, &tables[product.right], &self.tables[product.left][0]),
-            ];
-            let series = sum_of_products(&pairs)?.reduced();
+            let varied = |varied: usize, other: usize| {
+                let own = std::slice::from_ref(&tables[varied]);
+                convolution(own, &self.tables[other][..1])
+            };
+            let (left, right) = (
+                varied(product.left, product.right)?,
+                varied(product.right, product.left)?,
+            );
+            let series = combination(&[(1, 1, &left), (1, 1, &right)])?.reduced();
             tables.push(series);
         }
         let at = |term: &Term, table: usize| tables.get(table).filter(|_| term.order == 1);
@@ -378,7 +380,7 @@ impl<'a> Recursion<'a> {
 /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
 fn detuned(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
     match plan.scheme.detuning {
-        Detuning::Acceleration => displacement.derivative()?.derivative(),
+        Detuning::Acceleration => displacement.second_derivative(),
         Detuning::Displacement => combination(&[(-1, 1, displacement)]),
     }
 }
@@ -423,8 +425,7 @@ impl Sine {
 
     /// Forms `S_n - y_n`, for the order after those that are known.
     fn prepare(&mut self, order: usize) -> Option<()> {
-        let products = (0..order).map(|i| (1, &self.cosine[order - i], &self.scaled[i]));
-        let sum = sum_of_products(&products.collect::<Vec<_>>())?;
+        let sum = convolution(&self.cosine[1..=order], &self.scaled[..order])?;
         let twice_and_half = 2 * i128::try_from(order).ok()? + 1;
         self.rest = Some(combination(&[(2, twice_and_half, &sum)])?.reduced());
         Some(())
@@ -446,8 +447,7 @@ impl Sine {
                 self.cosine.push(ShortSeries::constant(harmonics, 1, 1)?);
             }
         }
-        let products = (0..=order).map(|i| (1, &self.sine[order - i], &self.scaled[i]));
-        let sum = sum_of_products(&products.collect::<Vec<_>>())?;
+        let sum = convolution(&self.sine[..=order], &self.scaled[..=order])?;
         let over = self.rate.1.checked_mul(number + 1)?;
         self.cosine.push(combination(&[(self.rate.0, over, &sum)])?.reduced());
         Some(())

@@ -54,7 +54,7 @@ pub(super) fn expansion(
         false => FourierSeries::in_lowest_terms(Integers, value.denom().clone(), vec![value.numer().clone()], vec![]),
     };
     let series = |order: usize, denominator: Integer, numerators: Vec<Integer>| {
-        let mut coefficients = Vec::new();
+        let mut coefficients = Vec::with_capacity(plan.harmonic(numerators.len()));
         for (index, numerator) in numerators.into_iter().enumerate() {
             coefficients.resize(plan.harmonic(index), Integer::zero());
             coefficients.push(numerator);

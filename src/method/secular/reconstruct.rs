@@ -114,7 +114,7 @@ impl Equation {
         });
         let terms: Vec<Term> = terms.collect();
         let (sine, terms) = match scheme.amplitude {
-            Amplitude::Free => super::sine::split(&terms, highest),
+            Amplitude::Free => super::sine::split(terms, highest),
             Amplitude::Determined => (None, terms),
         };
         Self {

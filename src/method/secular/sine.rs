@@ -14,7 +14,7 @@ use num_traits::{One, Zero};
 use super::modular::Term;
 use crate::exact::residue::Modulus;
 use crate::exact::residue::sums::{Part, Product};
-use crate::exact::{Integer, Rational, factorial};
+use crate::exact::{Integer, Rational};
 
 /// Where the tables of the sine stand.
 #[derive(Clone, Copy, Debug)]
@@ -54,13 +54,15 @@ impl Sine {
 }
 
 /// The rate `k` of a sine that the terms contain up to an order, and the terms beside it.
-pub(super) fn split(terms: &[Term], highest: usize) -> (Option<Rational>, Vec<Term>) {
+pub(super) fn split(mut terms: Vec<Term>, highest: usize) -> (Option<Rational>, Vec<Term>) {
     /// Below, powers are as fast.
     const LONG: usize = 6;
-    let rate = rate(terms, highest).filter(|_| highest >= LONG);
-    let of_sine = |term: &&Term| rate.is_some() && place(term).is_some();
-    let others = terms.iter().filter(|term| !of_sine(term)).cloned().collect();
-    (rate, others)
+    let enough = (LONG..=terms.len()).contains(&highest);
+    let rate = if enough { rate(&terms, highest) } else { None };
+    if rate.is_some() {
+        terms.retain(|term| place(term).is_none());
+    }
+    (rate, terms)
 }
 
 /// Which term of the sine it is: `n` of `delta^n y^(2n+1)`.
@@ -77,11 +79,13 @@ fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
             .map(|term| &term.coefficient)
     };
     let rate = coefficient(1)? * Rational::from_integer(Integer::from(6));
-    let mut power = Rational::one();
+    // Numerator and denominator of `rate^n/(2n+1)!`, not in lowest terms.
+    let (mut numerator, mut denominator) = (Integer::one(), Integer::one());
     for n in 1..=highest {
-        power *= &rate;
-        let factorial = factorial(u32::try_from(2 * n + 1).ok()?);
-        if coefficient(n)? * Rational::from_integer(factorial) != power {
+        numerator *= rate.numer();
+        denominator *= rate.denom() * Integer::from(2 * n * (2 * n + 1));
+        let own = coefficient(n)?;
+        if own.numer() * &denominator != own.denom() * &numerator {
             return None;
         }
     }
@@ -144,6 +148,7 @@ impl SineFactors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::factorial;
 
     #[test]
     fn a_sine_is_known_by_all_of_its_terms() {
@@ -167,13 +172,13 @@ mod tests {
             velocity: 2,
             coefficient: Rational::one(),
         });
-        let (rate, others) = split(&terms, 8);
+        let (rate, others) = split(terms.clone(), 8);
         assert_eq!(rate, Some(third));
         assert_eq!((others.len(), others[0].velocity), (1, 2));
         // One term too few, and one that is no term of a sine.
-        assert_eq!(split(&terms, 9).0, None);
+        assert_eq!(split(terms.clone(), 9).0, None);
         terms[4].coefficient *= Rational::from_integer(Integer::from(2));
-        let (rate, others) = split(&terms, 8);
+        let (rate, others) = split(terms.clone(), 8);
         assert_eq!((rate, others.len()), (None, 9));
     }
 }

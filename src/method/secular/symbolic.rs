@@ -25,6 +25,7 @@ use rayon::prelude::*;
 
 use super::modular::{Field, Plan, Recursion, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
+use crate::exact::residue::portable::Portable;
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
@@ -33,6 +34,10 @@ use crate::series::FourierSeries;
 use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
+
+/// Up to so many points times orders one thread is done before others have begun.
+#[cfg(feature = "parallel")]
+const ALONE: usize = 200;
 
 /// The expansion, to the order that it has reached where it is stopped; `None` where the equation has no symmetry to use, no term of
 /// the first order, an amplitude that is determined, or too many symbols, and where it is stopped before any order is there: the
@@ -44,8 +49,12 @@ pub(super) fn expand(
     extent: Extent,
     supervision: Supervision,
 ) -> Option<Expansion<Symbols>> {
+    /// So few orders are done before it is found out what the processor has.
+    const FEW: usize = 2;
+    let work = Expand(force, highest, *scheme, extent, supervision);
     match scheme.amplitude {
-        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent, supervision)),
+        Amplitude::Free if highest <= FEW => work.by(Portable::plain()),
+        Amplitude::Free => by_widest(work),
         Amplitude::Determined => None,
     }
 }
@@ -319,7 +328,7 @@ impl<A: Arithmetic> Search<'_, A> {
     fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
         let points = &self.lower_set.points;
         #[cfg(feature = "parallel")]
-        {
+        if points.len() * self.plan.highest > ALONE {
             /// So many lots for each thread let none of them wait for long.
             const LOTS: usize = 4;
             let length = points.len().div_ceil(LOTS * rayon::current_num_threads()).max(1);
@@ -335,9 +344,8 @@ impl<A: Arithmetic> Search<'_, A> {
                     break;
                 }
             }
-            Some(values)
+            return Some(values);
         }
-        #[cfg(not(feature = "parallel"))]
         self.values(modulus, points)
     }
 
@@ -555,7 +563,6 @@ fn expansion(
 mod tests {
     use super::super::Detuning;
     use super::*;
-    use crate::exact::residue::portable::Portable;
     use crate::solution::AmplitudeConvention;
     use crate::symbol::Symbol;
 
@@ -629,7 +636,12 @@ mod tests {
         // A sum for a coefficient, and a square.
         let mut sum = a.clone();
         sum.accumulate(&b.product(&b));
-        agrees(&[term(1, 3, 0, (sum, 1)), term(1, 5, 0, (b, 1))], 4);
+        for highest in [1, 2, 3, 4] {
+            agrees(
+                &[term(1, 3, 0, (sum.clone(), 1)), term(1, 5, 0, (b.clone(), 1))],
+                highest,
+            );
+        }
     }
 
     #[test]

@@ -107,12 +107,7 @@ impl Waves {
     pub fn new(modulus: &Modulus, grid: Grid) -> Option<Self> {
         let (size, circle) = (grid.size(), grid.circle());
         let root = modulus.root_of_unity(circle as u64)?;
-        let turn = |power: &mut u64| {
-            let now = *power;
-            *power = modulus.product(now, root);
-            Some(now)
-        };
-        let powers: Vec<u64> = (0..circle).scan(modulus.one, |power, _| turn(power)).collect();
+        let powers = modulus.powers(root, circle);
         // Twice the cosine of an angle in parts of the circle.
         let twice_cosine =
             |angle: usize| modulus.sum(powers[angle % circle], powers[(circle - angle % circle) % circle]);

@@ -75,14 +75,19 @@ impl Modulus {
         let inverse = (0..5).fold(prime, |inverse, _| {
             inverse.wrapping_mul(2_u64.wrapping_sub(prime.wrapping_mul(inverse)))
         });
-        let remainder = |value: u128| (value % u128::from(prime)) as u64;
+        // A division of words, where they hold the number, is many times faster than one of double words.
+        let quotient = |value: u128| match u64::try_from(value) {
+            Ok(word) => word / prime,
+            Err(_) => (value / u128::from(prime)) as u64,
+        };
+        let remainder = |value: u128| (value - u128::from(quotient(value)) * u128::from(prime)) as u64;
         let one = remainder(1 << radix);
         Self {
             prime,
             one,
             square: remainder(u128::from(one) * u128::from(one)),
             inverse: inverse & ((1 << radix) - 1),
-            quotient: ((1_u128 << (2 * radix - 7)) / u128::from(prime)) as u64,
+            quotient: quotient(1 << (2 * radix - 7)),
             radix,
         }
     }
@@ -120,7 +125,8 @@ impl Modulus {
 
     /// The residue of a word.
     pub fn residue(&self, value: u64) -> u64 {
-        self.product(value % self.prime, self.square)
+        let remainder = if value < self.prime { value } else { value % self.prime };
+        self.product(remainder, self.square)
     }
 
     /// The residue of a small whole number.
@@ -165,21 +171,52 @@ impl Modulus {
 
     /// The inverses of all of them with a single power; `None` if one of them is zero.
     pub fn invert(&self, residues: &mut [u64]) -> Option<()> {
+        /// Products that do not wait for each other.
+        const CHAINS: usize = 4;
+        let mut products = [self.one; CHAINS];
         let mut before = Vec::with_capacity(residues.len());
-        let all = residues.iter().fold(self.one, |product, &residue| {
-            before.push(product);
-            self.product(product, residue)
-        });
+        for (place, residue) in residues.iter().enumerate() {
+            let product = &mut products[place % CHAINS];
+            before.push(*product);
+            *product = self.product(*product, *residue);
+        }
+        let [a, b, c, d] = products;
+        let (lower, upper) = (self.product(a, b), self.product(c, d));
+        let all = self.product(lower, upper);
         if all == 0 {
             return None;
         }
-        let mut inverse = self.inverse(all);
-        for (residue, before) in residues.iter_mut().zip(before).rev() {
-            let next = self.product(inverse, *residue);
-            *residue = self.product(inverse, before);
-            inverse = next;
+        let inverse = self.inverse(all);
+        let (lower, upper) = (self.product(inverse, upper), self.product(inverse, lower));
+        let mut inverses = [
+            self.product(lower, b),
+            self.product(lower, a),
+            self.product(upper, d),
+            self.product(upper, c),
+        ];
+        for (place, (residue, before)) in residues.iter_mut().zip(before).enumerate().rev() {
+            let inverse = &mut inverses[place % CHAINS];
+            let next = self.product(*inverse, *residue);
+            *residue = self.product(*inverse, before);
+            *inverse = next;
         }
         Some(())
+    }
+
+    /// `1, base, base^2, ...`, so many of them.
+    pub fn powers(&self, base: u64, count: usize) -> Vec<u64> {
+        let mut powers = Vec::with_capacity(count);
+        powers.push(self.one);
+        let mut next = base;
+        // Twice as many each time: none has to wait for the one before it.
+        while powers.len() < count {
+            let known = powers.len();
+            for place in 0..known.min(count - known) {
+                powers.push(self.product(powers[place], next));
+            }
+            next = self.product(next, next);
+        }
+        powers
     }
 
     /// A residue whose powers run through `order` values before they are one again; `order` divides `prime - 1`.
@@ -239,7 +276,7 @@ fn is_prime(number: u64) -> bool {
     if number < 2 {
         return false;
     }
-    let modulus = Modulus::new(number, 52);
+    let modulus = Modulus::new(number, if number < 1 << 30 { 32 } else { 52 });
     let halvings = (number - 1).trailing_zeros();
     let minus_one = modulus.negative(modulus.one);
     BASES[..needed].iter().all(|&base| {
@@ -308,9 +345,20 @@ mod tests {
                 }
                 let inverse = modulus.inverse(modulus.small(-7));
                 assert_eq!(modulus.product(inverse, modulus.small(-7)), modulus.one);
-                let mut all = [modulus.small(2), modulus.small(3), modulus.small(-5)];
-                modulus.invert(&mut all).expect("none is zero");
-                assert_eq!(modulus.product(all[2], modulus.small(-5)), modulus.one);
+                for count in 0..10 {
+                    let own: Vec<u64> = (0..count).map(|k| modulus.small(3 * k - 5)).collect();
+                    let mut inverses = own.clone();
+                    modulus.invert(&mut inverses).expect("none is zero");
+                    for (own, inverse) in own.iter().zip(&inverses) {
+                        assert_eq!(modulus.product(*own, *inverse), modulus.one);
+                    }
+                    inverses.push(0);
+                    assert_eq!(modulus.invert(&mut inverses), None);
+                    let powers = modulus.powers(modulus.small(-5), own.len() + 1);
+                    assert_eq!(powers.len(), own.len() + 1);
+                    let last = modulus.power(modulus.small(-5), own.len() as u64);
+                    assert_eq!(powers.last(), Some(&last));
+                }
                 let root = modulus.root_of_unity(48).expect("48 divides p - 1");
                 assert_eq!(modulus.power(root, 24), modulus.negative(modulus.one));
                 assert_ne!(modulus.power(root, 16), modulus.one);

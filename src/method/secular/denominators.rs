@@ -27,15 +27,32 @@ impl Factored {
         let mut factored = Self::default();
         let halvings = remove(&mut rest, 2, u64::MAX);
         factored.set(2, halvings);
-        // Most often nothing is left for the others.
         for prime in SMALL.iter().skip(1) {
-            if rest.is_one() {
-                break;
+            // Most often nothing is left for the others, or no more than a word.
+            if let Some(word) = rest.to_u64() {
+                return factored.with_factors_of(word);
             }
             let exponent = remove(&mut rest, *prime, u64::MAX);
             factored.set(*prime, exponent);
         }
         rest.is_one().then_some(factored)
+    }
+
+    /// The product with a word whose primes are all small; `None` of another.
+    fn with_factors_of(mut self, word: u64) -> Option<Self> {
+        let mut rest = word;
+        for prime in SMALL.iter() {
+            if rest == 1 {
+                break;
+            }
+            let mut exponent = 0;
+            while rest.is_multiple_of(*prime) {
+                rest /= prime;
+                exponent += 1;
+            }
+            self.set(*prime, self.exponent(*prime) + exponent);
+        }
+        (rest == 1).then_some(self)
     }
 
     /// The factors of a positive word, by division.
@@ -103,11 +120,19 @@ impl Factored {
             .product()
     }
 
-    /// Its residue.
-    pub fn residue(&self, modulus: &Modulus) -> u64 {
-        self.0.iter().fold(modulus.one, |product, (prime, exponent)| {
-            modulus.product(product, modulus.power(modulus.residue(*prime), *exponent))
-        })
+    /// As residues of it are formed.
+    pub(super) fn ladder(&self) -> Ladder {
+        let digits = self
+            .0
+            .iter()
+            .map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
+        let digits = digits.max().unwrap_or(0);
+        let with_digit = |digit: u32| -> Vec<u64> {
+            let factors = self.0.iter().filter(|(_, exponent)| exponent >> digit & 1 == 1);
+            let primes: Vec<u64> = factors.map(|factor| factor.0).collect();
+            words(&primes).into_iter().map(|lot| lot.iter().product()).collect()
+        };
+        Ladder((0..digits).rev().map(with_digit).collect())
     }
 
     /// The number of its binary digits.
@@ -212,6 +237,22 @@ impl Factored {
             }
         }
         least
+    }
+}
+
+/// A number by the binary digits of the exponents of its primes, the highest first: for each digit the product of the primes that
+/// have it, in words. A square for each digit serves all primes.
+pub(super) struct Ladder(Vec<Vec<u64>>);
+
+impl Ladder {
+    /// The residue of the number.
+    pub fn residue(&self, modulus: &Modulus) -> u64 {
+        self.0.iter().fold(modulus.one, |power, words| {
+            let square = modulus.product(power, power);
+            words
+                .iter()
+                .fold(square, |product, word| modulus.product(product, modulus.residue(*word)))
+        })
     }
 }
 
@@ -394,6 +435,15 @@ mod tests {
         let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
         assert_eq!(common.value(), integer(12));
         assert_eq!(number.over(&common).value(), integer(60_060));
+        let modulus = Modulus::new(1_073_741_789, 32);
+        for number in [
+            &number,
+            &common,
+            &Factored::default(),
+            &Factored::of(&integer(6).pow(77)).expect("small factors"),
+        ] {
+            assert_eq!(number.ladder().residue(&modulus), modulus.integer(&number.value()));
+        }
         let ratio = |numerator: i64| number.fraction(&integer(numerator), &integer(720_720));
         assert_eq!(ratio(-1001 * 9), Rational::new(integer(-1), integer(80)));
         assert_eq!(ratio(0), Rational::zero());

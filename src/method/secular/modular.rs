@@ -347,24 +347,31 @@ struct Factors {
 impl Factors {
     fn new(modulus: &Modulus, plan: &Plan) -> Option<Self> {
         let count = plan.most_harmonics();
-        let all = |factor: &dyn Fn(i64) -> i64| -> Vec<u64> {
-            let mut factors: Vec<u64> = (0..count)
-                .map(|index| modulus.small(factor(plan.harmonic(index) as i64)))
-                .collect();
-            factors.resize(padded(count), 0);
-            factors
-        };
-        let mut solution = all(&|k| if k == 1 { 1 } else { 1 - k * k });
+        let first = modulus.small(plan.harmonic(0) as i64);
+        let step = modulus.small((plan.harmonic(1) - plan.harmonic(0)) as i64);
+        let harmonics = std::iter::successors(Some(first), |harmonic| Some(modulus.sum(*harmonic, step)));
+        let mut rising: Vec<u64> = harmonics.take(count).collect();
+        rising.resize(padded(count), 0);
+        let negative = |values: &[u64]| -> Vec<u64> { values.iter().map(|value| modulus.negative(*value)).collect() };
+        let squares: Vec<u64> = rising.iter().map(|k| modulus.product(*k, *k)).collect();
+        let divisor = |square: &u64| modulus.difference(modulus.one, *square);
+        let mut solution: Vec<u64> = squares.iter().map(divisor).collect();
+        solution[plan.resonant()] = modulus.one;
         modulus.invert(&mut solution[..count])?;
         solution[plan.resonant()] = 0;
+        solution[count..].fill(0);
         Some(Self {
             solution,
             detuning: match plan.scheme.detuning {
-                Detuning::Acceleration => all(&|k| -k * k),
-                Detuning::Displacement => all(&|_| -1),
+                Detuning::Acceleration => negative(&squares),
+                Detuning::Displacement => {
+                    let mut minus = vec![modulus.negative(modulus.one); count];
+                    minus.resize(padded(count), 0);
+                    minus
+                }
             },
-            rising: all(&|k| k),
-            falling: all(&|k| -k),
+            falling: negative(&rising),
+            rising,
         })
     }
 

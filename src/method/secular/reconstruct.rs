@@ -589,7 +589,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     fn over(&self, denominator: &Factored, last: Option<Over>) -> Over {
         match last.filter(|last| last.denominator.over(denominator).is_one()) {
             Some(mut last) => {
-                let ratio = denominator.over(&last.denominator);
+                let ratio = denominator.over(&last.denominator).ladder();
                 for (weight, image) in last.weights.iter_mut().zip(self.images) {
                     *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
                 }
@@ -600,14 +600,14 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                     ..last
                 }
             }
-            None => Over {
-                denominator: denominator.clone(),
-                weights: self
-                    .remainders
-                    .weights(|modulus| denominator.residue(modulus))
-                    .collect(),
-                in_test: denominator.residue(&self.test.modulus),
-            },
+            None => {
+                let ladder = denominator.ladder();
+                Over {
+                    denominator: denominator.clone(),
+                    weights: self.remainders.weights(|modulus| ladder.residue(modulus)).collect(),
+                    in_test: ladder.residue(&self.test.modulus),
+                }
+            }
         }
     }
 

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, Schur, SymmetricEigen};
 use thiserror::Error;
 
 use super::{TransitionCurve, TransitionCurves, Unknown, WavesOfMotion};
-use crate::expr::Expr;
+use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
 use crate::system::{Options, System};
@@ -300,12 +300,18 @@ impl Coefficients {
             return Err(TruthError::Frequency(frequency));
         }
         let most = curves.curves.iter().map(|curve| curve.tongue).max().unwrap_or(0);
+        let time = Symbol::new("t");
+        let given = || numbers.iter().filter(|(name, _)| **name != time);
+        let names: Vec<Symbol> = given().map(|(name, _)| *name).chain([time]).collect();
+        let compiled =
+            |expression: &Expr| CompiledFunction::new(expression, &names).map_err(|_| TruthError::Coefficients);
+        let [damping, stiffness] = [compiled(&curves.damping)?, compiled(&curves.stiffness)?];
         let sample = |count: usize| -> Result<Vec<[f64; 2]>, TruthError> {
-            let mut numbers = numbers.clone();
+            let mut point: Vec<f64> = given().map(|(_, value)| *value).chain([0.0]).collect();
             let sample = |index: usize| {
-                numbers.insert(Symbol::new("t"), 2.0 * TAU / frequency * index as f64 / count as f64);
-                let value = |expression: &Expr| expression.evaluate(&numbers).ok().filter(|value| value.is_finite());
-                Some([value(&curves.damping)?, value(&curves.stiffness)?])
+                *point.last_mut()? = 2.0 * TAU / frequency * index as f64 / count as f64;
+                let sample = [damping.call(&point), stiffness.call(&point)];
+                sample.iter().all(|value| value.is_finite()).then_some(sample)
             };
             let samples: Option<Vec<[f64; 2]>> = (0..count).map(sample).collect();
             samples.ok_or(TruthError::Coefficients)
@@ -348,13 +354,15 @@ impl Coefficients {
         let count = self.samples.len();
         let half = self.frequency / 2.0;
         let norm = |k: usize| if k == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+        let round: Vec<(f64, f64)> = (0..count)
+            .map(|place| (TAU * place as f64 / count as f64).sin_cos())
+            .collect();
         let mut at_samples = DMatrix::zeros(count, waves.len());
         let mut images = DMatrix::zeros(count, waves.len());
         for (row, [c, k]) in self.samples.iter().enumerate() {
             for (column, (harmonic, is_sine)) in waves.iter().enumerate() {
                 // Reduced in whole numbers, so that the waves are orthogonal to the last digit.
-                let phase = TAU * ((harmonic * row) % count) as f64 / count as f64;
-                let (sine, cosine) = phase.sin_cos();
+                let (sine, cosine) = round[(harmonic * row) % count];
                 let rate = *harmonic as f64 * half;
                 let (value, slope) = if *is_sine {
                     (sine, rate * cosine)

@@ -20,6 +20,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::driven::Driven;
+use super::harmonics::{Harmonics, Transform};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 
@@ -36,8 +37,8 @@ pub struct Balance<'a> {
     pub driven: &'a Driven,
     /// H: the highest harmonic.
     pub harmonics: usize,
-    /// cos of all phases that are sampled; their number is a power of two.
-    cosines: Vec<f64>,
+    /// From samples to harmonics and back; the number of samples is a power of two.
+    transform: Transform,
 }
 
 /// The residual and its derivatives at a point.
@@ -53,47 +54,10 @@ pub struct Linearised {
     pub scale: f64,
 }
 
-/// Harmonics 0 to `count` of samples: twice the mean, then cosines; sines.
-struct Harmonics {
-    cosines: Vec<f64>,
-    sines: Vec<f64>,
-}
-
 /// A part of the force and of its derivatives by position, velocity, parameter and frequency, at a phase.
 struct Part {
     phase: f64,
     values: [f64; 5],
-}
-
-impl Harmonics {
-    /// Adds what stands at one phase.
-    fn add(&mut self, phase: f64, value: f64) {
-        if value == 0.0 {
-            return;
-        }
-        let value = value / std::f64::consts::PI;
-        let (step_sine, step_cosine) = phase.sin_cos();
-        let (mut cosine, mut sine) = (1.0, 0.0);
-        for (cosines, sines) in self.cosines.iter_mut().zip(&mut self.sines) {
-            *cosines += value * cosine;
-            *sines += value * sine;
-            (cosine, sine) = (
-                cosine * step_cosine - sine * step_sine,
-                sine * step_cosine + cosine * step_sine,
-            );
-        }
-    }
-
-    /// The cosine of an index of either sign.
-    fn cosine(&self, index: isize) -> f64 {
-        self.cosines[index.unsigned_abs()]
-    }
-
-    /// The sine of an index of either sign.
-    fn sine(&self, index: isize) -> f64 {
-        let value = self.sines[index.unsigned_abs()];
-        if index < 0 { -value } else { value }
-    }
 }
 
 impl<'a> Balance<'a> {
@@ -102,11 +66,10 @@ impl<'a> Balance<'a> {
         let harmonics = harmonics.max(1);
         let [each, least] = if driven.smooth { SMOOTH } else { CORNERED };
         let samples = (each * (harmonics + 1)).next_power_of_two().max(least);
-        let phase = |index: usize| std::f64::consts::TAU * index as f64 / samples as f64;
         Self {
             driven,
             harmonics,
-            cosines: (0..samples).map(|index| phase(index).cos()).collect(),
+            transform: Transform::new(samples),
         }
     }
 
@@ -169,51 +132,28 @@ impl<'a> Balance<'a> {
 
     /// The number of samples.
     pub fn samples(&self) -> usize {
-        self.cosines.len()
-    }
-
-    /// cos(k theta) and sin(k theta) at a sample.
-    fn wave(&self, harmonic: usize, sample: usize) -> (f64, f64) {
-        let samples = self.cosines.len();
-        let index = (harmonic * sample) % samples;
-        (
-            self.cosines[index],
-            self.cosines[(index + samples - samples / 4) % samples],
-        )
+        self.transform.samples()
     }
 
     /// X, X' and X'' by the phase, at every sample.
     pub fn motion(&self, coefficients: &DVector<f64>) -> Vec<[f64; 3]> {
-        let at = |sample: usize| {
-            let mut point = [coefficients[0], 0.0, 0.0];
-            for harmonic in 1..=self.harmonics {
-                let (cosine, sine) = self.wave(harmonic, sample);
+        let derivative = |times: u32| {
+            let wave = move |harmonic: usize| {
                 let [a, b] = self.harmonic(coefficients, harmonic);
                 let k = harmonic as f64;
-                let value = a * cosine + b * sine;
-                point[0] += value;
-                point[1] += k * (b * cosine - a * sine);
-                point[2] -= k * k * value;
-            }
-            point
+                match times {
+                    0 => [a, b],
+                    1 => [k * b, -k * a],
+                    _ => [-k * k * a, -k * k * b],
+                }
+            };
+            self.transform.sum_of_waves((0..=self.harmonics).map(wave))
         };
-        (0..self.samples()).map(at).collect()
-    }
-
-    /// The harmonics of samples, up to `count`.
-    fn harmonics_of(&self, values: &[f64], count: usize) -> Harmonics {
-        let factor = 2.0 / values.len() as f64;
-        let harmonic = |harmonic: usize| {
-            let (mut cosines, mut sines) = (0.0, 0.0);
-            for (sample, value) in values.iter().enumerate() {
-                let (cosine, sine) = self.wave(harmonic, sample);
-                cosines += value * cosine;
-                sines += value * sine;
-            }
-            (factor * cosines, factor * sines)
-        };
-        let (cosines, sines) = (0..=count).map(harmonic).unzip();
-        Harmonics { cosines, sines }
+        let [positions, slopes, curvatures] = [0, 1, 2].map(derivative);
+        let points = positions.into_iter().zip(slopes).zip(curvatures);
+        points
+            .map(|((position, slope), curvature)| [position, slope, curvature])
+            .collect()
     }
 
     /// The coefficients of a motion that is known at any number of equal steps of a period, twice as many as harmonics at least.
@@ -286,7 +226,7 @@ impl<'a> Balance<'a> {
         }
         let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let all = |values: &[f64], which: usize, count: usize| {
-            let mut harmonics = self.harmonics_of(values, count);
+            let mut harmonics = self.transform.harmonics(values, count);
             for part in &above {
                 harmonics.add(part.phase, part.values[which]);
             }

@@ -33,6 +33,7 @@ pub mod continuation;
 pub mod cycle;
 pub mod driven;
 mod error;
+mod harmonics;
 pub mod hopf;
 mod judgement;
 pub mod jump;

@@ -91,31 +91,39 @@ pub fn integrate_smooth(
     }
     let tolerance = tolerance.max(1e-14);
     let coarse = gauss(&mut function, from, to)?.0;
-    let mut panels = vec![Panel::split(&mut function, from, to, coarse)?];
+    let first = Panel::split(&mut function, from, to, coarse)?;
+    // The sums as they change panel by panel say when it is worth adding up all of them.
+    let (mut running_error, mut running_magnitude) = (first.error, first.magnitude);
+    let mut panels = vec![first];
     loop {
-        let value = panels.iter().map(Panel::value).sum::<f64>();
-        let error_estimate = panels.iter().map(|panel| panel.error).sum::<f64>();
-        let magnitude = panels.iter().map(|panel| panel.magnitude).sum::<f64>();
-        if error_estimate <= tolerance * magnitude {
-            return Ok((value, error_estimate));
+        let sum = |of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
+        if running_error.is_nan() || running_error <= 2.0 * tolerance * running_magnitude {
+            let error_estimate = sum(|panel| panel.error);
+            if error_estimate <= tolerance * sum(|panel| panel.magnitude) {
+                return Ok((sum(Panel::value), error_estimate));
+            }
         }
         let worst = panels
             .iter()
             .enumerate()
             .max_by(|one, other| one.1.error.total_cmp(&other.1.error));
         let Some((index, &panel)) = worst else {
-            return Ok((value, error_estimate));
+            return Ok((sum(Panel::value), sum(|panel| panel.error)));
         };
         let middle = panel.middle();
         if panels.len() >= MAXIMUM_PANELS || middle <= panel.from.min(panel.to) || middle >= panel.from.max(panel.to) {
             return Err(QuadratureError::NotConverged {
-                value,
-                error_estimate,
+                value: sum(Panel::value),
+                error_estimate: sum(|panel| panel.error),
                 worst_at: middle,
             });
         }
-        panels[index] = Panel::split(&mut function, panel.from, middle, panel.left)?;
-        panels.push(Panel::split(&mut function, middle, panel.to, panel.right)?);
+        let left = Panel::split(&mut function, panel.from, middle, panel.left)?;
+        let right = Panel::split(&mut function, middle, panel.to, panel.right)?;
+        running_error += left.error + right.error - panel.error;
+        running_magnitude += left.magnitude + right.magnitude - panel.magnitude;
+        panels[index] = left;
+        panels.push(right);
     }
 }
 

@@ -546,6 +546,7 @@ impl<'a> Asked<'a> {
     fn without_tails(&self, mut response: Response) -> Result<Response, ResponseError> {
         /// Points without a true motion in a row that are no accident.
         const FEW: usize = 3;
+        let tolerance = response.question.tolerance;
         let mut slowest: Vec<f64> = Vec::new();
         for branch in &mut response.branches {
             let points = &mut branch.points;
@@ -554,11 +555,19 @@ impl<'a> Asked<'a> {
             let judged: Vec<usize> = judged.collect();
             let together = judged.chunk_by(|one, next| next - one <= FEW + 1);
             let longest = together.max_by_key(|part| part.len()).unwrap_or_default();
-            let (Some(&first), Some(&last)) = (longest.first(), longest.last()) else {
+            let (Some(&(mut first)), Some(&(mut last))) = (longest.first(), longest.last()) else {
                 points.clear();
                 slowest.push(f64::INFINITY);
                 continue;
             };
+            // Before no true motion is near any more the error has grown.
+            let within = |index: &&usize| points[**index].error.is_some_and(|error| error <= tolerance);
+            if count - 1 - last > FEW {
+                last = longest.iter().rfind(within).copied().unwrap_or(last);
+            }
+            if first > FEW {
+                first = longest.iter().find(within).copied().unwrap_or(first);
+            }
             if count - 1 - last > FEW {
                 points.truncate(last + 1);
                 branch.ends[1] = BranchEnd::Slow;

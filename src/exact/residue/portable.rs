@@ -14,11 +14,6 @@ impl Portable {
     pub fn new() -> Self {
         Self(Arch::new())
     }
-
-    /// With what every processor has: finding out what else there is takes as long as a short calculation.
-    pub fn plain() -> Self {
-        Self(Arch::Scalar)
-    }
 }
 
 /// Products not carried yet, and the sums of the low and of the high halves of those that are.

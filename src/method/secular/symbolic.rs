@@ -25,7 +25,6 @@ use rayon::prelude::*;
 
 use super::modular::{Field, Plan, Recursion, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
-use crate::exact::residue::portable::Portable;
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
@@ -49,12 +48,8 @@ pub(super) fn expand(
     extent: Extent,
     supervision: Supervision,
 ) -> Option<Expansion<Symbols>> {
-    /// So few orders are done before it is found out what the processor has.
-    const FEW: usize = 2;
-    let work = Expand(force, highest, *scheme, extent, supervision);
     match scheme.amplitude {
-        Amplitude::Free if highest <= FEW => work.by(Portable::plain()),
-        Amplitude::Free => by_widest(work),
+        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent, supervision)),
         Amplitude::Determined => None,
     }
 }
@@ -563,6 +558,7 @@ fn expansion(
 mod tests {
     use super::super::Detuning;
     use super::*;
+    use crate::exact::residue::portable::Portable;
     use crate::solution::AmplitudeConvention;
     use crate::symbol::Symbol;
 

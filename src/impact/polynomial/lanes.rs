@@ -28,19 +28,38 @@ const INVERSE_BINOMIALS: [f64; DEGREE + 1] = [
 /// p(u), as even part + u odd part: two short chains of operations instead of a long one.
 #[inline(always)]
 pub(in crate::impact) fn values<const L: usize>(coefficients: &[[f64; L]], u: &[f64; L]) -> [f64; L] {
-    let (pairs, rest) = coefficients.as_chunks::<2>();
-    let (mut even, mut odd, mut square) = (rest.first().copied().unwrap_or([0.0; L]), [0.0; L], [0.0; L]);
+    let [values] = values_of([coefficients], u);
+    values
+}
+
+/// Those of several polynomials of the same length: each to the last bit what it is alone, and sooner, for none waits for another.
+#[inline(always)]
+pub(in crate::impact) fn values_of<const N: usize, const L: usize>(
+    polynomials: [&[[f64; L]]; N],
+    u: &[f64; L],
+) -> [[f64; L]; N] {
+    let (mut even, mut odd, mut square) = ([[0.0; L]; N], [[0.0; L]; N], [0.0; L]);
     for lane in 0..L {
         square[lane] = u[lane] * u[lane];
     }
-    for pair in pairs.iter().rev() {
-        for lane in 0..L {
-            even[lane] = even[lane] * square[lane] + pair[0][lane];
-            odd[lane] = odd[lane] * square[lane] + pair[1][lane];
+    let count = polynomials.first().map_or(0, |first| first.len());
+    if count % 2 == 1 {
+        for (even, coefficients) in even.iter_mut().zip(polynomials) {
+            *even = coefficients[count - 1];
         }
     }
-    for lane in 0..L {
-        even[lane] += u[lane] * odd[lane];
+    for pair in (0..count / 2).rev() {
+        for ((even, odd), coefficients) in even.iter_mut().zip(&mut odd).zip(polynomials) {
+            for lane in 0..L {
+                even[lane] = even[lane] * square[lane] + coefficients[2 * pair][lane];
+                odd[lane] = odd[lane] * square[lane] + coefficients[2 * pair + 1][lane];
+            }
+        }
+    }
+    for (even, odd) in even.iter_mut().zip(&odd) {
+        for lane in 0..L {
+            even[lane] += u[lane] * odd[lane];
+        }
     }
     even
 }
@@ -76,13 +95,37 @@ pub(in crate::impact) fn values_and_slopes<const L: usize>(
 /// A bound on |p(u) - p(0)| for 0 <= u <= h.
 #[inline(always)]
 pub(in crate::impact) fn variations<const L: usize>(coefficients: &[[f64; L]], h: &[f64; L]) -> [f64; L] {
-    let mut sum = [0.0; L];
-    for coefficient in coefficients.iter().skip(1).rev() {
+    let (mut even, mut odd, mut square) = ([0.0; L], [0.0; L], [0.0; L]);
+    for lane in 0..L {
+        square[lane] = h[lane] * h[lane];
+    }
+    let (pairs, rest) = coefficients.get(1..).unwrap_or_default().as_chunks::<2>();
+    for coefficient in rest {
         for lane in 0..L {
-            sum[lane] = (sum[lane] + coefficient[lane].abs()) * h[lane];
+            odd[lane] = coefficient[lane].abs();
         }
     }
-    sum
+    for pair in pairs.iter().rev() {
+        for lane in 0..L {
+            odd[lane] = odd[lane] * square[lane] + pair[0][lane].abs();
+            even[lane] = even[lane] * square[lane] + pair[1][lane].abs();
+        }
+    }
+    for lane in 0..L {
+        odd[lane] = (odd[lane] + even[lane] * h[lane]) * h[lane];
+    }
+    odd
+}
+
+/// One round of sums of neighbours, from this place on: with its number known beforehand no loop is left.
+#[inline(always)]
+fn neighbours<const FIRST: usize, const L: usize>(form: &mut [[f64; L]; DEGREE + 1]) {
+    for i in (FIRST..=DEGREE).rev() {
+        let below = form[i - 1];
+        for (entry, below) in form[i].iter_mut().zip(below) {
+            *entry += below;
+        }
+    }
 }
 
 /// How often p, which is not zero at 0, changes its sign in (0, h): 0 or 1, more where that is not certain.
@@ -102,14 +145,14 @@ pub(in crate::impact) fn changes_of_sign<const L: usize>(coefficients: &[[f64; L
             power[lane] *= h[lane];
         }
     }
-    for round in 0..DEGREE {
-        for i in (round + 1..=DEGREE).rev() {
-            let below = form[i - 1];
-            for (entry, below) in form[i].iter_mut().zip(below) {
-                *entry += below;
-            }
-        }
-    }
+    neighbours::<1, L>(&mut form);
+    neighbours::<2, L>(&mut form);
+    neighbours::<3, L>(&mut form);
+    neighbours::<4, L>(&mut form);
+    neighbours::<5, L>(&mut form);
+    neighbours::<6, L>(&mut form);
+    neighbours::<7, L>(&mut form);
+    neighbours::<8, L>(&mut form);
     let (mut changes, mut last) = ([0.0; L], [0.0; L]);
     for lane in 0..L {
         last[lane] = if form[0][lane] > 0.0 { 1.0 } else { -1.0 };

@@ -56,7 +56,7 @@ pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
 }
 
 /// p(u) and p'(u).
-fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
+pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
     let ([value], [slope]) = values_and_slopes(alone(coefficients), &[u]);
     (value, slope)
 }

@@ -1,12 +1,12 @@
 //! The motion as a function of time, piece by piece: the polynomials of the Taylor steps, the Runge-Kutta path, or the formulas of a
 //! chain.
 //!
-//! In contact a piece is a polynomial in s with dt = w ds, x = x_r + w^2: to ask for a time is to solve t(s) = t first,
-//! which has one solution because t rises with s.
+//! A step of a series has a variable r of its own: to ask for a time is to solve t(r) = t first, which has one solution because t rises
+//! with r. In contact x = x_r + w^2, and the polynomials are those of w.
 
 use super::closed::ClosedForm;
 use crate::impact::model::Side;
-use crate::impact::polynomial::{crossing_of, value};
+use crate::impact::polynomial::{crossing_of, value, value_and_slope};
 use crate::numeric::ode::Trajectory;
 use crate::numeric::ode::quadrature::nodes_and_weights;
 
@@ -60,16 +60,13 @@ impl Piece {
 /// How x and x' are kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Representation {
-    /// Coefficients of x and x' in (t - start)/unit, from this place of the pool on.
-    Time { offset: usize, terms: usize, unit: f64 },
-    /// Coefficients of w, x' and t - start in s/unit; the series ends at `length`.
-    Regularised {
+    /// Coefficients of x or w, x' and t - start, so many of each, from this place of the pool on; the series ends at `length`.
+    Series {
         offset: usize,
-        terms: usize,
+        terms: [usize; 3],
         length: f64,
-        barrier: f64,
-        sign: f64,
-        unit: f64,
+        /// In contact: the barrier and the sign of its side.
+        behind: Option<[f64; 2]>,
     },
     /// Not moving.
     Constant { x: f64 },
@@ -159,42 +156,29 @@ impl Path {
         self.pieces.iter().flat_map(inside).chain(last)
     }
 
-    pub(in crate::impact) fn push_flight(
+    /// A step of a series that ends at `length`: x, x' and t - start, in contact w instead of x, behind a barrier.
+    pub(in crate::impact) fn push_series(
         &mut self,
         span: [f64; 2],
-        regime: Regime,
-        unit: f64,
-        x: &[f64],
-        velocity: &[f64],
-    ) {
-        let offset = self.pool.len();
-        self.pool.extend_from_slice(x);
-        self.pool.extend_from_slice(velocity);
-        let terms = x.len();
-        self.push(span, regime, Representation::Time { offset, terms, unit });
-    }
-
-    pub(in crate::impact) fn push_contact(
-        &mut self,
-        span: [f64; 2],
-        (side, barrier): (Side, f64),
+        (regime, barrier): (Regime, Option<f64>),
         length: f64,
-        unit: f64,
-        [w, velocity, time]: [&[f64]; 3],
+        series: [&[f64]; 3],
     ) {
         let offset = self.pool.len();
-        self.pool.extend_from_slice(w);
-        self.pool.extend_from_slice(velocity);
-        self.pool.extend_from_slice(time);
-        let form = Representation::Regularised {
-            offset,
-            terms: w.len(),
-            length,
-            barrier,
-            sign: side.sign(),
-            unit,
+        for coefficients in series {
+            self.pool.extend_from_slice(coefficients);
+        }
+        let behind = match (regime, barrier) {
+            (Regime::Contact(side), Some(barrier)) => Some([barrier, side.sign()]),
+            _ => None,
         };
-        self.push(span, Regime::Contact(side), form);
+        let form = Representation::Series {
+            offset,
+            terms: series.map(<[f64]>::len),
+            length,
+            behind,
+        };
+        self.push(span, regime, form);
     }
 
     pub(in crate::impact) fn push_closed(&mut self, span: [f64; 2], regime: Regime, form: ClosedForm) {
@@ -209,7 +193,7 @@ impl Path {
             let mut piece = *piece;
             piece.start += from;
             piece.end += from;
-            if let Representation::Time { offset, .. } | Representation::Regularised { offset, .. } = &mut piece.form {
+            if let Representation::Series { offset, .. } = &mut piece.form {
                 *offset += shift;
             }
             piece
@@ -251,32 +235,43 @@ impl Path {
         })
     }
 
-    fn slice(&self, offset: usize, terms: usize) -> &[f64] {
-        self.pool.get(offset..offset + terms).unwrap_or_default()
+    fn series(&self, mut offset: usize, terms: [usize; 3]) -> [&[f64]; 3] {
+        terms.map(|terms| {
+            let coefficients = self.pool.get(offset..offset + terms).unwrap_or_default();
+            offset += terms;
+            coefficients
+        })
     }
 
     /// The point at a fraction of the piece, counted in the variable of the piece.
     pub(in crate::impact) fn node(&self, piece: &Piece, fraction: f64) -> Node {
         let length = piece.end - piece.start;
         match piece.form {
-            Representation::Regularised {
+            Representation::Series {
                 offset,
                 terms,
                 length,
-                barrier,
-                sign,
-                unit,
+                behind,
             } => {
-                let s = fraction * length;
-                let w = value(self.slice(offset, terms), s);
-                let velocity = value(self.slice(offset + terms, terms), s);
-                let time = value(self.slice(offset + 2 * terms, terms), s);
-                Node {
+                let u = fraction * length;
+                let [place, velocity, time] = self.series(offset, terms);
+                let (place, velocity) = (value(place, u), value(velocity, u));
+                let (time, pace) = value_and_slope(time, u);
+                let node = Node {
                     t: piece.start + time,
-                    x: barrier + sign * w * w,
-                    velocity: sign * velocity,
-                    depth: w * w,
-                    weight: w * length * unit,
+                    x: place,
+                    velocity,
+                    depth: 0.0,
+                    weight: pace * length,
+                };
+                match behind {
+                    None => node,
+                    Some([barrier, sign]) => Node {
+                        x: barrier + sign * place * place,
+                        velocity: sign * velocity,
+                        depth: place * place,
+                        ..node
+                    },
                 }
             }
             _ => Node {
@@ -295,24 +290,20 @@ impl Path {
             weight: 0.0,
         };
         match piece.form {
-            Representation::Time { offset, terms, unit } => {
-                let u = (t - piece.start) / unit;
-                node(
-                    value(self.slice(offset, terms), u),
-                    value(self.slice(offset + terms, terms), u),
-                )
-            }
-            Representation::Regularised {
+            Representation::Series {
                 offset, terms, length, ..
             } => {
-                let time = self.slice(offset + 2 * terms, terms);
+                let [_, _, time] = self.series(offset, terms);
                 let wanted = t - piece.start;
-                let s = match wanted {
+                let u = match wanted {
                     _ if wanted <= 0.0 => 0.0,
                     _ if t >= piece.end => length,
-                    _ => crossing_of(|s| value(time, s) - wanted, 0.0, length),
+                    _ => crossing_of(|u| value(time, u) - wanted, 0.0, length),
                 };
-                self.node(piece, s / length)
+                Node {
+                    t,
+                    ..self.node(piece, u / length)
+                }
             }
             Representation::Constant { x } => node(x, 0.0),
             Representation::Closed(form) => {

@@ -27,18 +27,19 @@ impl ContactStep<'_> {
     fn x(&self, depth: f64) -> f64 {
         self.barrier + self.side.sign() * depth
     }
+}
 
-    /// The part of a step of this length that takes so long: its length, and its values at the end.
-    fn cut(&self, remaining: f64, length: f64) -> (f64, End) {
-        let h = crossing_of(|u| value(self.time, u) - remaining, 0.0, length);
-        let end = End {
-            place: value(self.w, h),
-            velocity: value(self.v, h),
-            time: remaining,
-            variation: variation(self.v, h),
-        };
-        (h, end)
-    }
+/// The part of a step of this length that takes so long: its length, and its values at the end.
+pub(super) fn cut([place, velocity, time]: [&[f64]; 3], remaining: f64, (length, whole): (f64, End)) -> (f64, End) {
+    let h = crossing_of(|u| value(time, u) - remaining, 0.0, length);
+    let end = End {
+        place: value(place, h),
+        velocity: value(velocity, h),
+        time: remaining,
+        variation: variation(velocity, h),
+        ..whole
+    };
+    (h, end)
 }
 
 impl Runner {
@@ -50,16 +51,19 @@ impl Runner {
         course: Course,
         load: impl FnOnce() -> Loaded,
     ) -> bool {
-        let lowest = self.velocity - end.variation;
-        if self.model.would_pull(lowest) || self.settings.duration - self.t <= end.time {
-            return false;
-        }
         let x = |w: f64| barrier + side.sign() * (w * w);
         let (at, w, velocity, time) = match course.crossing {
             None => (self.length, end.place, end.velocity, end.time),
             Some((point, _)) => (point.at, 0.0, point.velocity, point.time),
         };
-        let (sine, cosine) = self.angle(x(w));
+        let lowest = self.velocity - end.variation;
+        if self.model.would_pull(lowest) || self.settings.duration - self.t <= time {
+            return false;
+        }
+        let (sine, cosine) = match course.crossing {
+            None => (side.sign() * end.sine, end.cosine),
+            Some(_) => self.angle_at(side),
+        };
         // What is stored in the barrier comes on top.
         if self.is_at_rest_energy(velocity, cosine) {
             return false;
@@ -81,7 +85,7 @@ impl Runner {
             let series = load();
             let series = series.each_ref().map(|series| &series[..=self.order]);
             self.path
-                .push_contact([start, self.t], (side, barrier), at, self.unit, series);
+                .push_series([start, self.t], (self.regime, Some(barrier)), at, series);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (w, velocity, sine, cosine);
         match course.crossing {
@@ -107,9 +111,15 @@ impl Runner {
             time,
         };
         let remaining = self.settings.duration - self.t;
-        let last = whole.time >= remaining;
+        // Beyond the release, where w < 0, the time would fall again.
+        let releases = sign_changes(w, self.length);
+        let (until, most) = match releases.as_slice().first() {
+            Some(release) => (*release, value(time, *release)),
+            None => (self.length, whole.time),
+        };
+        let last = most >= remaining;
         let (h, whole) = match last {
-            true => step.cut(remaining, self.length),
+            true => cut([w, v, time], remaining, (until, whole)),
             false => (self.length, whole),
         };
         let (mut end, mut event, deepest) = self.turns_and_release(&step, h, whole);
@@ -134,7 +144,7 @@ impl Runner {
         };
         if self.settings.keep_path {
             self.path
-                .push_contact([start, self.t], (side, barrier), end, self.unit, [w, v, time]);
+                .push_series([start, self.t], (self.regime, Some(barrier)), end, [w, v, time]);
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
@@ -209,6 +219,7 @@ impl Runner {
             }
             Some(Event::Detach) => {
                 self.regime = Regime::Detached(step.side);
+                self.base = 0.0;
                 self.place = step.x(w * w);
                 self.velocity = step.side.sign() * velocity;
                 self.set_flight_unit();
@@ -251,12 +262,14 @@ impl Runner {
         self.regime = Regime::Contact(side);
         let barrier = self.model.barrier(side).unwrap_or_default();
         self.place = w;
+        self.base = side.sign() * barrier;
         self.velocity = speed;
         self.set_angle(barrier + side.sign() * w * w);
         // The time of a Hertz contact in s: its greatest depth is that at which the barrier stores all the energy,
         // v^2/2 = (2/5) gamma d^(5/2), w = sqrt(d), dw/ds = v/2.
         let reached = hertz::greatest_depth(self.model.gamma, speed).max(w * w);
         let fastest = (speed * speed + 2.0 * self.model.elastic_energy(w * w)).sqrt();
+        self.hertz = [reached.sqrt(), fastest];
         // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next to none.
         let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
         let unit = (reached.sqrt() / fastest).min((2.0 / others).sqrt());

@@ -6,7 +6,7 @@
 
 use super::series::{Coefficients, Ends, Inputs};
 use super::{Equation, VANISHING};
-use crate::impact::polynomial::lanes::{changes_of_sign, crossings, values};
+use crate::impact::polynomial::lanes::{changes_of_sign, crossings};
 
 /// A place on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub(super) struct Point {
     /// x or w.
     pub(super) place: f64,
     pub(super) velocity: f64,
-    /// In contact: since the start of the step.
+    /// Since the start of the step.
     pub(super) time: f64,
 }
 
@@ -69,7 +69,7 @@ impl<const L: usize> Points<L> {
 
 impl<const L: usize> Courses<L> {
     /// Nothing happens in any of the steps.
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             plain: [true; L],
             turns: [false; L],
@@ -97,13 +97,10 @@ pub(super) fn courses<const L: usize>(
     inputs: &Inputs<L>,
     lengths: &[f64; L],
     ends: &Ends<L>,
-) -> Courses<L> {
-    let mut courses = Courses::new();
-    let (place, velocity, time) = (
-        &series.place[..=order],
-        &series.velocity[..=order],
-        &series.time[..=order],
-    );
+    courses: &mut Courses<L>,
+) {
+    (courses.plain, courses.turns) = ([true; L], [false; L]);
+    let (place, velocity) = (&series.place[..=order], &series.velocity[..=order]);
     // Where the stretch that may cross a bound begins, and from where to where it goes.
     let (mut from, mut start) = ([0.0; L], inputs.place);
     let (mut to, mut goal) = (*lengths, ends.place);
@@ -128,10 +125,8 @@ pub(super) fn courses<const L: usize>(
             &courses.turns,
         );
         courses.turn.at = turn;
-        courses.turn.place = values(place, &turn);
-        if equation == Equation::Contact {
-            courses.turn.time = values(time, &turn);
-        }
+        let [turn_place, _, turn_time] = series.values(&turn, order, equation);
+        (courses.turn.place, courses.turn.time) = (turn_place, turn_time);
         for lane in 0..L {
             let turned = courses.turn.place[lane];
             let beyond = (turned > inputs.upper[lane]) | (turned < inputs.lower[lane]);
@@ -161,11 +156,7 @@ pub(super) fn courses<const L: usize>(
         }
         let crossing = crossings(place, &level, (&from, &start), (&to, &goal), &courses.crosses);
         courses.crossing.at = crossing;
-        courses.crossing.place = values(place, &crossing);
-        courses.crossing.velocity = values(velocity, &crossing);
-        if equation == Equation::Contact {
-            courses.crossing.time = values(time, &crossing);
-        }
+        [courses.crossing.place, courses.crossing.velocity, courses.crossing.time] =
+            series.values(&crossing, order, equation);
     }
-    courses
 }

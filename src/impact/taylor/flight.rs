@@ -1,16 +1,21 @@
 //! Free flight: what ends a step of it, a touch at the barrier, the onset of a contact from rest on it, a turning point.
 
+use super::contact::cut;
 use super::{Event, LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
 use crate::impact::model::Side;
 use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
 use crate::impact::simulation::Regime;
 use crate::impact::simulation::{Turn, enter};
+use crate::impact::taylor::angle::sine_and_cosine;
 use crate::impact::taylor::course::Course;
-use crate::impact::taylor::series::{End, HIGHEST_ORDER};
+use crate::impact::taylor::series::{End, HIGHEST_ORDER, TIME_TERMS};
 
 impl Runner {
     /// Takes a step of free flight with a plain course, if nothing else ends it.
     pub(super) fn fly_on(&mut self, end: End, course: Course, load: impl FnOnce() -> Loaded) -> bool {
+        if self.settings.duration - self.t <= end.time {
+            return false;
+        }
         let (x, velocity, touched) = match course.crossing {
             None => (end.place, end.velocity, None),
             Some((point, rises)) => {
@@ -19,29 +24,29 @@ impl Runner {
                     return false;
                 }
                 let barrier = self.model.barrier(side).unwrap_or_default();
-                (barrier, point.velocity, Some((side, point.at)))
+                (barrier, point.velocity, Some((side, point)))
             }
         };
-        let (sine, cosine) = self.angle(x);
+        let (sine, cosine) = match touched {
+            None => (end.sine, end.cosine),
+            Some((side, _)) => self.angle_at(side),
+        };
         if self.regime != Regime::Free || self.is_at_rest_energy(velocity, cosine) {
             return false;
         }
         if let Some(turn) = course.turn {
             self.turns.push(Turn {
-                t: self.t + turn.at * self.unit,
+                t: self.t + turn.time,
                 x: turn.place,
             });
         }
         let start = self.t;
-        self.t = match touched {
-            None if self.last => self.settings.duration,
-            None => start + self.length * self.unit,
-            Some((_, at)) => start + at * self.unit,
-        };
+        let (at, time) = touched.map_or((self.length, end.time), |(_, point)| (point.at, point.time));
+        self.t = start + time;
         if self.settings.keep_path {
-            let [x, v, _] = load();
-            let (x, v) = (&x[..=self.order], &v[..=self.order]);
-            self.path.push_flight([start, self.t], self.regime, self.unit, x, v);
+            let [x, v, time] = load();
+            let series = [&x[..=self.order], &v[..=self.order], &time[..TIME_TERMS]];
+            self.path.push_series([start, self.t], (self.regime, None), at, series);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x, velocity, sine, cosine);
         match touched {
@@ -52,12 +57,18 @@ impl Runner {
     }
 
     /// Takes a step of free flight up to what ends it, and goes on from there.
-    pub(super) fn advance_flight(&mut self, whole: End, x: &[f64], v: &[f64]) {
-        let (x, v) = (&x[..=self.order], &v[..=self.order]);
-        let h = self.length;
+    pub(super) fn advance_flight(&mut self, whole: End, series: [&[f64; HIGHEST_ORDER + 1]; 3]) {
+        let [x, v, time] = series;
+        let (x, v, time) = (&x[..=self.order], &v[..=self.order], &time[..TIME_TERMS]);
+        let remaining = self.settings.duration - self.t;
+        let last = whole.time >= remaining;
+        let (h, whole) = match last {
+            true => cut([x, v, time], remaining, (self.length, whole)),
+            false => (self.length, whole),
+        };
         let (mut end, mut event) = match self.regime {
             Regime::Detached(side) => self.detached_event(side, x, v, h),
-            _ => self.flight_event(x, v, h, whole),
+            _ => self.flight_event([x, v, time], h, whole),
         };
         let energy = |u: f64| self.model.energy(value(x, u), value(v, u));
         let (mut x_end, mut v_end) = if end == h {
@@ -76,20 +87,21 @@ impl Runner {
             end = crossing_of(|u| energy(u) - rest_energy, 0.0, end);
             event = Some(Event::RestEnergy);
             (x_end, v_end) = (value(x, end), value(v, end));
-            (sine, cosine) = x_end.sin_cos();
+            (sine, cosine) = sine_and_cosine(x_end);
         }
         let start = self.t;
-        self.t = if self.last && end == h {
+        let elapsed = if end == h { whole.time } else { value(time, end) };
+        self.t = if last && end == h {
             self.settings.duration
         } else {
-            start + end * self.unit
+            start + elapsed
         };
         if self.settings.keep_path {
             let state = match event {
                 Some(Event::Onset(side)) => Regime::Contact(side),
                 _ => self.regime,
             };
-            self.path.push_flight([start, self.t], state, self.unit, x, v);
+            self.path.push_series([start, self.t], (state, None), end, [x, v, time]);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x_end, v_end, sine, cosine);
         self.adapt();
@@ -109,7 +121,7 @@ impl Runner {
                     start,
                     [0.0, 0.0],
                 );
-                self.begin_contact_from_rest(side, end * self.unit, [depth, side.sign() * v_end]);
+                self.begin_contact_from_rest(side, elapsed, [depth, side.sign() * v_end]);
             }
             Some(Event::Touch(side) | Event::Settle(side)) => {
                 (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
@@ -132,7 +144,7 @@ impl Runner {
     }
 
     /// What ends a free flight before `h`, and where. Turning points on the way are noted.
-    fn flight_event(&mut self, x: &[f64], v: &[f64], h: f64, end: End) -> (f64, Option<Event>) {
+    fn flight_event(&mut self, [x, v, time]: [&[f64]; 3], h: f64, end: End) -> (f64, Option<Event>) {
         let turns = turning_points(v, h, end);
         let (mut from, mut x_from) = (0.0, x[0]);
         let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
@@ -143,7 +155,7 @@ impl Runner {
                 // At rest on the barrier: which way it goes is in the change of x alone, not in x - x_r.
                 if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
                     if sign * rise(x, to) > 0.0 {
-                        return (self.onset(side, x, v, to), Some(Event::Onset(side)));
+                        return (self.onset(side, [x, v, time], to), Some(Event::Onset(side)));
                     }
                     continue;
                 }
@@ -166,7 +178,7 @@ impl Runner {
             }
             if turning {
                 self.turns.push(Turn {
-                    t: self.t + to * self.unit,
+                    t: self.t + value(time, to),
                     x: x_to,
                 });
                 if self.model.sticks() {
@@ -200,12 +212,12 @@ impl Runner {
 
     /// How far a motion that moves into the barrier from rest on it, and does so at least until `to`, may go before the
     /// contact force counts.
-    fn onset(&self, side: Side, x: &[f64], v: &[f64], to: f64) -> f64 {
+    fn onset(&self, side: Side, [x, v, time]: [&[f64]; 3], to: f64) -> f64 {
         let mut u = to;
         // Each time the part of the force shrinks by 4^4 or more.
         for _ in 0..MOST_IDLE {
             let (depth, speed) = (side.sign() * rise(x, u), side.sign() * value(v, u));
-            if self.model.contact(depth, speed) * u * self.unit <= LIGHT * speed {
+            if self.model.contact(depth, speed) * value(time, u) <= LIGHT * speed {
                 break;
             }
             u *= 0.25;
@@ -214,6 +226,7 @@ impl Runner {
     }
 
     pub(super) fn fly(&mut self) {
+        self.base = 0.0;
         self.set_angle(self.place);
         self.set_flight_unit();
     }

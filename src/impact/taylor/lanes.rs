@@ -52,16 +52,18 @@ struct Evaluation<'a> {
     lengths: &'a [f64; LANES],
     order: usize,
     equation: Equation,
+    ends: &'a mut Ends<LANES>,
+    courses: &'a mut Courses<LANES>,
 }
 
 impl WithSimd for Evaluation<'_> {
-    type Output = (Ends<LANES>, Courses<LANES>);
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let ends = self.series.ends(self.lengths, self.order, self.equation);
-        let step = (self.order, self.equation);
-        (ends, courses(self.series, step, self.inputs, self.lengths, &ends))
+    fn with_simd<S: Simd>(self, _: S) {
+        let (step, ends) = ((self.order, self.equation), self.ends);
+        *ends = self.series.ends(self.inputs, self.lengths, self.order, self.equation);
+        courses(self.series, step, self.inputs, self.lengths, ends, self.courses);
     }
 }
 
@@ -94,6 +96,7 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
     let mut fresh: Vec<usize> = Vec::with_capacity(POOL);
     let mut series = Box::new(Coefficients::<LANES>::new());
     let mut inputs = Inputs::<LANES>::new();
+    let (mut ends, mut courses) = (Ends::<LANES>::new(), Courses::<LANES>::new());
     for (number, runner) in waiting.by_ref().take(POOL) {
         fresh.push(pool.len());
         pool.push((number, runner));
@@ -143,12 +146,14 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
                 lengths[lane] = runner.reach(proposed[lane]);
             }
         }
-        let (ends, courses) = arch.dispatch(Evaluation {
+        arch.dispatch(Evaluation {
             series: &series,
             inputs: &inputs,
             lengths: &lengths,
             order,
             equation,
+            ends: &mut ends,
+            courses: &mut courses,
         });
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {

@@ -17,8 +17,10 @@
 //! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is given its coefficients
 //! ([`Runner::advance`]); who computes them, for one motion or for several side by side, it does not know. What happens in most
 //! steps, a turning point and a touch or a release, is found side by side too, in `course`; what else may end a step stands in
-//! `flight` and `contact`, what dry friction does at a turning point in `friction`, the length of a step in `step`.
+//! `flight` and `contact`, what dry friction does at a turning point in `friction`, the length of a step in `step` and `stretch`, sine and
+//! cosine for several motions in `angle`.
 
+mod angle;
 mod contact;
 mod course;
 mod flight;
@@ -26,6 +28,7 @@ mod friction;
 mod lanes;
 mod series;
 mod step;
+mod stretch;
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -35,7 +38,8 @@ use super::simulation::{
     Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter, first_swing, has_rested,
     scaled,
 };
-use course::{Course, courses};
+use angle::sine_and_cosine;
+use course::{Course, Courses, courses};
 pub(super) use lanes::follow;
 use series::{Coefficients, End, HIGHEST_ORDER, Inputs, Terms};
 use step::step_lengths;
@@ -43,8 +47,9 @@ use step::step_lengths;
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
 
-/// The part of the tolerance that the first term left out may use up; those after it add as much again.
-const SAFETY: f64 = 0.5;
+/// The part of the tolerance that the first term left out may use up: from one contact to the next there are a dozen steps, whose
+/// errors add up, and each contact multiplies them.
+const SAFETY: f64 = 0.01;
 
 /// The longest step in contact, in units of its own scale.
 const LONGEST_CONTACT_STEP: f64 = 64.0;
@@ -62,6 +67,9 @@ const VANISHING: f64 = 1e-280;
 /// Events in a row without progress of time after which a run is called stalled.
 const MOST_IDLE: usize = 100;
 
+/// Contacts for which there is room from the beginning.
+const FEW: usize = 8;
+
 /// The coefficients of a step of one motion: x or w, v, t.
 type Loaded = [[f64; HIGHEST_ORDER + 1]; 3];
 
@@ -77,6 +85,7 @@ pub(super) struct Runner {
     model: Model,
     settings: Settings,
     order: usize,
+    terms: Terms,
     regime: Regime,
     t: f64,
     /// x in flight, w in contact, where it and the velocity are seen in the mirror of the side.
@@ -91,10 +100,13 @@ pub(super) struct Runner {
     /// Let go by friction just now: the acceleration is still zero.
     released: bool,
     unit: f64,
-    /// The step under way: how long the series is good for, how much of that is taken, and whether it is the last.
+    /// In contact: the barrier, as seen in the mirror; otherwise 0.
+    base: f64,
+    /// In contact: the largest w and the largest speed of Hertz's contact that begins so.
+    hertz: [f64; 2],
+    /// The step under way: how long the series is good for, and how much of that is taken.
     proposed: f64,
     length: f64,
-    last: bool,
     steps: usize,
     idle: usize,
     stop: Option<Stop>,
@@ -127,6 +139,7 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
     let mut runner = Runner::new(model, start, settings);
     let mut series = Coefficients::<1>::new();
     let mut inputs = Inputs::<1>::new();
+    let mut found = Courses::<1>::new();
     let (order, terms) = (runner.order(), runner.terms());
     while let Some(equation) = runner.wants() {
         runner.inputs(0, &mut inputs);
@@ -136,17 +149,18 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
         }
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
         let length = runner.reach(proposed);
-        let ends = series.ends(&[length], order, equation);
-        let courses = courses(&series, (order, equation), &inputs, &[length], &ends);
-        runner.advance(ends.lane(0), courses.lane(0), || series.lane(order, 0));
+        let ends = series.ends(&inputs, &[length], order, equation);
+        courses(&series, (order, equation), &inputs, &[length], &ends, &mut found);
+        runner.advance(ends.lane(0), found.lane(0), || series.lane(order, 0));
     }
     runner.finish(start)
 }
 
-/// The order of the series that suits a tolerance: each order gains about a third of a digit per step.
+/// The order of the series that suits a tolerance. Most of the work of a step is not that of its series, so long steps pay, and the
+/// order hardly depends on it.
 fn order_for(tolerance: f64) -> usize {
     let digits = -tolerance.max(1e-18).log10();
-    ((6.5 + 1.6 * digits) as usize).clamp(8, HIGHEST_ORDER)
+    ((22.1 + 0.37 * digits) as usize).clamp(8, HIGHEST_ORDER)
 }
 
 impl Runner {
@@ -157,25 +171,31 @@ impl Runner {
             model,
             settings,
             order: order_for(settings.relative_tolerance),
+            terms: Terms {
+                arctangent: model.friction == Friction::Arctangent && model.alpha > 0.0,
+                excited: model.beta != 0.0,
+                damped_contact: model.mu > 0.0,
+            },
             regime: Regime::Free,
             t: 0.0,
             place: start.x,
             velocity: start.velocity,
             sine: 0.0,
             cosine: 0.0,
-            angles: [model.left, model.right].map(|barrier| barrier.unwrap_or_default().sin_cos()),
+            angles: [model.left, model.right].map(|barrier| sine_and_cosine(barrier.unwrap_or_default())),
             direction: 0.0,
             released: false,
             unit: 1.0,
+            base: 0.0,
+            hertz: [0.0; 2],
             proposed: 0.0,
             length: 0.0,
-            last: false,
             steps: 0,
             idle: 0,
             stop: None,
             level: REST_FRACTION * first_swing(&model, start),
-            impacts: Vec::new(),
-            turns: Vec::new(),
+            impacts: Vec::with_capacity(FEW),
+            turns: Vec::with_capacity(4 * FEW),
             path: Path::new(),
         };
         runner.fly();
@@ -248,11 +268,7 @@ impl Runner {
 
     /// The terms of the equation that are on.
     fn terms(&self) -> Terms {
-        Terms {
-            arctangent: self.model.friction == Friction::Arctangent && self.model.alpha > 0.0,
-            excited: self.model.beta != 0.0,
-            damped_contact: self.model.mu > 0.0,
-        }
+        self.terms
     }
 
     /// The series wanted next; nothing once the run has ended.
@@ -288,6 +304,7 @@ impl Runner {
         };
         let arctangent = model.friction == Friction::Arctangent;
         inputs.place[lane] = self.place;
+        inputs.base[lane] = self.base;
         inputs.velocity[lane] = self.velocity;
         inputs.sine[lane] = mirror * self.sine;
         inputs.cosine[lane] = self.cosine;
@@ -297,6 +314,7 @@ impl Runner {
             inputs.drive[1][lane] = cosine;
         }
         inputs.unit[lane] = self.unit;
+        (inputs.hertz[0][lane], inputs.hertz[1][lane]) = (self.hertz[0], self.hertz[1]);
         inputs.dry[lane] = if arctangent {
             0.0
         } else {
@@ -333,15 +351,11 @@ impl Runner {
     /// How far the step goes, in its unit, where the series reaches so far: it ends there if nothing happens before.
     fn reach(&mut self, proposed: f64) -> f64 {
         self.proposed = proposed;
-        self.last = false;
-        if matches!(self.regime, Regime::Contact(_)) {
-            self.length = proposed.min(LONGEST_CONTACT_STEP);
-            return self.length;
-        }
-        let remaining = self.settings.duration - self.t;
-        let length = proposed.min(LONGEST_STEP / self.unit);
-        self.last = length * self.unit >= remaining;
-        self.length = if self.last { remaining / self.unit } else { length };
+        let longest = match self.regime {
+            Regime::Contact(_) => LONGEST_CONTACT_STEP,
+            _ => LONGEST_STEP / self.unit,
+        };
+        self.length = proposed.min(longest);
         self.length
     }
 
@@ -354,7 +368,7 @@ impl Runner {
             return;
         }
         let contact = self.side().filter(|_| matches!(self.regime, Regime::Contact(_)));
-        if contact.is_none() && !self.last && self.t + self.length * self.unit <= self.t {
+        if contact.is_none() && self.t + end.time.min(self.settings.duration - self.t) <= self.t {
             self.stop = Some(Stop::StepTooSmall { t: self.t });
             return;
         }
@@ -374,7 +388,7 @@ impl Runner {
             self.released = false;
             match contact {
                 Some(contact) => self.advance_contact(contact, end, [&place, &velocity, &time]),
-                None => self.advance_flight(end, &place, &velocity),
+                None => self.advance_flight(end, [&place, &velocity, &time]),
             }
         }
         let turned = self.settings.stop_at_rest && self.turns.len() > turns;
@@ -413,12 +427,20 @@ impl Runner {
         (self.sine, self.cosine) = self.angle(x);
     }
 
+    /// Sine and cosine of a barrier.
+    fn angle_at(&self, side: Side) -> (f64, f64) {
+        match side {
+            Side::Left => self.angles[0],
+            Side::Right => self.angles[1],
+        }
+    }
+
     /// Sine and cosine of x; those of the barriers are known.
     fn angle(&self, x: f64) -> (f64, f64) {
         match x {
             _ if self.model.right == Some(x) => self.angles[1],
             _ if self.model.left == Some(x) => self.angles[0],
-            _ => x.sin_cos(),
+            _ => sine_and_cosine(x),
         }
     }
 

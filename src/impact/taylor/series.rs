@@ -5,7 +5,7 @@
 //! contact:  x = x_r + w^2,  dt = w ds:                                               derivatives by s
 //!           w' = v/2,  t' = w,
 //!           v' = -w (sin x + friction - beta sin(eta t) cos x) - 2 zeta w v - (gamma + mu v) w^4
-//! products: (a b)_n = sum_k a_k b_(n-k);   u = sin x, c = cos x:  n u_n = sum_k k x_k c_(n-k)
+//! products: (a b)_n = sum_k a_k b_(n-k);   u = sin x, c = cos x:  n u_n = sum_k k x_k c_(n-k);   (w^2)' = w v
 //!           y = 1 + k^2 v^2, p = atan(k v):  n p_n y_0 = k n v_n - sum_(0<j<n) j p_j y_(n-j)
 //! ```
 //!
@@ -14,15 +14,20 @@
 //! 14 (2005) 99; the change of variable is that of Levi-Civita and Sundman for collisions.) A left barrier is a right
 //! one seen in a mirror: x, v, beta and the direction of friction change sign.
 //!
-//! Times are counted in a unit of choice, so that no coefficient over- or underflows. `L` motions go through the same
+//! Times are counted in a unit of choice, so that no coefficient over- or underflows, and stretched within a step (`stretch`). `L` motions go through the same
 //! operations side by side; each gets bit for bit what it would get alone.
 
+use super::angle::sines_and_cosines;
+use super::stretch::{in_contact, in_flight, stretched};
 use super::{Equation, Loaded};
 use crate::impact::model::STEEPNESS;
-use crate::impact::polynomial::lanes::{values, variations};
+use crate::impact::polynomial::lanes::{values, values_of, variations};
 
 /// Highest order of a series.
 pub(super) const HIGHEST_ORDER: usize = 30;
+
+/// Coefficients of the time in flight.
+pub(super) const TIME_TERMS: usize = 4;
 
 /// How many of the last coefficients decide on the length of a step: a series may have gaps. At touch v is a series in
 /// s^5, for v' = -gamma w^4 and w' = v/2.
@@ -56,12 +61,16 @@ pub(super) struct Inputs<const L: usize> {
     /// x in flight, w = sqrt(x - x_r) in contact.
     pub(super) place: [f64; L],
     pub(super) velocity: [f64; L],
+    /// In contact: the barrier; otherwise 0.
+    pub(super) base: [f64; L],
     pub(super) sine: [f64; L],
     pub(super) cosine: [f64; L],
     /// sin and cos of eta t.
     pub(super) drive: [[f64; L]; 2],
     /// The unit of t, or of s.
     pub(super) unit: [f64; L],
+    /// In contact: the largest w and the largest speed of Hertz's contact that began so.
+    pub(super) hertz: [[f64; L]; 2],
     /// Coulomb's friction, alpha times the direction of motion.
     pub(super) dry: [f64; L],
     /// (2/pi) alpha in equation (6).
@@ -85,10 +94,12 @@ impl<const L: usize> Inputs<L> {
         Self {
             place: zero,
             velocity: zero,
+            base: zero,
             sine: zero,
             cosine: zero,
             drive: [zero; 2],
             unit: zero,
+            hertz: [[1.0; L]; 2],
             dry: zero,
             arctangent: zero,
             viscous: zero,
@@ -111,17 +122,19 @@ pub(super) struct Coefficients<const L: usize> {
     /// x in flight, w in contact.
     pub(super) place: Series<L>,
     pub(super) velocity: Series<L>,
-    /// Time since the start of the step, in contact.
+    /// Time since the start of the step.
     pub(super) time: Series<L>,
     sine: Series<L>,
     cosine: Series<L>,
     drive: [Series<L>; 2],
+    phase_rate: Series<L>,
     square: Series<L>,
     angle: Series<L>,
     rate: Series<L>,
     depth: Series<L>,
     fourth: Series<L>,
     slow: Series<L>,
+    ahead: Ahead<L>,
 }
 
 impl<const L: usize> Coefficients<L> {
@@ -134,12 +147,43 @@ impl<const L: usize> Coefficients<L> {
             sine: zero,
             cosine: zero,
             drive: [zero; 2],
+            phase_rate: zero,
             square: zero,
             angle: zero,
             rate: zero,
             depth: zero,
             fourth: zero,
             slow: zero,
+            ahead: Ahead::new(),
+        }
+    }
+}
+
+/// What is known of each product (a b)_(n+1) as soon as (a b)_n is: all but a_0 b_(n+1) and a_(n+1) b_0.
+#[derive(Debug, Clone, Copy)]
+struct Ahead<const L: usize> {
+    angle: [[f64; L]; 2],
+    phase: [[f64; L]; 2],
+    push: [f64; L],
+    speed: [f64; L],
+    depth: [f64; L],
+    fourth: [f64; L],
+    carried: [f64; L],
+    damped: [f64; L],
+}
+
+impl<const L: usize> Ahead<L> {
+    fn new() -> Self {
+        let zero = [0.0; L];
+        Self {
+            angle: [zero; 2],
+            phase: [zero; 2],
+            push: zero,
+            speed: zero,
+            depth: zero,
+            fourth: zero,
+            carried: zero,
+            damped: zero,
         }
     }
 }
@@ -151,6 +195,8 @@ pub(super) struct Ends<const L: usize> {
     pub(super) velocity: [f64; L],
     pub(super) time: [f64; L],
     pub(super) variation: [f64; L],
+    pub(super) sine: [f64; L],
+    pub(super) cosine: [f64; L],
 }
 
 /// Those of one motion.
@@ -158,19 +204,36 @@ pub(super) struct Ends<const L: usize> {
 pub(super) struct End {
     pub(super) place: f64,
     pub(super) velocity: f64,
-    /// In contact: the time that the step takes.
+    /// The time that the step takes.
     pub(super) time: f64,
     /// A bound on the change of the velocity within the step.
     pub(super) variation: f64,
+    /// Of x, in contact as seen in the mirror.
+    pub(super) sine: f64,
+    pub(super) cosine: f64,
 }
 
 impl<const L: usize> Ends<L> {
+    pub(super) fn new() -> Self {
+        let zero = [0.0; L];
+        Self {
+            place: zero,
+            velocity: zero,
+            time: zero,
+            variation: zero,
+            sine: zero,
+            cosine: zero,
+        }
+    }
+
     pub(super) fn lane(&self, lane: usize) -> End {
         End {
             place: self.place[lane],
             velocity: self.velocity[lane],
             time: self.time[lane],
             variation: self.variation[lane],
+            sine: self.sine[lane],
+            cosine: self.cosine[lane],
         }
     }
 }
@@ -187,89 +250,145 @@ impl<const L: usize> Coefficients<L> {
         own
     }
 
+    /// Place, velocity and time at these points; the time is a short polynomial in flight.
+    #[inline(always)]
+    pub(super) fn values(&self, at: &[f64; L], order: usize, equation: Equation) -> [[f64; L]; 3] {
+        let order = order.min(HIGHEST_ORDER);
+        let (place, velocity) = (&self.place[..=order], &self.velocity[..=order]);
+        match equation {
+            Equation::Flight => {
+                let [place, velocity] = values_of([place, velocity], at);
+                [place, velocity, values(&self.time[..TIME_TERMS], at)]
+            }
+            Equation::Contact => values_of([place, velocity, &self.time[..=order]], at),
+        }
+    }
+
     /// The values of the series where the steps end.
     #[inline(always)]
-    pub(super) fn ends(&self, lengths: &[f64; L], order: usize, equation: Equation) -> Ends<L> {
+    pub(super) fn ends(&self, inputs: &Inputs<L>, lengths: &[f64; L], order: usize, equation: Equation) -> Ends<L> {
         let order = order.min(HIGHEST_ORDER);
+        let [place, velocity, time] = self.values(lengths, order, equation);
+        let angle = match equation {
+            Equation::Flight => place,
+            Equation::Contact => each(|lane| inputs.base[lane] + place[lane] * place[lane]),
+        };
+        let (sine, cosine) = sines_and_cosines(&angle);
         Ends {
-            place: values(&self.place[..=order], lengths),
-            velocity: values(&self.velocity[..=order], lengths),
-            time: match equation {
-                Equation::Flight => [0.0; L],
-                Equation::Contact => values(&self.time[..=order], lengths),
-            },
+            place,
+            velocity,
+            time,
             variation: variations(&self.velocity[..=order], lengths),
+            sine,
+            cosine,
         }
     }
 }
 
-/// (a b)_n. Two sums, of even and of odd k: half the waiting of one on the other.
+/// Motions in one register of 256 bits.
+const REGISTER: usize = 4;
+
+/// (a b)_n, asked for in rising order: an even n is computed together with what is known of the next, so that every coefficient is
+/// read once for both.
 #[inline(always)]
-fn product<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize) -> [f64; L] {
-    let (mut even, mut odd) = ([0.0; L], [0.0; L]);
-    let (a, middle) = a[..=n].as_chunks::<2>();
-    let (first, b) = b[..=n].as_rchunks::<2>();
-    for (a, b) in a.iter().zip(b.iter().rev()) {
+fn product<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize, ahead: &mut [f64; L]) -> [f64; L] {
+    let mut sum = [0.0; L];
+    if n % 2 == 1 {
         for lane in 0..L {
-            even[lane] += a[0][lane] * b[1][lane];
-            odd[lane] += a[1][lane] * b[0][lane];
+            sum[lane] = ahead[lane] + a[0][lane] * b[n][lane] + a[n][lane] * b[0][lane];
         }
+        return sum;
     }
-    for (a, b) in middle.iter().zip(first) {
+    let mut next = [0.0; L];
+    for ((low, high), b) in a[..n].iter().zip(&a[1..=n]).zip(b[1..=n].iter().rev()) {
         for lane in 0..L {
-            even[lane] += a[lane] * b[lane];
+            sum[lane] += low[lane] * b[lane];
+            next[lane] += high[lane] * b[lane];
         }
     }
     for lane in 0..L {
-        even[lane] += odd[lane];
+        sum[lane] += a[n][lane] * b[0][lane];
     }
-    even
+    *ahead = next;
+    sum
 }
 
-/// (a b)_n and (a c)_n, with every a_k read once.
+/// (a b)_n and (a c)_n likewise.
 #[inline(always)]
-fn products<const L: usize>(a: &Series<L>, [b, c]: [&Series<L>; 2], n: usize) -> [[f64; L]; 2] {
-    let zero = [0.0; L];
-    let (mut b_even, mut b_odd, mut c_even, mut c_odd) = (zero, zero, zero, zero);
-    let (a, last) = a[..=n].as_chunks::<2>();
-    let ((b_first, b), (c_first, c)) = (b[..=n].as_rchunks::<2>(), c[..=n].as_rchunks::<2>());
-    for (a, (b, c)) in a.iter().zip(b.iter().zip(c).rev()) {
+fn products<const L: usize>(
+    a: &Series<L>,
+    [b, c]: [&Series<L>; 2],
+    n: usize,
+    ahead: &mut [[f64; L]; 2],
+) -> [[f64; L]; 2] {
+    let mut sums = [[0.0; L]; 2];
+    if n % 2 == 1 {
         for lane in 0..L {
-            b_even[lane] += a[0][lane] * b[1][lane];
-            b_odd[lane] += a[1][lane] * b[0][lane];
-            c_even[lane] += a[0][lane] * c[1][lane];
-            c_odd[lane] += a[1][lane] * c[0][lane];
+            sums[0][lane] = ahead[0][lane] + a[0][lane] * b[n][lane] + a[n][lane] * b[0][lane];
+            sums[1][lane] = ahead[1][lane] + a[0][lane] * c[n][lane] + a[n][lane] * c[0][lane];
         }
+        return sums;
     }
-    for (a, (b, c)) in last.iter().zip(b_first.iter().zip(c_first)) {
-        for lane in 0..L {
-            b_even[lane] += a[lane] * b[lane];
-            c_even[lane] += a[lane] * c[lane];
+    let mut next = [[0.0; L]; 2];
+    for ((low, high), (b, c)) in a[..n].iter().zip(&a[1..=n]).zip(b[1..=n].iter().zip(&c[1..=n]).rev()) {
+        // A register at a time: so that the sums stay in theirs.
+        for first in (0..L).step_by(REGISTER) {
+            let last = L.min(first + REGISTER);
+            for lane in first..last {
+                sums[0][lane] += low[lane] * b[lane];
+                next[0][lane] += high[lane] * b[lane];
+            }
+            for lane in first..last {
+                sums[1][lane] += low[lane] * c[lane];
+                next[1][lane] += high[lane] * c[lane];
+            }
         }
     }
     for lane in 0..L {
-        b_even[lane] += b_odd[lane];
-        c_even[lane] += c_odd[lane];
+        sums[0][lane] += a[n][lane] * b[0][lane];
+        sums[1][lane] += a[n][lane] * c[0][lane];
     }
-    [b_even, c_even]
+    *ahead = next;
+    sums
+}
+
+/// (a b)_n likewise where one is the other times a constant: half the terms are like the other half.
+#[inline(always)]
+fn symmetric<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize, ahead: &mut [f64; L]) -> [f64; L] {
+    let mut sum = [0.0; L];
+    let half = n / 2;
+    if n % 2 == 1 {
+        for lane in 0..L {
+            sum[lane] = 2.0 * (ahead[lane] + a[0][lane] * b[n][lane]);
+        }
+        return sum;
+    }
+    let mut next = [0.0; L];
+    if half > 0 {
+        let falling = b[half + 1..=n].iter().rev();
+        for (a, (high, low)) in a[1..=half].iter().zip(falling.zip(b[half..n].iter().rev())) {
+            for lane in 0..L {
+                next[lane] += a[lane] * high[lane];
+                sum[lane] += a[lane] * low[lane];
+            }
+        }
+        // The middle one, which stands alone, came last.
+        for lane in 0..L {
+            sum[lane] = 2.0 * (sum[lane] + a[0][lane] * b[n][lane]) - a[half][lane] * b[half][lane];
+        }
+    } else {
+        for lane in 0..L {
+            sum[lane] = a[0][lane] * b[0][lane];
+        }
+    }
+    *ahead = next;
+    sum
 }
 
 /// (a a)_n.
 #[inline(always)]
-fn square<const L: usize>(a: &Series<L>, n: usize) -> [f64; L] {
-    let mut sum = [0.0; L];
-    let half = n.div_ceil(2);
-    let a = &a[..=n];
-    for (low, high) in a[..half].iter().zip(a.iter().rev()) {
-        for lane in 0..L {
-            sum[lane] += low[lane] * high[lane];
-        }
-    }
-    let middle = if n.is_multiple_of(2) { a[half] } else { [0.0; L] };
-    for lane in 0..L {
-        sum[lane] = 2.0 * sum[lane] + middle[lane] * middle[lane];
-    }
-    sum
+fn square<const L: usize>(a: &Series<L>, n: usize, ahead: &mut [f64; L]) -> [f64; L] {
+    symmetric(a, a, n, ahead)
 }
 
 #[inline(always)]
@@ -292,27 +411,31 @@ pub(super) const INVERSE: [f64; HIGHEST_ORDER + 2] = {
     table
 };
 
-/// The next coefficients of sine and cosine of an angle with this rate: n s_n = unit (rate c)_(n-1).
+/// The next coefficients of sine and cosine of an angle with this rate: n s_n = (rate c)_(n-1).
 #[inline(always)]
 fn sine_and_cosine<const L: usize>(
-    sine: &mut Series<L>,
-    cosine: &mut Series<L>,
+    [sine, cosine]: [&mut Series<L>; 2],
     rate: &Series<L>,
-    factor: &[f64; L],
     n: usize,
+    ahead: &mut [[f64; L]; 2],
 ) {
-    let [up, down] = products(rate, [cosine, sine], n - 1);
+    let [up, down] = products(rate, [cosine, sine], n - 1, ahead);
     for lane in 0..L {
-        sine[n][lane] = factor[lane] * INVERSE[n] * up[lane];
-        cosine[n][lane] = -factor[lane] * INVERSE[n] * down[lane];
+        sine[n][lane] = INVERSE[n] * up[lane];
+        cosine[n][lane] = -INVERSE[n] * down[lane];
     }
 }
 
 /// The next coefficient of atan(k v).
 #[inline(always)]
-fn arctangent<const L: usize>(angle: &mut Series<L>, squares: &mut Series<L>, velocity: &Series<L>, n: usize) {
+fn arctangent<const L: usize>(
+    [angle, squares]: [&mut Series<L>; 2],
+    velocity: &Series<L>,
+    n: usize,
+    ahead: &mut [f64; L],
+) {
     let steepness_squared = STEEPNESS * STEEPNESS;
-    let squared = square(velocity, n);
+    let squared = square(velocity, n, ahead);
     if n == 0 {
         squares[0] = each(|lane| 1.0 + steepness_squared * squared[lane]);
         angle[0] = each(|lane| (STEEPNESS * velocity[0][lane]).atan());
@@ -341,32 +464,57 @@ pub(super) fn flight<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Te
             series.drive[part][0] = inputs.drive[part];
         }
     }
+    // t = unit (r + p r^2/2 + q r^3/3).
+    let stretch = in_flight(inputs);
+    series.time[0] = [0.0; L];
+    series.time[1] = inputs.unit;
+    series.time[2] = each(|lane| 0.5 * inputs.unit[lane] * stretch[0][lane]);
+    series.time[3] = each(|lane| INVERSE[3] * inputs.unit[lane] * stretch[1][lane]);
+    series.ahead = Ahead::new();
+    let mut forces = [[0.0; L]; 2];
     for n in 0..order {
+        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+        let velocity = stretched(&stretch, &series.velocity, n);
+        series.rate[n] = each(|lane| inputs.unit[lane] * velocity[lane]);
+        series.place[n + 1] = each(|lane| INVERSE[n + 1] * series.rate[n][lane]);
         if n > 0 {
-            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.velocity, &inputs.unit, n);
+            sine_and_cosine(
+                [&mut series.sine, &mut series.cosine],
+                &series.rate,
+                n,
+                &mut series.ahead.angle,
+            );
         }
         let mut force: [f64; L] = each(|lane| -inputs.viscous[lane] * series.velocity[n][lane] - series.sine[n][lane]);
         if n == 0 {
             force = each(|lane| force[lane] - inputs.dry[lane]);
         }
         if terms.arctangent {
-            arctangent(&mut series.angle, &mut series.square, &series.velocity, n);
+            arctangent(
+                [&mut series.angle, &mut series.square],
+                &series.velocity,
+                n,
+                &mut series.ahead.speed,
+            );
             force = each(|lane| force[lane] - inputs.arctangent[lane] * series.angle[n][lane]);
         }
         if terms.excited {
             if n > 0 {
                 // sin(eta t) and cos(eta t), each the derivative of the other.
-                let [sine, cosine] = [series.drive[0][n - 1], series.drive[1][n - 1]];
+                let cosine = stretched(&stretch, &series.drive[1], n - 1);
+                let sine = stretched(&stretch, &series.drive[0], n - 1);
                 let factor: [f64; L] = each(|lane| inputs.unit[lane] * inputs.eta[lane] * INVERSE[n]);
                 series.drive[0][n] = each(|lane| factor[lane] * cosine[lane]);
                 series.drive[1][n] = each(|lane| -factor[lane] * sine[lane]);
             }
-            let push = product(&series.drive[0], &series.cosine, n);
+            let push = product(&series.drive[0], &series.cosine, n, &mut series.ahead.push);
             force = each(|lane| force[lane] + inputs.beta[lane] * push[lane]);
         }
-        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
-        series.place[n + 1] = each(|lane| factor[lane] * series.velocity[n][lane]);
-        series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
+        let [p, q] = &stretch;
+        let [before, earlier] = forces;
+        let bent: [f64; L] = each(|lane| force[lane] + (p[lane] * before[lane] + q[lane] * earlier[lane]));
+        series.velocity[n + 1] = each(|lane| factor[lane] * bent[lane]);
+        forces = [force, before];
     }
 }
 
@@ -385,45 +533,61 @@ pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: T
             series.drive[part][0] = inputs.drive[part];
         }
     }
+    series.ahead = Ahead::new();
+    let stretch = in_contact(inputs);
+    let mut forces = [[0.0; L]; 2];
     for n in 0..order {
+        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+        let place = stretched(&stretch, &series.place, n);
+        series.time[n + 1] = each(|lane| factor[lane] * place[lane]);
+        let velocity = stretched(&stretch, &series.velocity, n);
+        series.place[n + 1] = each(|lane| 0.5 * factor[lane] * velocity[lane]);
+        series.depth[n + 1] = square(&series.place, n + 1, &mut series.ahead.depth);
+        series.rate[n] = each(|lane| (n + 1) as f64 * series.depth[n + 1][lane]);
         if n > 0 {
-            let rate = series.rate[n - 1];
-            series.depth[n] = each(|lane| inputs.unit[lane] * INVERSE[n] * rate[lane]);
-            sine_and_cosine(&mut series.sine, &mut series.cosine, &series.rate, &inputs.unit, n);
+            sine_and_cosine(
+                [&mut series.sine, &mut series.cosine],
+                &series.rate,
+                n,
+                &mut series.ahead.angle,
+            );
         }
-        series.fourth[n] = square(&series.depth, n);
+        series.fourth[n] = square(&series.depth, n, &mut series.ahead.fourth);
         let mut slow = series.sine[n];
         if n == 0 {
             slow = each(|lane| slow[lane] + inputs.dry[lane]);
         }
         if terms.arctangent {
-            arctangent(&mut series.angle, &mut series.square, &series.velocity, n);
+            arctangent(
+                [&mut series.angle, &mut series.square],
+                &series.velocity,
+                n,
+                &mut series.ahead.speed,
+            );
             slow = each(|lane| slow[lane] + inputs.arctangent[lane] * series.angle[n][lane]);
         }
         if terms.excited {
+            series.phase_rate[n] = each(|lane| (n + 1) as f64 * inputs.eta[lane] * series.time[n + 1][lane]);
             if n > 0 {
-                let factor = each(|lane| inputs.unit[lane] * inputs.eta[lane]);
                 let [sine, cosine] = &mut series.drive;
-                sine_and_cosine(sine, cosine, &series.place, &factor, n);
+                sine_and_cosine([sine, cosine], &series.phase_rate, n, &mut series.ahead.phase);
             }
-            let push = product(&series.drive[0], &series.cosine, n);
-            slow = each(|lane| slow[lane] - inputs.beta[lane] * push[lane]);
+            let driven = product(&series.drive[0], &series.cosine, n, &mut series.ahead.push);
+            slow = each(|lane| slow[lane] - inputs.beta[lane] * driven[lane]);
         }
         series.slow[n] = slow;
-        // dx/ds = w v, and the depth w^2 has the same derivative.
-        let [rate, carried] = products(&series.place, [&series.velocity, &series.slow], n);
-        series.rate[n] = rate;
-        let mut force: [f64; L] = each(|lane| {
-            -carried[lane] - inputs.viscous[lane] * series.rate[n][lane] - inputs.gamma[lane] * series.fourth[n][lane]
-        });
+        let carried = product(&series.place, &series.slow, n, &mut series.ahead.carried);
+        let mut force: [f64; L] = each(|lane| -carried[lane] - inputs.gamma[lane] * series.fourth[n][lane]);
         if terms.damped_contact {
-            let damped = product(&series.velocity, &series.fourth, n);
+            let damped = product(&series.velocity, &series.fourth, n, &mut series.ahead.damped);
             force = each(|lane| force[lane] - inputs.mu[lane] * damped[lane]);
         }
-        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
-        series.time[n + 1] = each(|lane| factor[lane] * series.place[n][lane]);
-        series.place[n + 1] = each(|lane| 0.5 * factor[lane] * series.velocity[n][lane]);
-        series.velocity[n + 1] = each(|lane| factor[lane] * force[lane]);
+        let [p, q] = &stretch;
+        let [before, earlier] = forces;
+        let bent: [f64; L] = each(|lane| force[lane] + (p[lane] * before[lane] + q[lane] * earlier[lane]));
+        series.velocity[n + 1] =
+            each(|lane| factor[lane] * bent[lane] - inputs.viscous[lane] * series.depth[n + 1][lane]);
+        forces = [force, before];
     }
 }
 
@@ -450,6 +614,7 @@ mod tests {
             cosine: [angle.cos()],
             drive: [[sine], [cosine]],
             unit: [0.01],
+            hertz: [[0.35], [30.0]],
             dry: [0.05],
             arctangent: on(terms.arctangent, 0.11),
             viscous: [0.2],
@@ -462,7 +627,13 @@ mod tests {
     }
 
     /// The series of a system of equations as written, by the recurrences of their expressions: state by state.
-    fn by_expressions(states: &[(&str, f64)], rates: &[&str], inputs: &Inputs<1>) -> Vec<Vec<f64>> {
+    fn by_expressions(
+        states: &[(&str, f64)],
+        rates: &[&str],
+        (inputs, [[p], [q]]): (&Inputs<1>, [[f64; 1]; 2]),
+    ) -> Vec<Vec<f64>> {
+        // r is counted in units, as the other series are.
+        let unit = inputs.unit[0];
         let number = |name: &str, value: [f64; 1]| (Symbol::from(name), value[0]);
         let numbers = BTreeMap::from([
             number("dry", inputs.dry),
@@ -474,6 +645,8 @@ mod tests {
             number("mu", inputs.mu),
             number("x_r", [0.4]),
             number("k", [STEEPNESS]),
+            number("p", [p / unit]),
+            number("q", [q / (unit * unit)]),
         ]);
         let variables: Vec<(Symbol, Option<usize>)> =
             states.iter().map(|(name, _)| (Symbol::from(*name), None)).collect();
@@ -519,14 +692,15 @@ mod tests {
             let mut series = Coefficients::<1>::new();
             contact(&now, ORDER, terms, &mut series);
             let other = by_expressions(
-                &[("w", 0.3), ("v", 0.02), ("t", 0.7)],
+                &[("w", 0.3), ("v", 0.02), ("t", 0.7), ("r", 0.0)],
                 &[
-                    "v/2",
-                    "-w*(sin(x_r + w^2) + dry + arctangent*atan(k*v) - beta*sin(eta*t)*cos(x_r + w^2)) - viscous*w*v \
-                     - (gamma + mu*v)*w^4",
-                    "w",
+                    "(1 + p*r + q*r^2)*v/2",
+                    "(1 + p*r + q*r^2)*(-w*(sin(x_r + w^2) + dry + arctangent*atan(k*v) - beta*sin(eta*t)*cos(x_r + w^2)) \
+                     - viscous*w*v - (gamma + mu*v)*w^4)",
+                    "(1 + p*r + q*r^2)*w",
+                    "1",
                 ],
-                &now,
+                (&now, in_contact(&now)),
             );
             assert_same(&series.place, &other[0], "w");
             assert_same(&series.velocity, &other[1], "v in contact");
@@ -535,13 +709,19 @@ mod tests {
             now.place = [x];
             flight(&now, ORDER, terms, &mut series);
             let other = by_expressions(
-                &[("x", x), ("v", 0.02), ("t", 0.7)],
+                &[("x", x), ("v", 0.02), ("t", 0.7), ("r", 0.0)],
                 &[
-                    "v",
-                    "-viscous*v - sin(x) - dry - arctangent*atan(k*v) + beta*sin(eta*t)*cos(x)",
+                    "(1 + p*r + q*r^2)*v",
+                    "(1 + p*r + q*r^2)*(-viscous*v - sin(x) - dry - arctangent*atan(k*v) + beta*sin(eta*t)*cos(x))",
+                    "1 + p*r + q*r^2",
                     "1",
                 ],
-                &now,
+                (&now, in_flight(&now)),
+            );
+            assert_same(
+                &series.time,
+                &[&[0.0], &other[2][1..TIME_TERMS]].concat(),
+                "t in flight",
             );
             assert_same(&series.place, &other[0], "x");
             assert_same(&series.velocity, &other[1], "v in flight");

@@ -107,3 +107,33 @@ fn no_barrier_is_certain_only_where_the_energy_does_not_reach_it() {
         assert!(!free(barrier, 0.01));
     }
 }
+
+/// A run that is to end within a contact ends there, however near to the release: the step that reaches beyond the release, where time
+/// would run backwards, must not hide it.
+#[test]
+fn a_run_ends_on_time_next_to_a_release() {
+    for (gamma, mu) in [(1e6, 0.0), (1e6, 1e4), (300.0, 50.0)] {
+        let model = Model {
+            gamma,
+            mu,
+            ..Model::default()
+        };
+        let long = taylor(&model, REST, 1e-11, 12.0);
+        for contact in &long.impacts[..2] {
+            let (entry, exit) = (contact.entry_time, contact.exit_time.expect("left"));
+            for before in [0.3, 0.1, 1e-2, 1e-3, 1e-5] {
+                let duration = exit - before * (exit - entry);
+                let motion = taylor(&model, REST, 1e-11, duration);
+                assert_eq!(motion.end_time, duration, "{gamma} {mu} {before}");
+                assert_eq!(motion.impacts.last().expect("a contact").exit_time, None);
+                let (x, velocity) = long.path.at(duration).expect("a place");
+                assert!((motion.end_x - x).abs() < 1e-10, "{} and {x}", motion.end_x);
+                assert!(
+                    (motion.end_velocity - velocity).abs() < 1e-7,
+                    "{} and {velocity}",
+                    motion.end_velocity
+                );
+            }
+        }
+    }
+}

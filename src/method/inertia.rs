@@ -42,6 +42,7 @@ use crate::numeric::ode::energy;
 use crate::numeric::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
+use crate::series::taylor::taylor;
 use crate::solution::{
     AmplitudeConvention, Law, Method, Note, Solution, System,
     note::{ExactBy, FirstStep, Instant},
@@ -86,10 +87,19 @@ impl VariableMass {
 
     /// Whether the inertia has a value at the equilibrium, from where `M` is measured, and is not zero there.
     fn has_value_at_rest(&self, oscillator: &Oscillator) -> bool {
-        let at_rest = |function: &Expr| function.substitute(oscillator.coordinate, &Expr::zero());
+        let x = oscillator.coordinate;
+        // Of a quotient such as sin(x)/x the first coefficient of its series.
+        let at_rest = |function: &Expr| {
+            let value = function.substitute(x, &Expr::zero()).ok();
+            value.or_else(|| taylor(function, &[(x, Rational::zero())], 0).ok()?.first().cloned())
+        };
         match &self.mass {
-            Some(mass) => at_rest(mass).is_ok_and(|mass| !mass.is_zero()),
-            None => at_rest(&self.growth).is_ok(),
+            Some(mass) => at_rest(mass).is_some_and(|mass| !mass.is_zero()),
+            None => {
+                // What grows less than 1/x leaves its integral one.
+                let leaves_integral = |product: Expr| at_rest(&product).is_some_and(|value| value.is_zero());
+                at_rest(&self.growth).is_some() || (&self.growth * &Expr::from(x)).expand().is_ok_and(leaves_integral)
+            }
         }
     }
 

@@ -317,3 +317,35 @@ fn other_velocities_are_refused() {
         }
     }
 }
+
+/// A place at which the inertia is a quotient of zeros is one that the motion passes; one at which it grows like 1/x or faster is not.
+#[test]
+fn inertia_without_a_value_at_rest_is_refused_and_no_other() {
+    for equation in [
+        "x'' + x + x'^2*log(1 + x^2)/x = 0",
+        "x'' + x + x'^2*sin(x)/x = 0",
+        "x'' + x + x'^2*sinh(x)^2/x^2 = 0",
+        "x'' + x + x'^2*abs(x)/(5*x) = 0",
+    ] {
+        let (_, solution) = derived(equation, Method::Exact, None);
+        assert!(solution.law.closed_form().is_none(), "{equation}");
+    }
+    for equation in [
+        "x'' + x + x'^2/x = 0",
+        "x'' + x + x'^2/x^2 = 0",
+        "x'' + x + x'^2*cos(x)/x = 0",
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        for method in [Method::Exact, Method::EnergyBalance, Method::Hamiltonian] {
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            let refused = solve(&oscillator, &options).expect_err(equation);
+            assert!(
+                refused.term().is_some_and(|term| equation.contains(term)),
+                "{equation}: {refused}"
+            );
+        }
+    }
+}

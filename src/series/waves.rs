@@ -18,8 +18,11 @@
 
 use pulp::NullaryFnOnce;
 
-use crate::exact::residue::sums::{combine_here, multiply_here};
-use crate::exact::residue::{Arithmetic, Modulus, Rows, padded};
+use crate::exact::residue::sums::multiply;
+use crate::exact::residue::{Arithmetic, Lanes, Residues};
+
+/// Below, the sums are as fast as another halving.
+const LEAF: usize = 12;
 
 /// How many points there are, and how they are come by.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +36,6 @@ pub struct Grid {
 impl Grid {
     /// For `count` harmonics: the odd ones `1, 3, ...` or all of `0, 1, 2, ...`.
     pub fn new(count: usize, half_wave: bool) -> Self {
-        /// Below, the sums are as fast as another halving.
-        const LEAF: usize = 20;
         let mut halvings = 0;
         while count >> (halvings + 1) >= LEAF {
             halvings += 1;
@@ -88,111 +89,114 @@ impl Wave {
     }
 }
 
-/// The waves on a [`Grid`] modulo one prime.
+/// The waves on a [`Grid`], eight side by side.
 pub struct Waves {
     grid: Grid,
-    /// The waves of the smallest size at their points: an entry for each wave, and for each point.
-    forward: Rows,
-    backward: Rows,
+    /// The cosine of each part of a circle of four times the smallest size.
+    cosines: Vec<Lanes>,
     /// `1/(2 cos phi)` of each halving, the largest first.
-    halving: Vec<Vec<u64>>,
-    over_cosine: Vec<u64>,
-    over_sine: Vec<u64>,
-    over_size: u64,
-    scratch: Vec<u64>,
+    halving: Vec<Vec<Lanes>>,
+    over_cosine: Vec<Lanes>,
+    over_sine: Vec<Lanes>,
+    over_size: Lanes,
+    half: Lanes,
+    scratch: Vec<Lanes>,
 }
 
 impl Waves {
-    /// `None` where the prime has no such roots of unity.
-    pub fn new(modulus: &Modulus, grid: Grid) -> Option<Self> {
+    /// `None` where a prime has no such roots of unity.
+    #[inline(always)]
+    pub fn new<A: Arithmetic>(residues: &Residues<A>, grid: Grid) -> Option<Self> {
         let (size, circle) = (grid.size(), grid.circle());
-        let root = modulus.root_of_unity(circle as u64)?;
-        let powers = modulus.powers(root, circle);
-        // Twice the cosine of an angle in parts of the circle.
-        let twice_cosine =
-            |angle: usize| modulus.sum(powers[angle % circle], powers[(circle - angle % circle) % circle]);
+        let root = residues.root_of_unity(circle as u64)?;
+        let powers = residues.powers(root, circle);
         let points = grid.points();
         let unit = circle / (4 * size);
-        let theta = |k: &usize| (2 * k + 1) * unit / if grid.half_wave { 2 } else { 1 };
-        // Cosines of all harmonics need no such divisor, and it may be zero.
-        let divisor = |k: &usize| {
-            if grid.half_wave {
-                twice_cosine(theta(k))
-            } else {
-                modulus.one
-            }
-        };
-        let mut inverses: Vec<u64> = points.iter().map(divisor).collect();
-        inverses.extend(points.iter().map(|k| twice_cosine(circle + circle / 4 - theta(k))));
         let levels: Vec<usize> = (0..grid.halvings).map(|halving| size >> halving).collect();
+        // Angles, in parts of the circle, of which twice the cosine is divided by.
+        let mut angles = Vec::new();
+        let thetas = points
+            .iter()
+            .map(|k| (2 * k + 1) * unit / if grid.half_wave { 2 } else { 1 });
+        angles.extend(thetas.clone());
+        angles.extend(thetas.map(|theta| circle + circle / 4 - theta));
         for level in &levels {
-            let angle = |k: &usize| (2 * k + 1) * circle / (4 * level);
-            inverses.extend(points.iter().take(level / 2).map(|k| twice_cosine(angle(k))));
+            angles.extend(
+                points
+                    .iter()
+                    .take(level / 2)
+                    .map(|k| (2 * k + 1) * circle / (4 * level)),
+            );
         }
-        inverses.extend([modulus.small(2), modulus.small(size as i64)]);
-        modulus.invert(&mut inverses)?;
-        let mut inverses = inverses.into_iter();
-        let mut take = |count: usize| {
-            let mut taken: Vec<u64> = inverses.by_ref().take(count).collect();
-            taken.resize(padded(count), 0);
-            taken
-        };
-        let (over_cosine, over_sine) = (take(size), take(size));
-        let halving = levels.iter().map(|level| take(level / 2)).collect();
-        let (half, over_size) = (take(1)[0], take(1)[0]);
-        let leaf = grid.leaf;
-        let (mut forward, mut backward) = (Rows::new(leaf, leaf), Rows::new(leaf, leaf));
-        let step = circle / (4 * leaf);
-        let cosines: Vec<u64> = (0..4 * leaf)
-            .map(|angle| modulus.product(twice_cosine(angle * step), half))
-            .collect();
-        for k in 0..leaf {
-            let mut angle = 0;
-            for i in 0..leaf {
-                forward.set(k, i, cosines[angle]);
-                backward.set(i, k, cosines[angle]);
-                angle += 2 * k + 1;
-                if angle >= 4 * leaf {
-                    angle -= 4 * leaf;
-                }
+        let mut inverses = vec![residues.one(); angles.len() + 2];
+        for (place, (inverse, angle)) in inverses.iter_mut().zip(&angles).enumerate() {
+            // Cosines of all harmonics need no such divisor, and it may be zero.
+            if grid.half_wave || place >= size {
+                let angle = angle % circle;
+                *inverse = residues.sum(powers[angle], powers[(circle - angle) % circle]);
             }
         }
+        inverses[angles.len()] = residues.small(2);
+        inverses[angles.len() + 1] = residues.small(size);
+        residues.invert(&mut inverses)?;
+        let half = inverses[angles.len()];
+        let mut cosines = vec![half; 4 * grid.leaf];
+        let step = circle / cosines.len();
+        for (place, cosine) in cosines.iter_mut().enumerate() {
+            let twice = residues.sum(powers[place * step], powers[(circle - place * step) % circle]);
+            *cosine = residues.product(twice, half);
+        }
+        let mut rest = &inverses[..];
+        let mut take = |count: usize| {
+            let (taken, others) = rest.split_at(count);
+            rest = others;
+            taken.to_vec()
+        };
         Some(Self {
             grid,
-            forward,
-            backward,
-            halving,
-            over_cosine,
-            over_sine,
-            over_size,
-            scratch: vec![0; 2 * (padded(size) + padded(leaf))],
+            cosines,
+            over_cosine: take(size),
+            over_sine: take(size),
+            halving: levels.iter().map(|level| take(level / 2)).collect(),
+            over_size: inverses[angles.len() + 1],
+            half,
+            scratch: vec![Lanes::default(); 2 * size],
         })
     }
 
-    /// The values at all points of the sum of waves with these coefficients; `values` are as many as the points, [padded].
+    /// `1/2`.
+    pub fn half(&self) -> Lanes {
+        self.half
+    }
+
+    /// The values at all points of the sum of waves with these coefficients.
+    #[inline(always)]
     pub fn values<A: Arithmetic>(
         &mut self,
-        (arithmetic, modulus): (A, &Modulus),
+        residues: &Residues<A>,
         wave: Wave,
-        coefficients: &[u64],
-        values: &mut [u64],
+        coefficients: &[Lanes],
+        values: &mut [Lanes],
     ) {
-        arithmetic.vectorize(Values(self, arithmetic, modulus, wave, coefficients, values));
+        let work = Values(self, residues, wave, coefficients, values);
+        residues.arithmetic.vectorize(work);
     }
 
     /// The coefficients of the first `out.len()` waves from the values at all points, which are used up.
+    #[inline(always)]
     pub fn coefficients<A: Arithmetic>(
         &mut self,
-        (arithmetic, modulus): (A, &Modulus),
+        residues: &Residues<A>,
         wave: Wave,
-        values: &mut [u64],
-        out: &mut [u64],
+        values: &mut [Lanes],
+        out: &mut [Lanes],
     ) {
-        arithmetic.vectorize(Coefficients(self, arithmetic, modulus, wave, values, out));
+        let work = Coefficients(self, residues, wave, values, out);
+        residues.arithmetic.vectorize(work);
     }
 
     /// What is divided by, point by point, so that cosines of multiples of `phi` remain.
-    fn over(&self, wave: Wave) -> Option<&[u64]> {
+    fn over(&self, wave: Wave) -> Option<&[Lanes]> {
         match (self.grid.half_wave, wave) {
             (_, Wave::Sine) => Some(&self.over_sine),
             (true, Wave::Cosine) => Some(&self.over_cosine),
@@ -201,14 +205,45 @@ impl Waves {
     }
 }
 
-struct Values<'a, A>(&'a mut Waves, A, &'a Modulus, Wave, &'a [u64], &'a mut [u64]);
+/// Two sums of values times cosines, each with the angle of its first cosine and the step to the next, in parts of the circle.
+#[inline(always)]
+fn cosine_sums<A: Arithmetic>(
+    residues: &Residues<A>,
+    cosines: &[Lanes],
+    (left, right): (&[Lanes], &[Lanes]),
+    [(mut of_left, left_step), (mut of_right, right_step)]: [(usize, usize); 2],
+) -> (Lanes, Lanes) {
+    const { assert!(LEAF <= A::RUN) };
+    let arithmetic = residues.arithmetic;
+    let next = |angle: usize, step: usize| {
+        let angle = angle + step;
+        if angle >= cosines.len() {
+            angle - cosines.len()
+        } else {
+            angle
+        }
+    };
+    let (mut of_left_sum, mut of_right_sum) = (arithmetic.none(), arithmetic.none());
+    for (left, right) in left.iter().zip(right) {
+        of_left_sum = arithmetic.add_product(of_left_sum, left, &cosines[of_left]);
+        of_right_sum = arithmetic.add_product(of_right_sum, right, &cosines[of_right]);
+        (of_left, of_right) = (next(of_left, left_step), next(of_right, right_step));
+    }
+    // One more may stand on the left.
+    for left in &left[right.len().min(left.len())..] {
+        of_left_sum = arithmetic.add_product(of_left_sum, left, &cosines[of_left]);
+    }
+    (residues.reduce(of_left_sum), residues.reduce(of_right_sum))
+}
+
+struct Values<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
 
 impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self(waves, arithmetic, modulus, wave, given, values) = self;
+        let Self(waves, residues, wave, given, values) = self;
         let Grid {
             half_wave,
             halvings,
@@ -216,81 +251,89 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
         } = waves.grid;
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
-        let (cosines, rest) = scratch.split_at_mut(padded(size));
+        let (cosines, rest) = scratch.split_at_mut(size);
         // In cosines of multiples of phi. The one at index `size` is zero at all points.
         let length = (given.len() + 1).min(size);
         let (own, more) = cosines.split_at_mut(given.len().min(size));
         own.copy_from_slice(&given[..own.len()]);
-        more.fill(0);
+        more.fill(Lanes::default());
         match (half_wave, wave) {
             (true, Wave::Cosine) => {
                 for (cosine, below) in cosines[1..length].iter_mut().zip(given) {
-                    *cosine = modulus.sum(*cosine, *below);
+                    *cosine = residues.sum(*cosine, *below);
                 }
             }
             (true, Wave::Sine) => {
                 for (cosine, below) in cosines[1..length].iter_mut().zip(given) {
-                    *cosine = modulus.difference(*cosine, *below);
+                    *cosine = residues.difference(*cosine, *below);
                 }
             }
             (false, Wave::Cosine) => {}
             // There is no sine of index zero.
             (false, Wave::Sine) => {
-                let at = |index: usize| given.get(index).copied().unwrap_or(0);
-                for (i, cosine) in cosines[..length].iter_mut().enumerate() {
-                    *cosine = modulus.difference(at(i + 1), if i > 1 { at(i - 1) } else { 0 });
+                for i in 0..length {
+                    let above = given.get(i + 1).copied().unwrap_or_default();
+                    let below = if i > 1 { given[i - 1] } else { Lanes::default() };
+                    cosines[i] = residues.difference(above, below);
                 }
             }
         }
-        let (rest, small) = rest.split_at_mut(padded(size));
         for halving in 0..halvings {
             let level = size >> halving;
-            for part in cosines[..size].chunks_exact_mut(level) {
+            for part in cosines.chunks_exact_mut(level) {
                 let whole = &mut rest[..level];
                 whole.copy_from_slice(part);
                 let (even, odd) = part.split_at_mut(level / 2);
-                for ((pair, even), odd) in whole.chunks_exact(2).zip(even).zip(&mut *odd) {
-                    (*even, *odd) = (pair[0], pair[1]);
-                }
-                for (pair, odd) in whole.chunks_exact(2).zip(&mut odd[1..]) {
-                    *odd = modulus.sum(*odd, pair[1]);
+                let mut before = Lanes::default();
+                for ((pair, even), odd) in whole.chunks_exact(2).zip(even).zip(odd) {
+                    *even = pair[0];
+                    *odd = residues.sum(before, pair[1]);
+                    before = pair[1];
                 }
             }
         }
         // Each halving brings one more wave.
         let used = ((length >> halvings) + 3).min(leaf);
-        let small = &mut small[..padded(leaf)];
-        for (part, values) in cosines[..size].chunks_exact(leaf).zip(values.chunks_exact_mut(leaf)) {
-            combine_here(arithmetic, modulus, &part[..used], &waves.forward, small);
-            values.copy_from_slice(&small[..leaf]);
+        let (even, odd) = rest[..leaf].split_at_mut(leaf.div_ceil(2));
+        let (even, odd) = (&mut even[..used.div_ceil(2)], &mut odd[..used / 2]);
+        for (part, values) in cosines.chunks_exact(leaf).zip(values.chunks_exact_mut(leaf)) {
+            for (place, own) in part[..used].iter().enumerate() {
+                let half = if place % 2 == 0 { &mut *even } else { &mut *odd };
+                half[place / 2] = *own;
+            }
+            // At the mirror image of a point the odd ones have the other sign.
+            for k in 0..leaf.div_ceil(2) {
+                let step = 2 * k + 1;
+                let (even, odd) = cosine_sums(residues, &waves.cosines, (even, odd), [(0, 2 * step), (step, 2 * step)]);
+                values[leaf - 1 - k] = residues.difference(even, odd);
+                values[k] = residues.sum(even, odd);
+            }
         }
         for halving in (0..halvings).rev() {
             let level = size >> halving;
-            let odd_values = &mut rest[..padded(level / 2)];
-            for part in values[..size].chunks_exact_mut(level) {
+            for part in values.chunks_exact_mut(level) {
                 let (even, odd) = part.split_at_mut(level / 2);
-                odd_values[..level / 2].copy_from_slice(odd);
-                multiply_here(arithmetic, modulus, odd_values, &waves.halving[halving]);
-                for ((even, odd), value) in even.iter_mut().zip(odd).zip(&*odd_values) {
-                    (*even, *odd) = (modulus.sum(*even, *value), modulus.difference(*even, *value));
+                for ((even, odd), over) in even.iter_mut().zip(odd).zip(&waves.halving[halving]) {
+                    let value = residues.product(*odd, *over);
+                    (*even, *odd) = (residues.sum(*even, value), residues.difference(*even, value));
                 }
             }
         }
         if let Some(over) = waves.over(wave) {
-            multiply_here(arithmetic, modulus, values, over);
+            multiply(residues, values, over);
         }
         waves.scratch = scratch;
     }
 }
 
-struct Coefficients<'a, A>(&'a mut Waves, A, &'a Modulus, Wave, &'a mut [u64], &'a mut [u64]);
+struct Coefficients<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a mut [Lanes], &'a mut [Lanes]);
 
 impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self(waves, arithmetic, modulus, wave, values, out) = self;
+        let Self(waves, residues, wave, values, out) = self;
         let Grid {
             half_wave,
             halvings,
@@ -298,55 +341,72 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
         } = waves.grid;
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
-        let (rest, small) = scratch.split_at_mut(padded(size));
-        let small = &mut small[..padded(leaf)];
         if let Some(over) = waves.over(wave) {
-            multiply_here(arithmetic, modulus, values, over);
+            multiply(residues, values, over);
         }
         for halving in 0..halvings {
             let level = size >> halving;
-            let differences = &mut rest[..padded(level / 2)];
-            for part in values[..size].chunks_exact_mut(level) {
+            for part in values.chunks_exact_mut(level) {
                 let (sums, odd) = part.split_at_mut(level / 2);
-                for ((sum, other), difference) in sums.iter_mut().zip(&*odd).zip(&mut *differences) {
-                    (*sum, *difference) = (modulus.sum(*sum, *other), modulus.difference(*sum, *other));
+                for ((sum, odd), over) in sums.iter_mut().zip(odd).zip(&waves.halving[halving]) {
+                    let difference = residues.difference(*sum, *odd);
+                    (*sum, *odd) = (residues.sum(*sum, *odd), residues.product(difference, *over));
                 }
-                multiply_here(arithmetic, modulus, differences, &waves.halving[halving]);
-                odd.copy_from_slice(&differences[..level / 2]);
             }
         }
-        let used = padded((out.len() >> halvings) + 4).min(padded(leaf));
-        small.fill(0);
-        for part in values[..size].chunks_exact_mut(leaf) {
-            combine_here(arithmetic, modulus, part, &waves.backward, &mut small[..used]);
-            part.copy_from_slice(&small[..leaf]);
+        let used = ((out.len() >> halvings) + 4).min(leaf);
+        let (sums, differences) = scratch[..2 * leaf].split_at_mut(leaf);
+        let half = leaf.div_ceil(2);
+        let (sums, differences) = (&mut sums[..half], &mut differences[..half]);
+        for part in values.chunks_exact_mut(leaf) {
+            for k in 0..half {
+                let mirrored = part[leaf - 1 - k];
+                sums[k] = if 2 * k + 1 == leaf {
+                    part[k]
+                } else {
+                    residues.sum(part[k], mirrored)
+                };
+                differences[k] = residues.difference(part[k], mirrored);
+            }
+            part.fill(Lanes::default());
+            for i in (0..used).step_by(2) {
+                let angles = [(i, 2 * i), (i + 1, 2 * i + 2)];
+                let (even, odd) = cosine_sums(residues, &waves.cosines, (sums, differences), angles);
+                part[i] = even;
+                if let Some(next) = part[..used].get_mut(i + 1) {
+                    *next = odd;
+                }
+            }
         }
         for halving in (0..halvings).rev() {
             let level = size >> halving;
-            for part in values[..size].chunks_exact_mut(level) {
-                let halves = &mut rest[..level];
+            for part in values.chunks_exact_mut(level) {
+                let halves = &mut scratch[..level];
                 halves.copy_from_slice(part);
                 let (even, odd) = halves.split_at(level / 2);
-                for ((pair, even), odd) in part.chunks_exact_mut(2).zip(even).zip(odd) {
-                    (pair[0], pair[1]) = (*even, *odd);
-                }
-                for (pair, next) in part.chunks_exact_mut(2).zip(&odd[1..]) {
-                    pair[1] = modulus.sum(pair[1], *next);
+                for (place, pair) in part.chunks_exact_mut(2).enumerate() {
+                    let next = odd.get(place + 1).copied().unwrap_or_default();
+                    (pair[0], pair[1]) = (even[place], residues.sum(odd[place], next));
                 }
             }
         }
-        let at = |index: usize| values[..size].get(index).copied().unwrap_or(0);
-        let weight = modulus.sum(waves.over_size, waves.over_size);
+        let weight = residues.sum(waves.over_size, waves.over_size);
+        let zero = Lanes::default();
         for (j, coefficient) in out.iter_mut().enumerate() {
+            let own = values.get(j).copied().unwrap_or_default();
+            let next = values.get(j + 1).copied().unwrap_or_default();
             let sum = match (half_wave, wave) {
-                (true, Wave::Cosine) => modulus.sum(at(j), at(j + 1)),
-                (true, Wave::Sine) => modulus.difference(at(j), at(j + 1)),
-                (false, Wave::Cosine) => at(j),
-                (false, Wave::Sine) if j == 0 => 0,
-                (false, Wave::Sine) => modulus.difference(at(j - 1), at(j + 1)),
+                (true, Wave::Cosine) => residues.sum(own, next),
+                (true, Wave::Sine) => residues.difference(own, next),
+                (false, Wave::Cosine) => own,
+                (false, Wave::Sine) if j == 0 => zero,
+                (false, Wave::Sine) => {
+                    let before = values.get(j - 1).copied().unwrap_or_default();
+                    residues.difference(before, next)
+                }
             };
             let mean = (half_wave, wave, j) == (false, Wave::Cosine, 0);
-            *coefficient = modulus.product(sum, if mean { waves.over_size } else { weight });
+            *coefficient = residues.product(sum, if mean { waves.over_size } else { weight });
         }
         waves.scratch = scratch;
     }
@@ -355,7 +415,7 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::residue::{Work, by_widest, portable::Portable, primes_below};
+    use crate::exact::residue::{Moduli, Modulus, WIDTH, Work, by_widest, portable::Portable, primes_below};
 
     /// Products of sums of waves by values, against the formulas for products of two waves.
     struct Products {
@@ -374,43 +434,53 @@ mod tests {
 
         fn by<A: Arithmetic>(self, arithmetic: A) {
             let grid = Grid::new(3 * self.count, self.half_wave);
-            let prime = primes_below(A::BITS, grid.circle() as u64).next().expect("a prime");
-            let modulus = &Modulus::new(prime, A::RADIX);
-            let mut waves = Waves::new(modulus, grid).expect("roots of unity");
-            let values = |waves: &mut Waves, wave, coefficients: &[u64]| {
-                let mut values = vec![0; padded(grid.size())];
-                waves.values((arithmetic, modulus), wave, coefficients, &mut values);
+            let moduli: Vec<Modulus> = primes_below(A::BITS, grid.circle() as u64)
+                .take(WIDTH)
+                .map(|prime| Modulus::new(prime, A::RADIX))
+                .collect();
+            let residues = &Residues {
+                arithmetic,
+                moduli: Moduli::of(&moduli),
+            };
+            let mut waves = Waves::new(residues, grid).expect("roots of unity");
+            let values = |waves: &mut Waves, wave, coefficients: &[Lanes]| {
+                let mut values = vec![Lanes::default(); grid.size()];
+                waves.values(residues, wave, coefficients, &mut values);
                 values
             };
-            let given: Vec<u64> = (0..self.count as i64)
-                .map(|k| modulus.small(k * k - 7 * k + 3))
+            let given: Vec<Lanes> = (0..self.count)
+                .map(|k| residues.difference(residues.small(k * k + 3), residues.small(7 * k)))
                 .collect();
             for wave in [Wave::Cosine, Wave::Sine] {
                 // Once there and back.
                 let mut own = values(&mut waves, wave, &given);
-                let mut back = vec![0; self.count + 1];
-                let square: Vec<u64> = own.iter().map(|value| modulus.product(*value, *value)).collect();
-                let second = values(&mut waves, Wave::Cosine, &[0, modulus.one]);
-                waves.coefficients((arithmetic, modulus), wave, &mut own, &mut back);
+                let mut back = vec![Lanes::default(); self.count + 1];
+                let square: Vec<Lanes> = own.iter().map(|value| residues.product(*value, *value)).collect();
+                let second = values(&mut waves, Wave::Cosine, &[Lanes::default(), residues.one()]);
+                waves.coefficients(residues, wave, &mut own, &mut back);
                 let mut expected = given.clone();
                 if wave == Wave::Sine && !self.half_wave {
-                    expected[0] = 0;
+                    expected[0] = Lanes::default();
                 }
                 assert_eq!(back[..self.count], expected);
-                assert_eq!(back[self.count], 0);
+                assert_eq!(back[self.count], Lanes::default());
                 // The square times the second cosine: u^2 cos = sum of cosines with harmonics i + j + k and their differences.
-                let mut product: Vec<u64> = square.iter().zip(second).map(|(u, v)| modulus.product(*u, v)).collect();
-                let mut found = vec![0; 2 * self.count + 1];
-                waves.coefficients((arithmetic, modulus), Wave::Cosine, &mut product, &mut found);
-                let quarter = modulus.inverse(modulus.small(4));
-                let mut sums = vec![0; found.len()];
+                let mut product: Vec<Lanes> = square
+                    .iter()
+                    .zip(second)
+                    .map(|(u, v)| residues.product(*u, v))
+                    .collect();
+                let mut found = vec![Lanes::default(); 2 * self.count + 1];
+                waves.coefficients(residues, Wave::Cosine, &mut product, &mut found);
+                let quarter = residues.inverse(residues.small(4));
+                let mut sums = vec![Lanes::default(); found.len()];
                 let cosine = self.harmonic(1) as i64;
                 for (i, left) in expected.iter().enumerate() {
                     for (j, right) in expected.iter().enumerate() {
                         let (m, n) = (self.harmonic(i) as i64, self.harmonic(j) as i64);
-                        let term = modulus.product(modulus.product(*left, *right), quarter);
+                        let term = residues.product(residues.product(*left, *right), quarter);
                         let upper = if wave == Wave::Sine {
-                            modulus.negative(term)
+                            residues.negative(term)
                         } else {
                             term
                         };
@@ -418,7 +488,7 @@ mod tests {
                             for harmonic in [harmonic + cosine, harmonic - cosine] {
                                 let index = harmonic.unsigned_abs() as usize / if self.half_wave { 2 } else { 1 };
                                 if let Some(sum) = sums.get_mut(index) {
-                                    *sum = modulus.sum(*sum, term);
+                                    *sum = residues.sum(*sum, term);
                                 }
                             }
                         }

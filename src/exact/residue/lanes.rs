@@ -1,13 +1,13 @@
-//! Eight residues side by side, and rows of them.
+//! Eight residues side by side, rows of them, and what sums their products.
 
 use pulp::NullaryFnOnce;
 
-use super::Modulus;
+use super::Moduli;
 
 /// How many residues stand side by side.
 pub const WIDTH: usize = 8;
 
-/// Eight residues of one prime.
+/// Eight residues, of one prime or of eight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 // One line of the cache, so that no load touches two.
 #[repr(align(64))]
@@ -19,11 +19,6 @@ impl Lanes {
     pub fn all(value: u64) -> Self {
         Self([value; WIDTH])
     }
-}
-
-/// A length that whole [`Lanes`] fill.
-pub fn padded(length: usize) -> usize {
-    length.next_multiple_of(WIDTH)
 }
 
 /// How eight products at a time are summed. A sum is kept unreduced: that is where the speed comes from.
@@ -54,72 +49,71 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// The low and the high parts of carried sums: `low + 2^RADIX high`.
     fn parts(self, sum: Self::Sum) -> (Lanes, Lanes);
     /// The sums divided by `R` as residues, in Montgomery's form where both factors were.
-    fn reduce(self, sum: Self::Sum, modulus: &Modulus) -> Lanes;
-    /// The product of two residues.
+    fn reduce(self, sum: Self::Sum, moduli: &Moduli) -> Lanes;
+    /// The products of residues.
     #[inline(always)]
-    fn product(self, left: &Lanes, right: &Lanes, modulus: &Modulus) -> Lanes {
-        self.reduce(self.add_product(self.none(), left, right), modulus)
+    fn product(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        self.reduce(self.add_product(self.none(), left, right), moduli)
     }
+    /// The sums of residues.
+    fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes;
+    /// The differences.
+    fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes;
     /// Runs a function compiled for this processor.
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output;
 }
 
-/// Residues in a table: for every eight points (or harmonics) side by side one row, with an entry for each order.
+/// Lanes in a table, row by row: for every point (or harmonic) one row, with an entry for each order.
 #[derive(Clone, Debug)]
 pub struct Rows {
-    blocks: usize,
-    orders: usize,
+    rows: usize,
+    length: usize,
     entries: Vec<Lanes>,
 }
 
 impl Rows {
-    /// Zeros, for `length` points and `orders` orders.
-    pub fn new(length: usize, orders: usize) -> Self {
-        let blocks = length.div_ceil(WIDTH);
+    /// Zeros.
+    pub fn new(rows: usize, length: usize) -> Self {
         Self {
-            blocks,
-            orders,
-            entries: vec![Lanes::default(); blocks * orders],
+            rows,
+            length,
+            entries: vec![Lanes::default(); rows * length],
         }
     }
 
-    /// How many rows there are: an eighth of the points, rounded up.
+    /// How many rows there are.
     #[inline(always)]
-    pub fn blocks(&self) -> usize {
-        self.blocks
+    pub fn count(&self) -> usize {
+        self.rows
     }
 
-    /// Eight points at every order.
+    /// Where an order stands: in rows too short for all of them, instead of one before it.
     #[inline(always)]
-    pub fn row(&self, block: usize) -> &[Lanes] {
-        &self.entries[block.wrapping_mul(self.orders)..][..self.orders]
-    }
-
-    /// Eight points at one order, to be written.
-    #[inline(always)]
-    pub fn entry(&mut self, block: usize, order: usize) -> &mut Lanes {
-        &mut self.entries[block.wrapping_mul(self.orders).wrapping_add(order)]
-    }
-
-    /// Writes one order of the first points, whole [`Lanes`] of them.
-    pub fn write(&mut self, order: usize, values: &[u64]) {
-        for (block, values) in values.chunks_exact(WIDTH).enumerate() {
-            self.entry(block, order).0.copy_from_slice(values);
+    pub fn place(&self, order: usize) -> usize {
+        if order < self.length {
+            order
+        } else {
+            order % self.length
         }
     }
 
-    /// One order of all points.
-    pub fn read(&self, order: usize) -> Vec<u64> {
-        (0..self.blocks).flat_map(|block| self.row(block)[order].0).collect()
+    /// All entries of a row.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[Lanes] {
+        &self.entries[row.wrapping_mul(self.length)..][..self.length]
     }
 
-    /// Writes one order of one point.
-    pub fn set(&mut self, point: usize, order: usize, value: u64) {
-        self.entry(point / WIDTH, order).0[point % WIDTH] = value;
+    /// One entry, to be written.
+    #[inline(always)]
+    pub fn entry(&mut self, row: usize, place: usize) -> &mut Lanes {
+        &mut self.entries[row.wrapping_mul(self.length).wrapping_add(place)]
     }
 
-    /// One order of one point.
-    pub fn get(&self, point: usize, order: usize) -> u64 {
-        self.row(point / WIDTH)[order].0[point % WIDTH]
+    /// Writes the same place of the first rows.
+    #[inline(always)]
+    pub fn write(&mut self, place: usize, values: &[Lanes]) {
+        for (row, value) in self.entries.chunks_exact_mut(self.length.max(1)).zip(values) {
+            row[place] = *value;
+        }
     }
 }

@@ -9,11 +9,12 @@
 //! ```
 //!
 //! A long exact computation is done modulo many primes, each by machine words alone, and put together at the end. In come
-//! [`Modulus`] and rows of [`Lanes`], eight residues side by side; an [`Arithmetic`] says how eight products at a time are summed,
-//! by the processor's wide multiply-add where it has one ([`wide`]) and by plain words elsewhere ([`portable`]), with the same
-//! results after the [remainders](remainder) are put together.
+//! [`Modulus`] and rows of [`Lanes`], eight residues side by side, most often of [eight primes](moduli); an [`Arithmetic`] says how eight
+//! products at a time are summed, by the processor's wide multiply-add where it has one ([`wide`]) and by plain words elsewhere
+//! ([`portable`]), with the same results after the [remainders](remainder) are put together.
 
 pub mod lanes;
+pub mod moduli;
 #[cfg(target_arch = "x86_64")]
 pub mod narrow;
 pub mod portable;
@@ -22,7 +23,8 @@ pub mod sums;
 #[cfg(target_arch = "x86_64")]
 pub mod wide;
 
-pub use lanes::{Arithmetic, Lanes, Rows, WIDTH, padded};
+pub use lanes::{Arithmetic, Lanes, Rows, WIDTH};
+pub use moduli::{Moduli, Residues};
 
 use num_integer::Integer as _;
 use num_traits::ToPrimitive;
@@ -101,18 +103,10 @@ impl Modulus {
         self.difference((product >> self.radix) as u64, taken)
     }
 
-    /// The sum.
-    #[inline(always)]
-    pub fn sum(&self, left: u64, right: u64) -> u64 {
-        // Below zero a word is large, so the smaller of the two is the residue: no branch to guess. Residues leave room in a word,
-        // and without a look for overflow several sums are formed at a time.
-        let sum = left.wrapping_add(right);
-        sum.min(sum.wrapping_sub(self.prime))
-    }
-
     /// The difference.
     #[inline(always)]
     pub fn difference(&self, left: u64, right: u64) -> u64 {
+        // Below zero a word is large, so the smaller of the two is the residue: no branch to guess.
         let difference = left.wrapping_sub(right);
         difference.min(difference.wrapping_add(self.prime))
     }
@@ -202,34 +196,6 @@ impl Modulus {
         }
         Some(())
     }
-
-    /// `1, base, base^2, ...`, so many of them.
-    pub fn powers(&self, base: u64, count: usize) -> Vec<u64> {
-        let mut powers = Vec::with_capacity(count);
-        powers.push(self.one);
-        let mut next = base;
-        // Twice as many each time: none has to wait for the one before it.
-        while powers.len() < count {
-            let known = powers.len();
-            for place in 0..known.min(count - known) {
-                powers.push(self.product(powers[place], next));
-            }
-            next = self.product(next, next);
-        }
-        powers
-    }
-
-    /// A residue whose powers run through `order` values before they are one again; `order` divides `prime - 1`.
-    pub fn root_of_unity(&self, order: u64) -> Option<u64> {
-        let factors = prime_factors(order);
-        let roots = (2..1000).map(|base| self.power(self.small(base), (self.prime - 1) / order));
-        let is_primitive = |root: &u64| {
-            factors
-                .iter()
-                .all(|factor| self.power(*root, order / factor) != self.one)
-        };
-        roots.into_iter().find(is_primitive)
-    }
 }
 
 fn prime_factors(mut number: u64) -> Vec<u64> {
@@ -262,12 +228,12 @@ pub fn primes_up_to(last: u64) -> Vec<u64> {
     primes
 }
 
-/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^64`, the first four below
+/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^61`, the first four below
 /// `3 215 031 751`.
 fn is_prime(number: u64) -> bool {
-    /// Sorenson and Webster, Math. Comp. 86 (2017) 985-1003; the first four: Pomerance, Selfridge and Wagstaff, Math. Comp. 35 (1980)
+    /// Y. Jiang and Y. Deng, Math. Comp. 83 (2014) 2915-2924; the first four: Pomerance, Selfridge and Wagstaff, Math. Comp. 35 (1980)
     /// 1003-1026.
-    const BASES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+    const BASES: [u64; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
     const FOUR_DECIDE_BELOW: u64 = 3_215_031_751;
     if let Some(divisor) = BASES.iter().find(|&base| number.is_multiple_of(*base)) {
         return number == *divisor;
@@ -354,14 +320,9 @@ mod tests {
                     }
                     inverses.push(0);
                     assert_eq!(modulus.invert(&mut inverses), None);
-                    let powers = modulus.powers(modulus.small(-5), own.len() + 1);
-                    assert_eq!(powers.len(), own.len() + 1);
-                    let last = modulus.power(modulus.small(-5), own.len() as u64);
-                    assert_eq!(powers.last(), Some(&last));
                 }
-                let root = modulus.root_of_unity(48).expect("48 divides p - 1");
-                assert_eq!(modulus.power(root, 24), modulus.negative(modulus.one));
-                assert_ne!(modulus.power(root, 16), modulus.one);
+                let fifth = modulus.power(modulus.small(-5), 5);
+                assert_eq!(fifth, modulus.small(-3125));
             }
         }
     }

@@ -6,7 +6,7 @@ use std::arch::x86_64::__m256i as Register;
 use pulp::NullaryFnOnce;
 use pulp::x86::V3;
 
-use super::{Arithmetic, Lanes, Modulus};
+use super::{Arithmetic, Lanes, Moduli};
 
 /// A processor with AVX2; that there is one is found out at run time.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +14,14 @@ pub struct Narrow(V3);
 
 /// Eight words.
 type Words = [Register; 2];
+
+/// Four primes, and what reduces modulo them.
+#[derive(Clone, Copy)]
+struct Four {
+    prime: Register,
+    inverse: Register,
+    quotient: Register,
+}
 
 /// Products not carried yet, and the sums of the low and of the high halves of those that are.
 #[derive(Clone, Copy)]
@@ -39,8 +47,28 @@ impl Narrow {
         pulp::cast(lanes.0)
     }
 
+    /// Eight primes, four by four.
     #[inline(always)]
-    fn sum(self, left: Words, right: Words) -> Words {
+    fn fours(self, moduli: &Moduli) -> [Four; 2] {
+        let prime = self.words(&moduli.prime);
+        let inverse = self.words(&moduli.inverse);
+        let quotient = self.words(&moduli.quotient);
+        [
+            Four {
+                prime: prime[0],
+                inverse: inverse[0],
+                quotient: quotient[0],
+            },
+            Four {
+                prime: prime[1],
+                inverse: inverse[1],
+                quotient: quotient[1],
+            },
+        ]
+    }
+
+    #[inline(always)]
+    fn both(self, left: Words, right: Words) -> Words {
         let v = self.0.avx2;
         [
             v._mm256_add_epi64(left[0], right[0]),
@@ -77,15 +105,15 @@ impl Narrow {
 
     /// Four sums divided by `R`.
     #[inline(always)]
-    fn reduce_four(self, low: Register, high: Register, modulus: &Modulus) -> Register {
+    fn reduce_four(self, low: Register, high: Register, four: Four) -> Register {
         let v = self.0.avx2;
-        let prime = self.all(modulus.prime);
+        let prime = four.prime;
         // As in the wide arithmetic, with a high part below 2^42.
         let high = v._mm256_add_epi64(high, v._mm256_srli_epi64::<32>(low));
-        let guess = v._mm256_mul_epu32(v._mm256_srli_epi64::<10>(high), self.all(modulus.quotient));
+        let guess = v._mm256_mul_epu32(v._mm256_srli_epi64::<10>(high), four.quotient);
         let multiple = v._mm256_mul_epu32(v._mm256_srli_epi64::<47>(guess), prime);
         let high = v._mm256_sub_epi64(high, multiple);
-        let residue = v._mm256_sub_epi64(v._mm256_add_epi64(high, prime), self.taken(low, modulus));
+        let residue = v._mm256_sub_epi64(v._mm256_add_epi64(high, prime), self.taken(low, four));
         // Half words are compared: of a difference below zero both halves are large.
         let once = v._mm256_min_epu32(residue, v._mm256_sub_epi64(residue, prime));
         v._mm256_min_epu32(once, v._mm256_sub_epi64(once, prime))
@@ -93,19 +121,19 @@ impl Narrow {
 
     /// Four products divided by `R`.
     #[inline(always)]
-    fn reduce_product(self, product: Register, modulus: &Modulus) -> Register {
+    fn reduce_product(self, product: Register, four: Four) -> Register {
         let v = self.0.avx2;
-        let residue = v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, modulus));
+        let residue = v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, four));
         // Below zero both halves are large, and the prime more than the residue above it makes up for that.
-        v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, self.all(modulus.prime)))
+        v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, four.prime))
     }
 
     /// What Montgomery's step takes away from the high part.
     #[inline(always)]
-    fn taken(self, low: Register, modulus: &Modulus) -> Register {
+    fn taken(self, low: Register, four: Four) -> Register {
         let v = self.0.avx2;
-        let multiple = v._mm256_mul_epu32(low, self.all(modulus.inverse));
-        v._mm256_srli_epi64::<32>(v._mm256_mul_epu32(multiple, self.all(modulus.prime)))
+        let multiple = v._mm256_mul_epu32(low, four.inverse);
+        v._mm256_srli_epi64::<32>(v._mm256_mul_epu32(multiple, four.prime))
     }
 }
 
@@ -130,7 +158,7 @@ impl Arithmetic for Narrow {
     fn add_product(self, sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
         let product = self.multiply(self.words(left), self.words(right));
         Sum {
-            recent: self.sum(sum.recent, product),
+            recent: self.both(sum.recent, product),
             ..sum
         }
     }
@@ -139,7 +167,7 @@ impl Arithmetic for Narrow {
         let left = self.all(left);
         let product = self.multiply([left; 2], self.words(right));
         Sum {
-            recent: self.sum(sum.recent, product),
+            recent: self.both(sum.recent, product),
             ..sum
         }
     }
@@ -147,16 +175,16 @@ impl Arithmetic for Narrow {
     fn carry(self, sum: Sum) -> Sum {
         Sum {
             recent: [self.all(0); 2],
-            low: self.sum(sum.low, self.lower(sum.recent)),
-            high: self.sum(sum.high, self.upper(sum.recent)),
+            low: self.both(sum.low, self.lower(sum.recent)),
+            high: self.both(sum.high, self.upper(sum.recent)),
         }
     }
     #[inline(always)]
     fn merge(self, left: Sum, right: Sum) -> Sum {
         Sum {
-            recent: self.sum(left.recent, right.recent),
-            low: self.sum(left.low, right.low),
-            high: self.sum(left.high, right.high),
+            recent: self.both(left.recent, right.recent),
+            low: self.both(left.low, right.low),
+            high: self.both(left.high, right.high),
         }
     }
     #[inline(always)]
@@ -169,20 +197,46 @@ impl Arithmetic for Narrow {
         (Lanes(pulp::cast(sum.low)), Lanes(pulp::cast(sum.high)))
     }
     #[inline(always)]
-    fn reduce(self, sum: Sum, modulus: &Modulus) -> Lanes {
+    fn reduce(self, sum: Sum, moduli: &Moduli) -> Lanes {
         let Sum { low, high, .. } = self.carry(sum);
+        let [first, second] = self.fours(moduli);
         let residues: Words = [
-            self.reduce_four(low[0], high[0], modulus),
-            self.reduce_four(low[1], high[1], modulus),
+            self.reduce_four(low[0], high[0], first),
+            self.reduce_four(low[1], high[1], second),
         ];
         Lanes(pulp::cast(residues))
     }
     #[inline(always)]
-    fn product(self, left: &Lanes, right: &Lanes, modulus: &Modulus) -> Lanes {
-        let [first, second] = self.multiply(self.words(left), self.words(right));
+    fn product(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let products = self.multiply(self.words(left), self.words(right));
+        let [first, second] = self.fours(moduli);
         let residues: Words = [
-            self.reduce_product(first, modulus),
-            self.reduce_product(second, modulus),
+            self.reduce_product(products[0], first),
+            self.reduce_product(products[1], second),
+        ];
+        Lanes(pulp::cast(residues))
+    }
+    #[inline(always)]
+    fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let v = self.0.avx2;
+        let [first, second] = self.both(self.words(left), self.words(right));
+        let prime = self.words(&moduli.prime);
+        // Half words are compared, as above.
+        let residues: Words = [
+            v._mm256_min_epu32(first, v._mm256_sub_epi64(first, prime[0])),
+            v._mm256_min_epu32(second, v._mm256_sub_epi64(second, prime[1])),
+        ];
+        Lanes(pulp::cast(residues))
+    }
+    #[inline(always)]
+    fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let v = self.0.avx2;
+        let (left, right, prime) = (self.words(left), self.words(right), self.words(&moduli.prime));
+        let first = v._mm256_sub_epi64(left[0], right[0]);
+        let second = v._mm256_sub_epi64(left[1], right[1]);
+        let residues: Words = [
+            v._mm256_min_epu32(first, v._mm256_add_epi64(first, prime[0])),
+            v._mm256_min_epu32(second, v._mm256_add_epi64(second, prime[1])),
         ];
         Lanes(pulp::cast(residues))
     }

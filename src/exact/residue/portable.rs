@@ -3,7 +3,7 @@
 
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 
-use super::{Arithmetic, Lanes, Modulus, WIDTH};
+use super::{Arithmetic, Lanes, Moduli, WIDTH};
 
 /// Any processor.
 #[derive(Clone, Copy, Debug)]
@@ -89,23 +89,41 @@ impl Arithmetic for Portable {
         (sum.low, sum.high)
     }
     #[inline(always)]
-    fn reduce(self, sum: Sum, modulus: &Modulus) -> Lanes {
+    fn reduce(self, sum: Sum, moduli: &Moduli) -> Lanes {
         let sum = self.carry(sum);
-        let prime = modulus.prime;
         let mut residues = Lanes::default();
         for k in 0..WIDTH {
+            let prime = moduli.prime.0[k];
             // As in the wide arithmetic, with a high part below 2^42.
             let low = half(sum.low.0[k]);
             let high = sum.high.0[k].wrapping_add(sum.low.0[k] >> 32);
-            let guess = half(high >> 10).wrapping_mul(half(modulus.quotient)) >> 47;
+            let guess = half(high >> 10).wrapping_mul(half(moduli.quotient.0[k])) >> 47;
             let high = high.wrapping_sub(half(guess).wrapping_mul(half(prime)));
-            let multiple = half(low.wrapping_mul(half(modulus.inverse)));
+            let multiple = half(low.wrapping_mul(half(moduli.inverse.0[k])));
             let taken = multiple.wrapping_mul(half(prime)) >> 32;
             let residue = high.wrapping_add(prime).wrapping_sub(taken);
             let once = residue.min(residue.wrapping_sub(prime));
             residues.0[k] = once.min(once.wrapping_sub(prime));
         }
         residues
+    }
+    #[inline(always)]
+    fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let mut sums = Lanes::default();
+        for k in 0..WIDTH {
+            let sum = left.0[k].wrapping_add(right.0[k]);
+            sums.0[k] = sum.min(sum.wrapping_sub(moduli.prime.0[k]));
+        }
+        sums
+    }
+    #[inline(always)]
+    fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let mut differences = Lanes::default();
+        for k in 0..WIDTH {
+            let difference = left.0[k].wrapping_sub(right.0[k]);
+            differences.0[k] = difference.min(difference.wrapping_add(moduli.prime.0[k]));
+        }
+        differences
     }
     #[inline(always)]
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {

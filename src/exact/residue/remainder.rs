@@ -9,14 +9,14 @@ use num_traits::{One, Signed, Zero};
 use pulp::NullaryFnOnce;
 
 use super::sums::multiples;
-use super::{Arithmetic, Lanes, Modulus, Rows, WIDTH, padded};
+use super::{Arithmetic, Lanes, Moduli, Modulus, Rows, WIDTH};
 use crate::exact::Integer;
 
 /// Primes, and what brings residues modulo all of them together.
 pub struct Remainders<A> {
     arithmetic: A,
     moduli: Vec<Modulus>,
-    /// The digits of `M/p_i`, a column for each prime.
+    /// The digits of `M/p_i`, eight in a row, a column for each prime.
     cofactors: Rows,
     /// The digits of `M`, as many as those.
     product: Vec<u64>,
@@ -30,11 +30,13 @@ impl<A: Arithmetic> Remainders<A> {
     /// For these primes, at most 2^13.
     pub fn new(arithmetic: A, moduli: &[Modulus]) -> Self {
         let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-        let count = product.bits().div_ceil(A::DIGIT.into()) as usize + 1;
-        let mut cofactors = Rows::new(count, moduli.len());
+        let rows = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;
+        let mut cofactors = Rows::new(rows, moduli.len());
         for (i, modulus) in moduli.iter().enumerate() {
             let cofactor = &product / Integer::from(modulus.prime);
-            cofactors.write(i, &digits::<A>(&cofactor, padded(count)));
+            for (row, digits) in digits::<A>(&cofactor, rows * WIDTH).chunks_exact(WIDTH).enumerate() {
+                cofactors.entry(row, i).0.copy_from_slice(digits);
+            }
         }
         let mut inverses: Vec<u64> = Vec::with_capacity(moduli.len());
         for (i, modulus) in moduli.iter().enumerate() {
@@ -48,7 +50,7 @@ impl<A: Arithmetic> Remainders<A> {
             arithmetic,
             moduli: moduli.to_vec(),
             reciprocals: moduli.iter().map(|modulus| 1.0 / modulus.prime as f64).collect(),
-            product: digits::<A>(&product, padded(count)),
+            product: digits::<A>(&product, rows * WIDTH),
             cofactors,
             inverses,
         }
@@ -89,7 +91,7 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         let mut quotients = [0.0; WIDTH];
         let primes = weights.iter().zip(&remainders.moduli).zip(&remainders.reciprocals);
         for (own, ((weight, modulus), reciprocal)) in residues.iter_mut().zip(primes) {
-            *own = arithmetic.product(own, &Lanes::all(*weight), modulus);
+            *own = arithmetic.product(own, &Lanes::all(*weight), &Moduli::all(modulus));
             for (quotient, residue) in quotients.iter_mut().zip(own.0) {
                 *quotient += small_to_f64(residue) * reciprocal;
             }
@@ -168,7 +170,7 @@ impl Numbers {
             #[inline(always)]
             fn call(self) -> Lanes {
                 let Self(arithmetic, modulus, powers, digits) = self;
-                arithmetic.reduce(multiples(arithmetic, powers, digits), modulus)
+                arithmetic.reduce(multiples(arithmetic, powers, digits), &Moduli::all(modulus))
             }
         }
         let count = self.digits.len();

@@ -1,8 +1,9 @@
-//! The sums of products that a series recursion consists of, eight at a time: each function here runs compiled for the processor.
+//! The sums of products that a series recursion consists of, eight at a time: each function here is compiled for the processor, or
+//! inlined into one that is.
 
 use pulp::NullaryFnOnce;
 
-use super::{Arithmetic, Lanes, Modulus, Rows, WIDTH};
+use super::{Arithmetic, Lanes, Residues, Rows};
 
 /// A product of two series, both and the product among the same tables.
 #[derive(Clone, Copy, Debug)]
@@ -18,42 +19,44 @@ pub struct Product {
 }
 
 /// Orders whose sums over all orders before them are formed together: a row of the tables is read once for all of them.
-const TOGETHER: usize = 8;
+pub const TOGETHER: usize = 8;
 
 /// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a factor of those after it.
 /// The orders come one after the other, from zero on.
 ///
-/// What is already there of a product at the orders that follow is kept in its own table. Cost: a multiplication for each pair of
+/// What is already there of a product at the orders that follow is kept in its own table, which may be one of the latest orders alone:
+/// [`TOGETHER`] of them and those that are asked for later. Cost: a multiplication for each pair of
 /// orders and each point, half of them for a square.
-pub fn convolve<A: Arithmetic>(
-    arithmetic: A,
-    modulus: &Modulus,
-    products: &[Product],
-    tables: &mut [Rows],
-    order: usize,
-) {
-    struct Convolve<'a, A>(A, &'a Modulus, &'a [Product], &'a mut [Rows], usize);
+#[inline(always)]
+pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tables: &mut [Rows], order: usize) {
+    struct Convolve<'a, A>(&'a Residues<A>, &'a [Product], &'a mut [Rows], usize);
     impl<A: Arithmetic> NullaryFnOnce for Convolve<'_, A> {
         type Output = ();
         #[inline(always)]
         fn call(self) {
-            let Self(arithmetic, modulus, products, tables, order) = self;
+            let Self(residues, products, tables, order) = self;
+            let arithmetic = residues.arithmetic;
             // The first orders are as fast one by one.
             let start = if order < 2 * TOGETHER {
                 0
             } else {
                 order - order % TOGETHER
             };
-            // Block by block: what one product has read, the next finds in the cache.
-            for block in 0..tables.first().map_or(0, Rows::blocks) {
+            // Point by point: what one product has read, the next finds in the cache.
+            for point in 0..tables.first().map_or(0, Rows::count) {
                 if order == start && start > 0 {
-                    for product in products.iter().filter(|product| order <= product.needed) {
-                        prepare(arithmetic, modulus, product, tables, block, start);
+                    for product in products {
+                        if order <= product.needed {
+                            prepare(residues, product, tables, point, start);
+                        }
                     }
                 }
-                for product in products.iter().filter(|product| order <= product.needed) {
-                    let left = &tables[product.left].row(block)[..=order];
-                    let right = &tables[product.right].row(block)[..=order];
+                for product in products {
+                    if order > product.needed {
+                        continue;
+                    }
+                    let left = &tables[product.left].row(point)[..=order];
+                    let right = &tables[product.right].row(point)[..=order];
                     let square = product.left == product.right;
                     let sum = if start == 0 {
                         match square {
@@ -67,32 +70,29 @@ pub fn convolve<A: Arithmetic>(
                             true => first,
                             false => pairs(arithmetic, &left[start..], &right[..recent]),
                         };
-                        let before = &tables[product.to].row(block)[order];
+                        let before = &tables[product.to].row(point)[tables[product.to].place(order)];
                         let sum = arithmetic.carry(arithmetic.merge(first, last));
-                        arithmetic.add_multiple(sum, modulus.one, before)
+                        arithmetic.add_product(sum, &residues.moduli.one, before)
                     };
-                    *tables[product.to].entry(block, order) = arithmetic.reduce(sum, modulus);
+                    let to = &mut tables[product.to];
+                    *to.entry(point, to.place(order)) = residues.reduce(sum);
                 }
             }
         }
     }
-    arithmetic.vectorize(Convolve(arithmetic, modulus, products, tables, order));
+    residues
+        .arithmetic
+        .vectorize(Convolve(residues, products, tables, order));
 }
 
 /// The part of a product at the orders from `start` on in which both factors are of orders before it.
 #[inline(always)]
-fn prepare<A: Arithmetic>(
-    arithmetic: A,
-    modulus: &Modulus,
-    product: &Product,
-    tables: &mut [Rows],
-    block: usize,
-    start: usize,
-) {
-    let orders = tables[product.to].row(block).len();
+fn prepare<A: Arithmetic>(residues: &Residues<A>, product: &Product, tables: &mut [Rows], point: usize, start: usize) {
+    let arithmetic = residues.arithmetic;
+    let (orders, place) = (tables[product.to].row(point).len(), tables[product.to].place(start));
     for first in [start, start + TOGETHER / 2] {
-        let left = &tables[product.left].row(block)[..start];
-        let right = &tables[product.right].row(block)[..start];
+        let left = &tables[product.left].row(point)[..start];
+        let right = &tables[product.right].row(point)[..start];
         let mut sums = [arithmetic.none(); 4];
         // Of a square the terms below the middle, twice, and the middle.
         let square = product.left == product.right;
@@ -111,8 +111,9 @@ fn prepare<A: Arithmetic>(
             }
         }
         for (k, sum) in sums.into_iter().enumerate() {
-            if first + k < orders {
-                *tables[product.to].entry(block, first + k) = arithmetic.reduce(sum, modulus);
+            let place = place + (first - start) + k;
+            if place < orders {
+                *tables[product.to].entry(point, place) = residues.reduce(sum);
             }
         }
     }
@@ -187,69 +188,42 @@ fn square<A: Arithmetic>(arithmetic: A, orders: &[Lanes]) -> A::Sum {
     }
 }
 
-/// `out = sum_i factors_i row_i` for the first rows, each from the order `first(block)` on: the ones before are zero.
-pub fn combine<A: Arithmetic>(
-    arithmetic: A,
-    modulus: &Modulus,
-    factors: &[u64],
-    (table, start): (&Rows, usize),
-    first: impl Fn(usize) -> usize,
-    out: &mut [u64],
-) {
-    struct Combine<'a, A, F>(A, &'a Modulus, &'a [u64], &'a Rows, usize, F, &'a mut [u64]);
-    impl<A: Arithmetic, F: Fn(usize) -> usize> NullaryFnOnce for Combine<'_, A, F> {
-        type Output = ();
-        #[inline(always)]
-        fn call(self) {
-            let Self(arithmetic, modulus, factors, table, start, first, out) = self;
-            for (block, out) in out.chunks_exact_mut(WIDTH).enumerate() {
-                let first = first(block).min(factors.len());
-                let row = &table.row(block)[start..start + factors.len()];
-                let sum = multiples(arithmetic, &factors[first..], &row[first..]);
-                out.copy_from_slice(&arithmetic.reduce(sum, modulus).0);
-            }
-        }
+/// `sum_i left_i right_(n-i)` over as many as there are.
+#[inline(always)]
+pub fn reversed_products<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
+    let mut sum = arithmetic.none();
+    for (left, right) in left.chunks(2 * TOGETHER).zip(right.rchunks(2 * TOGETHER)) {
+        sum = arithmetic.join(sum, pairs(arithmetic, left, right));
     }
-    arithmetic.vectorize(Combine(arithmetic, modulus, factors, table, start, first, out));
+    sum
 }
 
-/// `sum_i factors_i row_i`.
+/// `sum_i factors_i row_i` with factors that are the same for all eight.
 #[inline(always)]
 pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[Lanes]) -> A::Sum {
     let none = arithmetic.none();
     // By name, so that they stay in registers.
-    let (mut a, mut b, mut c, mut d) = (none, none, none, none);
-    for (factors, row) in factors.chunks(4 * A::RUN).zip(row.chunks(4 * A::RUN)) {
-        let (mut factors, mut row) = (factors.chunks_exact(4), row.chunks_exact(4));
+    let (mut a, mut b) = (none, none);
+    for (factors, row) in factors.chunks(2 * A::RUN).zip(row.chunks(2 * A::RUN)) {
+        let (mut factors, mut row) = (factors.chunks_exact(2), row.chunks_exact(2));
         for (factors, row) in factors.by_ref().zip(row.by_ref()) {
             a = arithmetic.add_multiple(a, factors[0], &row[0]);
             b = arithmetic.add_multiple(b, factors[1], &row[1]);
-            c = arithmetic.add_multiple(c, factors[2], &row[2]);
-            d = arithmetic.add_multiple(d, factors[3], &row[3]);
         }
-        let mut rest = factors.remainder().iter().zip(row.remainder());
-        if let Some((factor, entry)) = rest.next() {
+        if let ([factor], [entry]) = (factors.remainder(), row.remainder()) {
             a = arithmetic.add_multiple(a, *factor, entry);
-        }
-        if let Some((factor, entry)) = rest.next() {
-            b = arithmetic.add_multiple(b, *factor, entry);
-        }
-        if let Some((factor, entry)) = rest.next() {
-            c = arithmetic.add_multiple(c, *factor, entry);
         }
         a = arithmetic.carry(a);
         b = arithmetic.carry(b);
-        c = arithmetic.carry(c);
-        d = arithmetic.carry(d);
     }
-    arithmetic.join(arithmetic.join(a, b), arithmetic.join(c, d))
+    arithmetic.join(a, b)
 }
 
 /// One series of a [mixture], at one order.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     /// What it is multiplied by.
-    pub factor: u64,
+    pub factor: Lanes,
     /// Its place among the tables.
     pub table: usize,
     /// The order.
@@ -257,124 +231,58 @@ pub struct Part {
 }
 
 /// `out = sum of factor table_order` over a few parts, at every point.
-pub fn mixture<A: Arithmetic>(arithmetic: A, modulus: &Modulus, parts: &[Part], tables: &[Rows], out: &mut [u64]) {
-    struct Mixture<'a, A>(A, &'a Modulus, &'a [Part], &'a [Rows], &'a mut [u64]);
-    impl<A: Arithmetic> NullaryFnOnce for Mixture<'_, A> {
-        type Output = ();
-        #[inline(always)]
-        fn call(self) {
-            let Self(arithmetic, modulus, parts, tables, out) = self;
-            for (block, out) in out.chunks_exact_mut(WIDTH).enumerate() {
-                let mut sum = arithmetic.none();
-                for parts in parts.chunks(A::RUN) {
-                    for part in parts {
-                        let entry = &tables[part.table].row(block)[part.order];
-                        sum = arithmetic.add_multiple(sum, part.factor, entry);
-                    }
-                    sum = arithmetic.carry(sum);
-                }
-                out.copy_from_slice(&arithmetic.reduce(sum, modulus).0);
+#[inline(always)]
+pub fn mixture<A: Arithmetic>(residues: &Residues<A>, parts: &[Part], tables: &[Rows], out: &mut [Lanes]) {
+    let arithmetic = residues.arithmetic;
+    for (point, out) in out.iter_mut().enumerate() {
+        let mut sum = arithmetic.none();
+        for parts in parts.chunks(A::RUN) {
+            for part in parts {
+                let table = &tables[part.table];
+                let entry = &table.row(point)[table.place(part.order)];
+                sum = arithmetic.add_product(sum, &part.factor, entry);
             }
+            sum = arithmetic.carry(sum);
         }
+        *out = residues.reduce(sum);
     }
-    arithmetic.vectorize(Mixture(arithmetic, modulus, parts, tables, out));
 }
 
 /// One order of a table changed by `factor` times `change`, at every point.
+#[inline(always)]
 pub fn vary<A: Arithmetic>(
-    arithmetic: A,
-    modulus: &Modulus,
+    residues: &Residues<A>,
     (table, order): (&mut Rows, usize),
-    factor: u64,
-    change: &[u64],
+    factor: Lanes,
+    change: &[Lanes],
 ) {
-    struct Vary<'a, A>(A, &'a Modulus, &'a mut Rows, usize, u64, &'a [u64]);
-    impl<A: Arithmetic> NullaryFnOnce for Vary<'_, A> {
-        type Output = ();
-        #[inline(always)]
-        fn call(self) {
-            let Self(arithmetic, modulus, table, order, factor, change) = self;
-            for (block, change) in change.chunks_exact(WIDTH).enumerate() {
-                let mut own = Lanes::default();
-                own.0.copy_from_slice(change);
-                let entry = table.entry(block, order);
-                let sum = arithmetic.add_multiple(arithmetic.none(), modulus.one, entry);
-                *entry = arithmetic.reduce(arithmetic.add_multiple(sum, factor, &own), modulus);
-            }
-        }
+    let place = table.place(order);
+    for (point, change) in change.iter().enumerate() {
+        let entry = table.entry(point, place);
+        *entry = residues.sum(*entry, residues.product(factor, *change));
     }
-    arithmetic.vectorize(Vary(arithmetic, modulus, table, order, factor, change));
 }
 
-/// `values *= factors`, one by one, whole [`Lanes`] of them.
-pub fn multiply<A: Arithmetic>(arithmetic: A, modulus: &Modulus, values: &mut [u64], factors: &[u64]) {
-    struct Multiply<'a, A>(A, &'a Modulus, &'a mut [u64], &'a [u64]);
-    impl<A: Arithmetic> NullaryFnOnce for Multiply<'_, A> {
-        type Output = ();
-        #[inline(always)]
-        fn call(self) {
-            let Self(arithmetic, modulus, values, factors) = self;
-            multiply_here(arithmetic, modulus, values, factors);
-        }
-    }
-    arithmetic.vectorize(Multiply(arithmetic, modulus, values, factors));
-}
-
-/// As [`multiply`], within a function that is compiled for the processor already.
+/// `values *= factors`, one by one.
 #[inline(always)]
-pub fn multiply_here<A: Arithmetic>(arithmetic: A, modulus: &Modulus, values: &mut [u64], factors: &[u64]) {
-    for (values, factors) in values.chunks_exact_mut(WIDTH).zip(factors.chunks_exact(WIDTH)) {
-        let (mut left, mut right) = (Lanes::default(), Lanes::default());
-        left.0.copy_from_slice(values);
-        right.0.copy_from_slice(factors);
-        values.copy_from_slice(&arithmetic.product(&left, &right, modulus).0);
+pub fn multiply<A: Arithmetic>(residues: &Residues<A>, values: &mut [Lanes], factors: &[Lanes]) {
+    for (value, factor) in values.iter_mut().zip(factors) {
+        *value = residues.product(*value, *factor);
     }
 }
 
-/// As [`combine`] over all rows from the first order on, within a function that is compiled for the processor already; four rows
-/// share what they are multiplied by.
+/// `values -= others`, one by one.
 #[inline(always)]
-pub fn combine_here<A: Arithmetic>(arithmetic: A, modulus: &Modulus, factors: &[u64], table: &Rows, out: &mut [u64]) {
-    let blocks = out.len() / WIDTH;
-    let mut block = 0;
-    while block + 4 <= blocks {
-        let rows = [
-            table.row(block),
-            table.row(block + 1),
-            table.row(block + 2),
-            table.row(block + 3),
-        ];
-        let rows = rows.map(|row| &row[..factors.len()]);
-        let none = arithmetic.none();
-        // By name, so that they stay in registers.
-        let (mut a, mut b, mut c, mut d) = (none, none, none, none);
-        let mut start = 0;
-        while start < factors.len() {
-            let end = (start + A::RUN).min(factors.len());
-            let [first, second, third, fourth] = rows.map(|row| &row[start..end]);
-            let pairs = first.iter().zip(second).zip(third.iter().zip(fourth));
-            for (factor, ((first, second), (third, fourth))) in factors[start..end].iter().zip(pairs) {
-                a = arithmetic.add_multiple(a, *factor, first);
-                b = arithmetic.add_multiple(b, *factor, second);
-                c = arithmetic.add_multiple(c, *factor, third);
-                d = arithmetic.add_multiple(d, *factor, fourth);
-            }
-            a = arithmetic.carry(a);
-            b = arithmetic.carry(b);
-            c = arithmetic.carry(c);
-            d = arithmetic.carry(d);
-            start = end;
-        }
-        for (sum, out) in [a, b, c, d]
-            .into_iter()
-            .zip(out[block * WIDTH..].chunks_exact_mut(WIDTH))
-        {
-            out.copy_from_slice(&arithmetic.reduce(sum, modulus).0);
-        }
-        block += 4;
+pub fn subtract<A: Arithmetic>(residues: &Residues<A>, values: &mut [Lanes], others: &[Lanes]) {
+    for (value, other) in values.iter_mut().zip(others) {
+        *value = residues.difference(*value, *other);
     }
-    for block in block..blocks {
-        let sum = multiples(arithmetic, factors, &table.row(block)[..factors.len()]);
-        out[block * WIDTH..(block + 1) * WIDTH].copy_from_slice(&arithmetic.reduce(sum, modulus).0);
+}
+
+/// `sums += factor values`, one by one.
+#[inline(always)]
+pub fn add_multiple<A: Arithmetic>(residues: &Residues<A>, sums: &mut [Lanes], factor: Lanes, values: &[Lanes]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum = residues.sum(*sum, residues.product(factor, *value));
     }
 }

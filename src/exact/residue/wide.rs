@@ -5,7 +5,7 @@ use std::arch::x86_64::__m512i as Register;
 
 use pulp::NullaryFnOnce;
 
-use super::{Arithmetic, Lanes, Modulus};
+use super::{Arithmetic, Lanes, Moduli};
 
 pulp::simd_type! {
     /// A processor with the wide multiply-add; that there is one is found out at run time.
@@ -90,22 +90,49 @@ impl Arithmetic for Wide {
         (Lanes(pulp::cast(low)), Lanes(pulp::cast(high)))
     }
     #[inline(always)]
-    fn reduce(self, sum: Self::Sum, modulus: &Modulus) -> Lanes {
+    fn reduce(self, sum: Self::Sum, moduli: &Moduli) -> Lanes {
         let (f, ifma) = (self.avx512f, self.avx512ifma);
         let (low, high) = self.carry(sum);
-        let (zero, prime) = (self.all(0), self.all(modulus.prime));
+        let (zero, prime) = (self.all(0), pulp::cast(moduli.prime.0));
         // The high part, below 2^62, loses a multiple of the prime: what is left is below twice the prime.
         let upper = f._mm512_srli_epi64::<10>(high);
-        let guess = ifma._mm512_madd52hi_epu64(zero, upper, self.all(modulus.quotient));
+        let guess = ifma._mm512_madd52hi_epu64(zero, upper, pulp::cast(moduli.quotient.0));
         let multiple = ifma._mm512_madd52lo_epu64(zero, f._mm512_srli_epi64::<35>(guess), prime);
         let high = f._mm512_and_si512(f._mm512_sub_epi64(high, multiple), self.all((1 << 52) - 1));
         // Montgomery's step: a multiple of the prime with the same low digits is taken away.
-        let multiple = ifma._mm512_madd52lo_epu64(zero, low, self.all(modulus.inverse));
+        let multiple = ifma._mm512_madd52lo_epu64(zero, low, pulp::cast(moduli.inverse.0));
         let taken = ifma._mm512_madd52hi_epu64(zero, multiple, prime);
         let residue = f._mm512_sub_epi64(f._mm512_add_epi64(high, prime), taken);
         let once = f._mm512_min_epu64(residue, f._mm512_sub_epi64(residue, prime));
         let twice = f._mm512_min_epu64(once, f._mm512_sub_epi64(once, prime));
         Lanes(pulp::cast(twice))
+    }
+    #[inline(always)]
+    fn product(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let (f, ifma) = (self.avx512f, self.avx512ifma);
+        let (zero, prime) = (self.all(0), pulp::cast(moduli.prime.0));
+        let (low, high) = self.add((zero, zero), pulp::cast(left.0), pulp::cast(right.0));
+        let multiple = ifma._mm512_madd52lo_epu64(zero, low, pulp::cast(moduli.inverse.0));
+        let taken = ifma._mm512_madd52hi_epu64(zero, multiple, prime);
+        let residue = f._mm512_sub_epi64(high, taken);
+        Lanes(pulp::cast(
+            f._mm512_min_epu64(residue, f._mm512_add_epi64(residue, prime)),
+        ))
+    }
+    #[inline(always)]
+    fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let f = self.avx512f;
+        let sum = f._mm512_add_epi64(pulp::cast(left.0), pulp::cast(right.0));
+        // Below zero a word is large.
+        let less = f._mm512_sub_epi64(sum, pulp::cast(moduli.prime.0));
+        Lanes(pulp::cast(f._mm512_min_epu64(sum, less)))
+    }
+    #[inline(always)]
+    fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
+        let f = self.avx512f;
+        let difference = f._mm512_sub_epi64(pulp::cast(left.0), pulp::cast(right.0));
+        let more = f._mm512_add_epi64(difference, pulp::cast(moduli.prime.0));
+        Lanes(pulp::cast(f._mm512_min_epu64(difference, more)))
     }
     #[inline(always)]
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {

@@ -7,7 +7,7 @@
 //! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics; two words hold Duffing's equation to
 //! order 25.
 
-use super::modular::{Plan, Term};
+use super::plan::{Plan, Term};
 use super::{Amplitude, Detuning};
 use crate::exact::residue::sums::Product;
 use crate::interrupt::Interrupt;

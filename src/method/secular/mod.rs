@@ -17,6 +17,7 @@ mod denominators;
 mod fixed_width;
 mod modular;
 mod orders;
+mod plan;
 mod reconstruct;
 mod sine;
 mod symbolic;

@@ -3,7 +3,7 @@
 use num_traits::Zero;
 
 use super::fixed_width;
-use super::modular::Plan;
+use super::plan::Plan;
 use super::reconstruct::Extent;
 use super::{Expansion, SecularSine};
 use crate::exact::{Integer, Integers, Rational};

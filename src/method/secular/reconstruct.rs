@@ -18,8 +18,9 @@ use num_traits::One;
 use rayon::prelude::*;
 
 use super::denominators::{Factored, Growth};
-use super::modular::{Image, Plan, Recursion, Term};
+use super::modular::{Image, Recursion};
 use super::orders::{Order, expansion};
+use super::plan::{Plan, Term};
 use super::{Amplitude, Expansion, ForceTerm, Scheme, fixed_width};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
@@ -226,13 +227,19 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let Some(motion) = motion else { continue };
             for growth in Growth::ALL {
                 let frequency = growth.denominators(&beginning.frequency.known, highest, &of_frequency);
-                let lifted = frequency.and_then(|frequency| self.lifted(first, &motion, &frequency, &beginning));
+                let lifted = frequency.and_then(|frequency| {
+                    let bits = beginning.bits(&motion, &frequency);
+                    self.lifted(first, &motion, &frequency, &bits)
+                });
                 if lifted.is_some() {
                     return lifted;
                 }
             }
         }
-        None
+        // Numbers may shrink more slowly later on.
+        beginning
+            .shrinks()
+            .then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
     }
 
     /// The number of primes whose product has more than so many binary digits; `None` where there are not enough.
@@ -249,32 +256,44 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some(count)
     }
 
-    /// Images of the primes from `self.first.len()` up to `count`, each from the order on that it is wanted for; fewer where the work
-    /// is stopped.
-    fn images(&self, count: usize, wanted: impl Fn(usize) -> usize + Sync) -> Option<Vec<Image>> {
-        /// Primes of a lot use the same memory; after so many lots for each thread all threads meet, so that what is there when the work is
-        /// stopped has no gaps.
+    /// Images of the primes from `self.first.len()` on, in eights, until there are `count`, each from the order on that it is wanted
+    /// for; fewer where the work is stopped.
+    fn images(&mut self, count: usize, wanted: impl Fn(usize) -> usize + Sync) -> Option<Vec<Image>> {
+        /// Eights of a lot use the same memory; after so many lots for each thread all threads meet, so that what is there when the
+        /// work is stopped has no gaps.
         #[cfg(feature = "parallel")]
         const LOT: usize = 8;
         #[cfg(feature = "parallel")]
-        const LOTS: usize = 32;
+        const LOTS: usize = 4;
+        let begun = self.first.len();
+        let end = begun + count.saturating_sub(begun).next_multiple_of(WIDTH);
+        while self.primes.len() < end {
+            let Some(prime) = self.source.next() else { break };
+            self.primes.push(prime);
+        }
+        let places: Vec<usize> = (begun..end.min(self.primes.len())).collect();
+        let this = &*self;
+        let interrupt = this.supervision.interrupt;
         let lot = |places: &[usize]| -> Option<Vec<Image>> {
-            let mut recursion = Recursion::new(self.arithmetic, self.plan);
+            let mut recursion = Recursion::new(this.arithmetic, this.plan, interrupt);
             let mut images = Vec::with_capacity(places.len());
-            for place in places {
-                if self.supervision.interrupt.is_requested() {
-                    break;
+            for eight in places.chunks(WIDTH) {
+                let primes = &this.primes[eight[0]..eight[0] + eight.len()];
+                match recursion.images(primes, |lane| wanted(eight[lane])) {
+                    Some(own) => images.extend(own),
+                    None if interrupt.is_requested() => break,
+                    None => return None,
                 }
-                images.push(recursion.image(self.primes[*place], wanted(*place))?);
-                self.supervision.progress.advance();
+                let counted = eight.iter().filter(|place| **place < count);
+                counted.for_each(|_| this.supervision.progress.advance());
             }
             Some(images)
         };
-        let places: Vec<usize> = (self.first.len()..count).collect();
         #[cfg(feature = "parallel")]
-        if self.plan.highest > ALONE {
+        if this.plan.highest > ALONE {
             let threads = rayon::current_num_threads();
-            let length = places.len().div_ceil(4 * threads).clamp(1, LOT);
+            let eights = places.len().div_ceil(WIDTH);
+            let length = WIDTH * eights.div_ceil(threads).clamp(1, LOT);
             let mut images = Vec::with_capacity(places.len());
             for block in places.chunks(length * LOTS * threads) {
                 let lots: Option<Vec<Vec<Image>>> = block.par_chunks(length).map(lot).collect();
@@ -312,10 +331,12 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                 return None;
             }
             digits *= 1.5;
-            let moduli: Vec<Modulus> = self.first.iter().map(|image| image.modulus).collect();
+            let images = &self.first[..count];
+            let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
             let remainders = Remainders::new(self.arithmetic, &moduli);
             let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-            let known = |count, number: &dyn Fn(&Image, usize) -> u64| self.known(count, &remainders, &product, number);
+            let known =
+                |count, number: &dyn Fn(&Image, usize) -> u64| known(images, count, &remainders, &product, number);
             while beginning.frequency.known.len() <= last {
                 let order = beginning.frequency.known.len();
                 let count = match self.extent {
@@ -337,50 +358,20 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some(beginning)
     }
 
-    /// The common denominator of so many numbers and the digits that the largest has before the point; `None` where the primes
-    /// are too few.
-    fn known(
-        &self,
-        count: usize,
-        remainders: &Remainders<A>,
-        product: &Integer,
-        number: &dyn Fn(&Image, usize) -> u64,
-    ) -> Option<(Integer, f64)> {
-        let mut denominator = Integer::one();
-        let mut largest = 0.0_f64;
-        for index in 0..count {
-            let scaled = |modulus: &Modulus| modulus.integer(&denominator);
-            let weights: Vec<u64> = remainders.weights(scaled).collect();
-            let residues = self.first.iter().map(|image| number(image, index));
-            let residue = remainders.lift_one(residues, &weights);
-            let (numerator, more) = fraction(&residue, product)?;
-            denominator *= more;
-            largest = largest.max(numerator.bits() as f64 - denominator.bits() as f64);
-            if 2 * denominator.bits() > product.bits() {
-                return None;
-            }
-        }
-        Some((denominator, largest))
-    }
-
-    /// The orders from `first` on over these denominators of motion and frequency; `None` where a number fails the test of the extra
+    /// The orders from `first` on over these denominators of motion and frequency, with numerators of so many binary digits; `None` where a number fails the test of the extra
     /// prime.
     fn lifted(
         &mut self,
         first: usize,
         motion: &[Factored],
         frequency: &[Factored],
-        beginning: &Beginning,
+        bits: &[f64],
     ) -> Option<Vec<Order>> {
-        /// Digits beside those of denominator and size, for the factor before the growth.
-        const ROOM: f64 = 24.0;
         /// Residues kept at once, four gigabytes of them.
         const MOST_RESIDUES: usize = 1 << 29;
-        let mut counts = Vec::with_capacity(motion.len());
-        for (order, (motion, frequency)) in motion.iter().zip(frequency).enumerate() {
-            let bits = |denominator: &Factored, guess: &Guess| denominator.bits() + guess.growth * order as f64;
-            let bits = bits(motion, &beginning.motion).max(bits(frequency, &beginning.frequency));
-            counts.push(self.primes_for(bits + ROOM)?);
+        let mut counts = Vec::with_capacity(bits.len());
+        for bits in bits {
+            counts.push(self.primes_for(*bits)?);
         }
         // Orders share the primes of the longest among their neighbours: what a set of primes needs is computed once.
         let longest = counts.iter().copied().max()?;
@@ -398,10 +389,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         let most = *counts.last()?;
-        while self.primes.len() <= most {
-            self.primes.push(self.source.next()?);
-        }
-        let wanted = |place: usize| match self.extent {
+        let extent = self.extent;
+        let wanted = |place: usize| match extent {
             Extent::Motion => counts.partition_point(|count| *count < place).max(first),
             Extent::Frequency => usize::MAX,
         };
@@ -410,6 +399,10 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             .begin((most + 1).saturating_sub(self.first.len()));
         let images: Vec<Image> = self.images(most + 1, wanted)?;
         let all: Vec<&Image> = self.first.iter().chain(&images).collect();
+        let stopped = self.supervision.interrupt.is_requested();
+        if all.len() <= most && !stopped {
+            return None;
+        }
         // Of work that was stopped there are the orders for which the primes are enough.
         counts.truncate(counts.partition_point(|count| *count < all.len()));
         let mut groups: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
@@ -432,6 +425,32 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 }
 
+/// The common denominator of so many numbers and the digits that the largest has before the point; `None` where the primes
+/// are too few.
+fn known<A: Arithmetic>(
+    images: &[Image],
+    count: usize,
+    remainders: &Remainders<A>,
+    product: &Integer,
+    number: &dyn Fn(&Image, usize) -> u64,
+) -> Option<(Integer, f64)> {
+    let mut denominator = Integer::one();
+    let mut largest = 0.0_f64;
+    for index in 0..count {
+        let scaled = |modulus: &Modulus| modulus.integer(&denominator);
+        let weights: Vec<u64> = remainders.weights(scaled).collect();
+        let residues = images.iter().map(|image| number(image, index));
+        let residue = remainders.lift_one(residues, &weights);
+        let (numerator, more) = fraction(&residue, product)?;
+        denominator *= more;
+        largest = largest.max(numerator.bits() as f64 - denominator.bits() as f64);
+        if 2 * denominator.bits() > product.bits() {
+            return None;
+        }
+    }
+    Some((denominator, largest))
+}
+
 /// The first orders of motion and frequency.
 #[derive(Default)]
 struct Beginning {
@@ -440,6 +459,28 @@ struct Beginning {
 }
 
 impl Beginning {
+    /// The binary digits of the numerators of all orders over these denominators, and room for the factor before the growth.
+    fn bits(&self, motion: &[Factored], frequency: &[Factored]) -> Vec<f64> {
+        const ROOM: f64 = 24.0;
+        let orders = motion.iter().zip(frequency).enumerate();
+        orders
+            .map(|(order, (motion, frequency))| {
+                let motion = motion.bits() + self.motion.size(order);
+                let frequency = frequency.bits() + self.frequency.size(order);
+                motion.max(frequency) + ROOM
+            })
+            .collect()
+    }
+
+    fn shrinks(&self) -> bool {
+        self.motion.decay < 0.0 || self.frequency.decay < 0.0
+    }
+
+    fn without_shrinking(mut self) -> Self {
+        (self.motion.decay, self.frequency.decay) = (0.0, 0.0);
+        self
+    }
+
     /// Whether all denominators grow like powers: of these a few orders show everything.
     fn is_power(&self, plan: &Plan) -> bool {
         let fits = |guess: &Guess| {
@@ -474,8 +515,12 @@ impl Beginning {
 struct Guess {
     /// The common denominators of the first orders.
     known: Vec<Factored>,
-    /// By how many binary digits the largest number grows with each order, at most.
+    /// How many binary digits the largest number of each of them has before the point.
+    sizes: Vec<f64>,
+    /// By how many it grows with each order, at most.
     growth: f64,
+    /// By how many it shrinks, where it clearly does.
+    decay: f64,
 }
 
 impl Guess {
@@ -488,6 +533,27 @@ impl Guess {
         let order = self.known.len();
         self.growth = self.growth.max(size / order.max(1) as f64);
         self.known.push(denominator);
+        self.sizes.push(size);
+        // Of the second half of what is known; what is no more than a power of the order is not counted.
+        let middle = order / 2;
+        let slope = (size - self.sizes[middle]) / (order - middle).max(1) as f64;
+        self.decay = if order >= Self::ENOUGH {
+            (slope + 1.0).min(0.0)
+        } else {
+            0.0
+        };
+    }
+
+    /// Below so many orders nothing is said of shrinking.
+    const ENOUGH: usize = 8;
+
+    /// The binary digits before the point of the largest number of an order, at most; negative where it is small.
+    fn size(&self, order: usize) -> f64 {
+        let last = self.sizes.len().saturating_sub(1);
+        match self.sizes.last() {
+            Some(size) if self.decay < 0.0 && order >= last => size + self.decay * (order - last) as f64,
+            _ => self.growth * order as f64,
+        }
     }
 }
 

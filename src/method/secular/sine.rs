@@ -11,9 +11,9 @@
 
 use num_traits::{One, Zero};
 
-use super::modular::Term;
-use crate::exact::residue::Modulus;
+use super::plan::Term;
 use crate::exact::residue::sums::{Part, Product};
+use crate::exact::residue::{Arithmetic, Lanes, Residues};
 use crate::exact::{Integer, Rational};
 
 /// Where the tables of the sine stand.
@@ -92,53 +92,62 @@ fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
     (!rate.is_zero()).then_some(rate)
 }
 
-/// What the recursion multiplies by, modulo a prime.
+/// What the recursion multiplies by, modulo eight primes.
 pub(super) struct SineFactors {
-    rate: u64,
-    /// The inverses of `1, 2, ...`, after a zero.
-    inverses: Vec<u64>,
-    half: u64,
+    /// `n + 1/2`.
+    scaled: Vec<Lanes>,
+    /// `1/(n + 1/2)`.
+    sine: Vec<Lanes>,
+    /// `k/(n + 1)`.
+    cosine: Vec<Lanes>,
 }
 
 impl SineFactors {
-    /// `None` where the prime divides a denominator.
-    pub fn new(modulus: &Modulus, rate: &Rational, last: usize) -> Option<Self> {
-        let mut inverses: Vec<u64> = (1..=2 * last as i64 + 2).map(|number| modulus.small(number)).collect();
-        let denominator = modulus.integer(rate.denom());
-        inverses.push(denominator);
-        modulus.invert(&mut inverses)?;
-        let over = inverses.pop()?;
-        inverses.insert(0, 0);
-        Some(Self {
-            rate: modulus.product(modulus.integer(rate.numer()), over),
-            half: inverses[2],
-            inverses,
-        })
+    /// `None` where a prime divides a denominator.
+    #[inline(always)]
+    pub fn new<A: Arithmetic>(residues: &Residues<A>, rate: Lanes, last: usize) -> Option<Self> {
+        let one = residues.one();
+        // 1/1, 1/2, ...
+        let mut inverses = vec![one; 2 * last + 2];
+        for (place, inverse) in inverses.iter_mut().enumerate() {
+            *inverse = residues.small(place + 1);
+        }
+        residues.invert(&mut inverses)?;
+        let mut factors = Self {
+            scaled: vec![one; last + 1],
+            sine: vec![one; last + 1],
+            cosine: vec![one; last + 1],
+        };
+        for order in 0..=last {
+            factors.scaled[order] = residues.sum(residues.small(order), inverses[1]);
+            factors.sine[order] = residues.sum(inverses[2 * order], inverses[2 * order]);
+            factors.cosine[order] = residues.product(rate, inverses[order]);
+        }
+        Some(factors)
     }
 
     /// `V_n` from `y_n`, which stands in the first table.
-    pub fn scaled(&self, modulus: &Modulus, order: usize) -> Part {
+    pub fn scaled(&self, order: usize) -> Part {
         Part {
-            factor: modulus.sum(modulus.small(order as i64), self.half),
+            factor: self.scaled[order],
             table: 0,
             order,
         }
     }
 
     /// `S_n` without what it has of `y_n`.
-    pub fn sine(&self, modulus: &Modulus, sine: &Sine, order: usize) -> Part {
-        let twice = modulus.small(2);
+    pub fn sine(&self, sine: &Sine, order: usize) -> Part {
         Part {
-            factor: modulus.product(twice, self.inverses[2 * order + 1]),
+            factor: self.sine[order],
             table: sine.of_sine.to,
             order,
         }
     }
 
     /// `C_(n+1)`.
-    pub fn cosine(&self, modulus: &Modulus, sine: &Sine, order: usize) -> Part {
+    pub fn cosine(&self, sine: &Sine, order: usize) -> Part {
         Part {
-            factor: modulus.product(self.rate, self.inverses[order + 1]),
+            factor: self.cosine[order],
             table: sine.of_cosine.to,
             order,
         }

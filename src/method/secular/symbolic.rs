@@ -23,7 +23,8 @@ use num_traits::{One, Zero};
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
-use super::modular::{Field, Plan, Recursion, Term};
+use super::modular::{Field, Recursion};
+use super::plan::{Plan, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
@@ -285,36 +286,41 @@ impl<A: Arithmetic> Search<'_, A> {
 
     /// The numbers of all orders at these points, as far as the work is not stopped.
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
-        let mut field = Field::new(self.plan, modulus)?;
-        let mut recursion = Recursion::new(self.arithmetic, self.plan);
+        let mut field = Field::new(self.arithmetic, self.plan, &[modulus])?;
+        let mut recursion = Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt);
         let own = std::mem::take(&mut field.coefficients);
         let mut coefficients = own.clone();
         let mut found = Vec::with_capacity(points.len());
-        for point in points {
-            if self.supervision.interrupt.is_requested() {
-                break;
-            }
+        for eight in points.chunks(WIDTH) {
             for ((coefficient, own), group) in coefficients.iter_mut().zip(&own).zip(&self.groups.of_terms) {
-                *coefficient = match self.lower_set.lines[*group].is_empty() {
-                    true => *own,
-                    false => modulus.product(*own, modulus.small(point[*group] as i64)),
-                };
-            }
-            recursion.expand(&mut field, &coefficients)?;
-            let weight: usize = point
-                .iter()
-                .zip(&self.groups.kinds)
-                .map(|(exponent, kind)| exponent * kind.0)
-                .sum();
-            let mut values = vec![];
-            for order in weight..=self.plan.highest {
-                values.extend([recursion.frequency()[order], recursion.frequency_squared()[order]]);
-                if self.extent == Extent::Motion {
-                    values.extend(recursion.displacement(order));
+                if !self.lower_set.lines[*group].is_empty() {
+                    for ((lane, own), point) in coefficient.0.iter_mut().zip(own.0).zip(eight) {
+                        *lane = modulus.product(own, modulus.small(point[*group] as i64));
+                    }
                 }
             }
-            found.push(values);
-            self.supervision.progress.advance();
+            match recursion.expand(&mut field, &coefficients) {
+                Some(()) => {}
+                None if self.supervision.interrupt.is_requested() => break,
+                None => return None,
+            }
+            for (lane, point) in eight.iter().enumerate() {
+                let weight: usize = point
+                    .iter()
+                    .zip(&self.groups.kinds)
+                    .map(|(exponent, kind)| exponent * kind.0)
+                    .sum();
+                let mut values = vec![];
+                for order in weight..=self.plan.highest {
+                    values.push(recursion.frequency()[order].0[lane]);
+                    values.push(recursion.frequency_squared()[order].0[lane]);
+                    if self.extent == Extent::Motion {
+                        values.extend(recursion.displacement(order).map(|own| own.0[lane]));
+                    }
+                }
+                found.push(values);
+                self.supervision.progress.advance();
+            }
         }
         Some(found)
     }
@@ -326,7 +332,10 @@ impl<A: Arithmetic> Search<'_, A> {
         if points.len() * self.plan.highest > ALONE {
             /// So many lots for each thread let none of them wait for long.
             const LOTS: usize = 4;
-            let length = points.len().div_ceil(LOTS * rayon::current_num_threads()).max(1);
+            let length = points
+                .len()
+                .div_ceil(LOTS * rayon::current_num_threads())
+                .next_multiple_of(WIDTH);
             let lots: Option<Vec<Vec<Vec<u64>>>> = points
                 .par_chunks(length)
                 .map(|points| self.values(modulus, points))

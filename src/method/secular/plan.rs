@@ -1,0 +1,307 @@
+//! What an expansion by primes consists of, the same for every prime: products, symmetries and points.
+//!
+//! Half-wave symmetry (every `p + q` odd: odd harmonics alone) and that under reversal of time, where `y_n` consists of cosines (every `q`
+//! even) or of cosines for even `n` and of sines for odd `n` (every `q` as even as the order of its term). An equation without the
+//! second is left to the ring's own recursion.
+
+use std::ops::Range;
+
+use super::sine::Sine;
+use super::{Amplitude, Scheme};
+use crate::exact::Rational;
+use crate::exact::residue::Lanes;
+use crate::exact::residue::sums::Product;
+use crate::series::waves::{Grid, Wave};
+use crate::solution::AmplitudeConvention;
+
+/// A term `delta^order coefficient y^position (omega y')^velocity` of the force.
+#[derive(Clone, Debug)]
+pub(super) struct Term {
+    pub order: usize,
+    pub position: u32,
+    pub velocity: u32,
+    pub coefficient: Rational,
+}
+
+/// What is the same for every prime: the products, their symmetries and the points they are formed at.
+pub(super) struct Plan<'a> {
+    pub terms: &'a [Term],
+    pub scheme: Scheme,
+    /// The highest order that is kept; the amplitude of a limit cycle follows from one order more.
+    pub highest: usize,
+    pub last: usize,
+    pub half_wave: bool,
+    /// Sines at odd orders.
+    alternating: bool,
+    /// How many harmonics an order brings.
+    growth: usize,
+    pub grid: Grid,
+    /// The tables of values: `y`, `omega y'` where it is needed, and products of those before.
+    pub tables: usize,
+    pub products: Vec<Product>,
+    /// Which table belongs to each term, and whether its derivative is meant.
+    pub of_terms: Vec<(usize, bool)>,
+    pub has_velocity: bool,
+    /// Harmonics that the frequency of the last order does not depend on are left out.
+    frequency_alone: bool,
+    /// Where the coefficients of each order start in a list of all, and where the last ends.
+    pub starts: Vec<usize>,
+    /// A sine beside the terms, with its rate.
+    pub sine: Option<(Sine, Rational)>,
+}
+
+impl<'a> Plan<'a> {
+    /// `None` for an equation without the symmetry under reversal of time, and for one without terms. With `frequency_alone`
+    /// nothing but the frequency is right in the image; `sine` is the rate of a [sine](super::sine) beside the terms, for a free
+    /// motion.
+    pub fn new(
+        terms: &'a [Term],
+        sine: Option<Rational>,
+        highest: usize,
+        scheme: Scheme,
+        frequency_alone: bool,
+    ) -> Option<Self> {
+        let conservative = terms.iter().all(|term| term.velocity % 2 == 0);
+        let alternating = terms.iter().all(|term| term.velocity as usize % 2 == term.order % 2);
+        if !(conservative || alternating) || terms.iter().any(|term| term.position + term.velocity == 0) {
+            return None;
+        }
+        let power = |term: &Term| (term.position + term.velocity) as usize;
+        let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
+        let growths = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order));
+        let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
+        let determined = scheme.amplitude == Amplitude::Determined;
+        let last = highest + usize::from(determined);
+        // The frequency of a limit cycle is the same however its motion is normalised, and without the sum over all harmonics
+        // that the initial value is, the high ones are not needed. That of a free motion belongs to one amplitude or the other.
+        let frequency_alone =
+            frequency_alone && (determined || scheme.normalisation == AmplitudeConvention::FirstHarmonic);
+        let normalisation = match frequency_alone {
+            true => AmplitudeConvention::FirstHarmonic,
+            false => scheme.normalisation,
+        };
+        let mut plan = Self {
+            terms,
+            scheme: Scheme {
+                normalisation,
+                ..scheme
+            },
+            highest,
+            last,
+            half_wave,
+            alternating: !conservative,
+            growth,
+            grid: Grid::new(1, half_wave),
+            tables: 1,
+            products: vec![],
+            of_terms: vec![],
+            has_velocity: terms.iter().any(|term| term.velocity > 1),
+            frequency_alone,
+            starts: vec![0],
+            sine: None,
+        };
+        for order in 0..=last {
+            plan.starts.push(plan.starts[order] + plan.harmonics(order));
+        }
+        plan.grid = Grid::new(plan.points(), half_wave);
+        plan.tables += usize::from(plan.has_velocity);
+        plan.of_terms = terms.iter().map(|term| plan.table_of(term)).collect();
+        if let Some(rate) = sine {
+            plan.sine = Some((Sine::new(plan.tables, last), rate));
+            plan.tables += Sine::TABLES;
+        }
+        Some(plan)
+    }
+
+    fn table_of(&mut self, term: &Term) -> (usize, bool) {
+        let needed = self.last.saturating_sub(term.order);
+        match (term.position, term.velocity) {
+            (position, 0) => (self.power(0, position, needed), false),
+            (position, 1) => (self.power(0, position + 1, needed), true),
+            (0, velocity) => (self.power(1, velocity, needed), false),
+            (position, velocity) => {
+                let (position, velocity) = (self.power(0, position, needed), self.power(1, velocity, needed));
+                (self.product(position, velocity, needed), false)
+            }
+        }
+    }
+
+    /// By steps of two, so that neighbouring powers share their work.
+    fn power(&mut self, base: usize, exponent: u32, needed: usize) -> usize {
+        if exponent <= 1 {
+            return base;
+        }
+        let square = self.product(base, base, needed);
+        let start = if exponent.is_multiple_of(2) { square } else { base };
+        (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square, needed))
+    }
+
+    fn product(&mut self, left: usize, right: usize, needed: usize) -> usize {
+        let (left, right) = (left.min(right), left.max(right));
+        let known = self
+            .products
+            .iter_mut()
+            .find(|known| (known.left, known.right) == (left, right));
+        if let Some(known) = known {
+            known.needed = known.needed.max(needed);
+            return known.to;
+        }
+        let to = self.tables;
+        self.tables += 1;
+        self.products.push(Product {
+            left,
+            right,
+            to,
+            needed,
+        });
+        to
+    }
+
+    /// How many harmonics `y_order` has at most: `1, 3, ...` or `0, 1, 2, ...`.
+    fn reach(&self, order: usize) -> usize {
+        match self.half_wave {
+            true => order * self.growth / 2 + 1,
+            false => order * self.growth + 2,
+        }
+    }
+
+    /// How many harmonics of `y_order` are computed. An order changes a harmonic by no more than it reaches, so that what the
+    /// first harmonic of the last order depends on is below what is left to come.
+    pub fn harmonics(&self, order: usize) -> usize {
+        match self.frequency_alone {
+            true => self.reach(order).min(self.reach(self.last - order) + 1),
+            false => self.reach(order),
+        }
+    }
+
+    /// The places of an order's coefficients in a list of those of all orders.
+    pub fn places(&self, order: usize) -> Range<usize> {
+        self.starts[order]..self.starts[order] + self.harmonics(order)
+    }
+
+    /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken for `2K - 1 - j` (`2K - j` where
+    /// all harmonics stand), which must be none that is computed.
+    fn points(&self) -> usize {
+        match self.frequency_alone {
+            true => self.reach(self.last) / 2 + self.growth + 3,
+            // One more than there are, for the last order is only looked at in its first harmonic.
+            false => self.reach(self.last) + 1,
+        }
+    }
+
+    /// The number of harmonics of the order that has the most.
+    pub fn most_harmonics(&self) -> usize {
+        let orders = (0..=self.last).map(|order| self.harmonics(order));
+        orders.max().unwrap_or(0).max(self.resonant() + 1)
+    }
+
+    /// The harmonic of an index.
+    pub fn harmonic(&self, index: usize) -> usize {
+        if self.half_wave { 2 * index + 1 } else { index }
+    }
+
+    /// The first harmonic's index.
+    pub fn resonant(&self) -> usize {
+        usize::from(!self.half_wave)
+    }
+
+    /// What `y_order` consists of.
+    pub fn wave(&self, order: usize) -> Wave {
+        match self.alternating && order % 2 == 1 {
+            true => Wave::Sine,
+            false => Wave::Cosine,
+        }
+    }
+
+    /// What a prime minus one has to be a multiple of.
+    pub fn circle(&self) -> u64 {
+        self.grid.circle() as u64
+    }
+
+    /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above this.
+    pub fn largest_factor(&self, order: usize) -> u64 {
+        let highest = self.harmonic(self.reach(order) - 1) as u64 + 1;
+        if self.half_wave { highest / 2 } else { highest }
+    }
+
+    /// The same for the frequency: what comes back to the first harmonic was no further away than half of the orders reach, but for
+    /// the initial value of a free motion, which is a sum over all harmonics.
+    pub fn largest_factor_of_frequency(&self, order: usize) -> u64 {
+        let free = self.scheme.amplitude == Amplitude::Free;
+        match free && self.scheme.normalisation == AmplitudeConvention::Initial {
+            true => self.largest_factor(order),
+            false => self.largest_factor(order / 2),
+        }
+    }
+
+    /// How far orders of the same symmetry are apart.
+    #[inline(always)]
+    pub fn step(&self) -> usize {
+        if self.alternating { 2 } else { 1 }
+    }
+
+    /// The first order with the symmetry of this one at which a harmonic need not be zero.
+    #[inline(always)]
+    pub fn first(&self, index: usize, order: usize) -> usize {
+        let first = match self.half_wave {
+            true => (2 * index).div_ceil(self.growth.max(1)),
+            false => index.saturating_sub(1).div_ceil(self.growth.max(1)),
+        };
+        first + (first + order) % self.step()
+    }
+
+    /// The products of the sine.
+    pub fn sine_products(&self) -> impl Iterator<Item = &Product> {
+        let sine = self.sine.iter();
+        sine.flat_map(|(sine, _)| [&sine.of_sine, &sine.of_cosine])
+    }
+}
+
+/// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each symmetry of its own.
+pub(super) struct Harmonics(pub [Vec<Vec<Lanes>>; 2]);
+
+impl Harmonics {
+    pub fn new(plan: &Plan, count: usize) -> Self {
+        let rows = |parity: usize| {
+            let room = |index| (plan.last + 1).saturating_sub(plan.first(index, parity)) / plan.step() + 1;
+            (0..count).map(|index| Vec::with_capacity(room(index))).collect()
+        };
+        Self([rows(0), if plan.step() == 2 { rows(1) } else { vec![] }])
+    }
+
+    pub fn clear(&mut self) {
+        self.0.iter_mut().flatten().for_each(Vec::clear);
+    }
+
+    fn rows(&mut self, order: usize) -> &mut Vec<Vec<Lanes>> {
+        let parity = if self.0[1].is_empty() { 0 } else { order % 2 };
+        &mut self.0[parity]
+    }
+
+    /// The coefficients of the next order.
+    pub fn push(&mut self, plan: &Plan, order: usize, coefficients: &[Lanes]) {
+        for (index, (row, coefficient)) in self.rows(order).iter_mut().zip(coefficients).enumerate() {
+            if plan.first(index, order) <= order {
+                row.push(*coefficient);
+            }
+        }
+    }
+
+    /// The last order of a symmetry.
+    pub fn last(&mut self, order: usize, index: usize) -> Option<&mut Lanes> {
+        self.rows(order).get_mut(index)?.last_mut()
+    }
+
+    /// The first order of a row and its entries, for the symmetry of an order.
+    #[inline(always)]
+    pub fn row(&self, plan: &Plan, index: usize, order: usize) -> (usize, &[Lanes]) {
+        let parity = if plan.step() == 2 { order % 2 } else { 0 };
+        (plan.first(index, order), &self.0[parity][index])
+    }
+
+    pub fn at(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
+        let (first, row) = self.row(plan, index, order);
+        let place = order.checked_sub(first).map(|after| after / plan.step());
+        place.and_then(|place| row.get(place)).copied().unwrap_or_default()
+    }
+}

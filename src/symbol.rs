@@ -20,6 +20,12 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Symbol(&'static str);
 
+/// Greek letters by name: what a coordinate may be called beside a single letter, and what is set as that letter in formulas.
+pub(crate) const GREEK: [&str; 21] = [
+    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
+    "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
+];
+
 static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
 
 impl Symbol {

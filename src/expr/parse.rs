@@ -99,7 +99,7 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 /// Reads an equation of motion such as `x'' + x + eps*x^3 = 0`.
 ///
 /// # Errors
-/// See [`ParseError`]; also for [`RESERVED_NAMES`], and for primes on more than one letter.
+/// See [`ParseError`]; also for [`RESERVED_NAMES`], and for primes on more than a letter, a Greek one by name, with or without an index.
 ///
 /// ```
 /// use lindstedt::expr::parse_equation;
@@ -533,6 +533,9 @@ mod tests {
             ("0 = q' + t", "0 = q' + t", "q"),
             ("x + 1 = 2", "1 + x = 2", "x"),
             ("x'' + e*x", "x'' + e*x = 0", "x"),
+            ("phi'' + (g/L)*sin(phi)", "phi'' + g*sin(phi)/L = 0", "phi"),
+            ("q_1'' + k*q_1", "q_1'' + k*q_1 = 0", "q_1"),
+            ("theta2'' + theta2^3", "theta2'' + theta2^3 = 0", "theta2"),
         ] {
             let equation = parse_equation(text).unwrap();
             assert_eq!(
@@ -550,7 +553,7 @@ mod tests {
             let error = parse_equation(&format!("x'' + {name}*x = 0")).unwrap_err();
             assert_eq!((error.span.start, error.span.len()), (6, name.len()), "{error}");
         }
-        assert!(parse_expression("theta'").is_ok() && parse_equation("phi'' + phi").is_err());
+        assert!(parse_expression("theta'").is_ok() && parse_equation("theta'' + theta").is_err());
     }
 
     /// Text, the part that is meant, the message and the help.
@@ -722,10 +725,16 @@ mod tests {
                 "an equation of motion has one coordinate",
             ),
             (
-                "phi'' + phi",
-                "phi''",
-                "`phi''`: primes belong to a single letter",
-                "try `x'` or `x''`",
+                "kx'' + x",
+                "kx''",
+                "`kx''`: primes belong to a single letter or a Greek one",
+                "try `x''` or `phi''`",
+            ),
+            (
+                "theta'' + sin(theta)",
+                "theta''",
+                "`theta` is reserved: it is the phase in the answer",
+                "another name, such as `phi`",
             ),
             ("", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
             (" \n", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),

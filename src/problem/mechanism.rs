@@ -65,8 +65,8 @@ impl MechanismFileError {
                 Some("coordinates = [\"x\"], kinetic = \"m*L^2*x'^2/2\", potential = \"m*g*L*(1 - cos(x))\"".to_owned())
             }
             Self::Coordinate { .. } => Some(
-                "to hand an equation on, name the coordinate by a single letter and its parameters by other names than A, a, theta \
-                 and omega; `lindstedt lagrange` takes any"
+                "to hand an equation on, name the coordinate by a letter (Greek ones by name, such as phi) and its parameters by other \
+                 names than A, a, theta and omega; `lindstedt lagrange` takes any"
                     .to_owned(),
             ),
             _ => None,

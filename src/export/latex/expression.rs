@@ -4,7 +4,7 @@ use num_traits::{One, Signed};
 
 use crate::exact::Rational;
 use crate::expr::{Expr, Function, Node};
-use crate::symbol::Symbol;
+use crate::symbol::{GREEK, Symbol};
 
 /// An expression. Without recursion: `open` holds what is still to be written, the next piece last.
 ///
@@ -188,11 +188,6 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
     call.push(text(close));
     call
 }
-
-const GREEK: [&str; 21] = [
-    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
-    "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
-];
 
 /// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter,
 /// underscores at the end as tildes. No two names look alike: where two spellings would meet, the index of the one with an

@@ -8,7 +8,17 @@ use super::error::{ParseError, shortened};
 use super::lexer::{Kind, Token};
 use super::{Parser, RESERVED_NAMES};
 use crate::expr::Function;
-use crate::symbol::Symbol;
+use crate::symbol::{GREEK, Symbol};
+
+/// Whether a name is a letter, Greek ones by name, with or without an index: `x`, `phi`, `q1`, `x_rel`. What else carries primes is most
+/// often a product without its sign.
+fn is_letter(name: &str) -> bool {
+    let stem = match name.split_once('_') {
+        Some((stem, _)) => stem,
+        None => name.trim_end_matches(|letter: char| letter.is_ascii_digit()),
+    };
+    stem.len() == 1 || GREEK.contains(&stem)
+}
 
 impl Parser<'_> {
     /// The letter that carries primes, after a look at every name.
@@ -30,14 +40,18 @@ impl Parser<'_> {
                     _ => "the frequency",
                 };
                 let message = format!("`{bare}` is reserved: it is {meaning} in the answer");
-                return Err(self.error(token.span(), &message, &format!("another name, such as `{bare}1`")));
+                let help = match bare {
+                    "theta" => "another name, such as `phi`".to_owned(),
+                    _ => format!("another name, such as `{bare}1`"),
+                };
+                return Err(self.error(token.span(), &message, &help));
             }
             if bare.len() == name.len() || Function::from_name(bare).is_some() || bare == "t" || bare == "pi" {
                 continue;
             }
-            if bare.len() > 1 {
-                let message = format!("`{name}`: primes belong to a single letter");
-                return Err(self.error(token.span(), &message, "try `x'` or `x''`"));
+            if !is_letter(bare) {
+                let message = format!("`{name}`: primes belong to a single letter or a Greek one");
+                return Err(self.error(token.span(), &message, "try `x''` or `phi''`"));
             }
             match primed {
                 Some((_, first)) if first != bare => {

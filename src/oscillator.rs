@@ -682,6 +682,40 @@ impl PerturbedForce {
         )
     }
 
+    /// Writes the terms in powers of the linear frequency where that leaves none of the parameters under its root: of
+    /// `omega0^2 = g/L` and `g*sin(x)/L` all that is left is `omega0^2 sin(x)`.
+    pub(crate) fn write_with_frequency(&mut self, names: &[Symbol]) {
+        let (_, Some(root)) = self.linear_frequency(names) else {
+            return;
+        };
+        let written = self
+            .terms
+            .iter()
+            .map(|term| self.with_frequency(&term.coefficient, root.symbol));
+        if let Some(written) = written.collect::<Option<Vec<Polynomial>>>() {
+            for (term, coefficient) in self.terms.iter_mut().zip(written) {
+                term.coefficient = coefficient;
+            }
+        }
+    }
+
+    /// `None` where a product has other powers of the parameters than the linear force or a power of it.
+    fn with_frequency(&self, coefficient: &Polynomial, frequency: Symbol) -> Option<Polynomial> {
+        let (linear, number) = self.linear.single_term()?;
+        let (first, unit) = *linear.factors().first()?;
+        let mut written = Polynomial::zero();
+        for (monomial, own) in coefficient.terms() {
+            let power = monomial.exponent(first) / unit;
+            let rest = monomial.product(&linear.power(-power));
+            if linear.factors().iter().any(|(symbol, _)| rest.exponent(*symbol) != 0) {
+                return None;
+            }
+            let scale = num_traits::pow::Pow::pow(number, -power);
+            written.add_term(rest.product(&Monomial::power_of(frequency, 2 * power)), own * scale);
+        }
+        Some(written)
+    }
+
     /// The coefficient of the linear force, its named constants written out.
     pub(crate) fn linear_in_full(&self) -> Expr {
         let linear = Expr::from(&self.linear);

@@ -92,7 +92,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let small = SmallTerms::of(oscillator, options)?;
     let mut averaged = match small.expand(order) {
-        Ok(force) => of_polynomial(oscillator, &small, &force, order)?,
+        Ok(mut force) => {
+            force.write_with_frequency(&oscillator.names());
+            of_polynomial(oscillator, &small, &force, order)?
+        }
         // A series in what marks the terms is no polynomial in the coordinate and its velocity; steps at a letter are none either, whose
         // force at rest is known not to act.
         Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_))

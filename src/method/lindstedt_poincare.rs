@@ -61,6 +61,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         }
         other => other?,
     };
+    perturbation.force.write_with_frequency(&oscillator.names());
     let force = &perturbation.force;
     let LinearPart {
         frequency: linear_frequency,

@@ -702,3 +702,46 @@ fn what_does_not_apply_is_refused_by_name() {
         "{refusal:?}"
     );
 }
+
+/// With `omega0^2 = g/L` the pendulum's terms are powers of it; where a parameter of the linear force stands elsewhere as well, all of
+/// them stay as they were typed. Either way the numbers are those of the same equation without names.
+#[test]
+fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
+    for (equation, values, expected) in [
+        (
+            "x'' + (g/L)*sin(x) = 0",
+            vec![("g", 2.0), ("L", 8.0)],
+            "omega0^2 - omega0^2*A^2/8 + 7*omega0^2*A^4/1536",
+        ),
+        (
+            "x'' + 2*k*x + 4*k^2*x^3 = 0",
+            vec![("k", 0.125)],
+            "omega0^2 + 3*omega0^4*A^2/4 - 3*omega0^6*A^4/128",
+        ),
+        (
+            "x'' + k*x/m + b*x^3/m = 0",
+            vec![("k", 2.0), ("m", 8.0), ("b", 0.5)],
+            "omega0^2 + 3*b*A^2/(4*m) - 3*b^2*A^4/(128*m^2*omega0^2)",
+        ),
+    ] {
+        let options = Options {
+            order: Some(4),
+            small: Some("A".to_owned()),
+            ..Options::default()
+        };
+        let solution = solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
+        assert_eq!(*law_squared(&solution), polynomial(expected), "{equation}");
+        let mut numbers = equation.to_owned();
+        for (name, value) in &values {
+            numbers = numbers.replace(name, &format!("({value})"));
+        }
+        let plain = solve(&Oscillator::parse(&numbers).expect(&numbers), &options).expect(&numbers);
+        let value_of = |name: Symbol| match name.name() {
+            "A" => Some(0.3),
+            "omega0" => Some(0.5),
+            name => values.iter().find(|(own, _)| *own == name).map(|(_, value)| *value),
+        };
+        let [found, plain] = [&solution, &plain].map(|own| law_squared(own).evaluate(value_of).expect("a number"));
+        assert!((found / plain - 1.0).abs() < 1e-14, "{equation}: {found} {plain}");
+    }
+}

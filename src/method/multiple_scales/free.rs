@@ -31,7 +31,8 @@ const HIGHEST: [u32; 2] = [3, 6];
 /// # Errors
 /// What stops an expansion, an order above those that there are, a limit cycle without a closed form.
 pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
-    let scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
+    let mut scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
+    scaling.force.write_with_frequency(&oscillator.names());
     let linear = LinearPart::of(&scaling.force, oscillator);
     let units = Units::new(&scaling.force, linear.frequency.clone());
     let cycles = cycles(&scaling, &units, options, &linear.taken)?;

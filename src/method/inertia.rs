@@ -19,6 +19,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
@@ -108,15 +109,44 @@ impl VariableMass {
         (self.mass.as_ref()? * &self.force).expand().ok()
     }
 
-    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium.
-    fn mass_at(&self, oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Option<Box<dyn Fn(f64) -> f64>> {
+    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium, in steps that are a part of the amplitude: what
+    /// asks for it integrates over it in turn.
+    fn mass_at(
+        &self,
+        oscillator: &Oscillator,
+        numbers: &BTreeMap<Symbol, f64>,
+        amplitude: f64,
+    ) -> Option<Box<dyn Fn(f64) -> f64>> {
+        const STEPS: f64 = 16.0;
+        /// So many steps away nothing is oscillating.
+        const FURTHEST: f64 = 1e5;
         if let Some(mass) = &self.mass {
             return Some(Box::new(compiled(oscillator, mass, numbers)?));
         }
         let growth = compiled(oscillator, &self.growth, numbers)?;
+        let step = amplitude.abs() / STEPS;
+        let integral = move |from: f64, to: f64| {
+            // A small exponent need not be known to as many digits: near the equilibrium, quotients of zeros have fewer.
+            let size = growth(0.5 * (from + to)) * (to - from);
+            let tolerance = (1e-14 / size.abs()).clamp(1e-13, 1e-2);
+            let integral = integrate_smooth(&growth, from, to, tolerance);
+            integral.map_or(f64::NAN, |(value, _)| value)
+        };
+        // From the equilibrium to each step on its right, and on its left.
+        let known = RefCell::new([vec![0.0], vec![0.0]]);
         Some(Box::new(move |x: f64| {
-            let integral = integrate_smooth(&growth, 0.0, x, 1e-13);
-            integral.map_or(f64::NAN, |(value, _)| (2.0 * value).exp())
+            let steps = (x / step).trunc();
+            if steps.is_nan() || steps.abs() > FURTHEST {
+                return f64::NAN;
+            }
+            let side = &mut known.borrow_mut()[usize::from(steps < 0.0)];
+            while side.len() <= steps.abs() as usize {
+                let end = (side.len() as f64 * step).copysign(steps);
+                let more = integral(end - step.copysign(steps), end);
+                side.push(side[side.len() - 1] + more);
+            }
+            let value = side[steps.abs() as usize] + integral(steps * step, x);
+            (2.0 * value).exp()
         }))
     }
 }
@@ -605,7 +635,7 @@ pub(super) fn at_numbers(
     let oscillator = &centred;
     let moving = VariableMass::of(oscillator).ok()??;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-    let mass = moving.mass_at(oscillator, numbers)?;
+    let mass = moving.mass_at(oscillator, numbers, amplitude)?;
     let force = Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
     let approach = Entry::of(solution.method).inertia.as_ref()?;
     (approach.numbers)(&Question {

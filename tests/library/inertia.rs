@@ -329,6 +329,9 @@ fn inertia_without_a_value_at_rest_is_refused_and_no_other() {
     ] {
         let (_, solution) = derived(equation, Method::Exact, None);
         assert!(solution.law.closed_form().is_none(), "{equation}");
+        let verdict = judged(equation, Method::Exact, None, &[("A", "0.3")]);
+        let error = verdict.relative_error.expect("a frequency");
+        assert!(error.abs() < 1e-9, "{equation}: {error:e}");
     }
     for equation in [
         "x'' + x + x'^2/x = 0",

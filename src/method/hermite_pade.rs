@@ -45,12 +45,33 @@ const METHOD: Method = Method::HermitePade;
 /// The largest degree of each of the three.
 const LARGEST_DEGREE: u32 = 40;
 
-/// The approximant of the degrees in the options, `[1/1/1]` by default.
+/// The degrees to try in turn where none are given: a series whose first power is missing may have no approximant of the first of them.
+const DEFAULTS: [Degrees; 3] = [
+    Degrees::Quadratic(1, 1, 1),
+    Degrees::Quadratic(2, 2, 2),
+    Degrees::Quadratic(3, 3, 3),
+];
+
+/// The approximant of the degrees in the options; by default `[1/1/1]`, or the next that there is.
 ///
 /// # Errors
 /// As for the method of Lindstedt and Poincare; degrees without an approximant, and one whose root cannot be followed.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    let degrees = options.degrees.unwrap_or(Degrees::Quadratic(1, 1, 1));
+    if let Some(degrees) = options.degrees {
+        return of_degrees(oscillator, options, degrees);
+    }
+    let [first, others @ ..] = DEFAULTS;
+    let refusal = match of_degrees(oscillator, options, first) {
+        Err(refusal @ Refusal::Approximant { .. }) => refusal,
+        other => return other,
+    };
+    let mut answers = others
+        .into_iter()
+        .map(|degrees| of_degrees(oscillator, options, degrees));
+    answers.find_map(Result::ok).ok_or(refusal)
+}
+
+fn of_degrees(oscillator: &Oscillator, options: &Options, degrees: Degrees) -> Result<Solution, Refusal> {
     let refused = |reason| Refusal::Approximant {
         method: METHOD,
         degrees,
@@ -414,6 +435,30 @@ mod tests {
             ..Options::default()
         };
         crate::method::solve(&Oscillator::parse(equation).unwrap(), &options)
+    }
+
+    /// The frequencies of Toda's and Morse's forces have no term in A: their default is of higher degree, and that of the series of order 12
+    /// near rest.
+    #[test]
+    fn without_degrees_there_is_an_answer() {
+        for equation in ["x'' + 1 - exp(-x) = 0", "x'' + exp(-x) - exp(-2*x) = 0"] {
+            let oscillator = Oscillator::parse(equation).unwrap();
+            let by = |method, order| {
+                let options = Options {
+                    method: Some(method),
+                    order,
+                    ..Options::default()
+                };
+                crate::method::solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"))
+            };
+            let (found, series) = (by(METHOD, None), by(Method::LindstedtPoincare, Some(12)));
+            assert_eq!(found.degrees, Some(Degrees::Quadratic(2, 2, 2)), "{equation}");
+            for amplitude in [-0.2, 0.1, 0.2] {
+                let [found, series] = [&found, &series].map(|solution| at(solution, &[("A", amplitude)]).unwrap());
+                assert!((found / series - 1.0).abs() < 1e-7, "{equation}: {found} {series}");
+            }
+        }
+        assert!(derived("x'' + 1 - exp(-x) = 0", [1, 1, 1]).is_err());
     }
 
     fn at(solution: &Solution, values: &[(&str, f64)]) -> Option<f64> {

@@ -404,7 +404,7 @@ fn motion(solution: &Solution) -> Vec<String> {
     if solution.displacement.is_zero() {
         return vec![];
     }
-    let coordinate = solution.coordinate();
+    let coordinate = symbol(solution.coordinate());
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
     lines.push(format!("\\theta &= {}", angle(solution)));

@@ -340,3 +340,15 @@ fn functions_of_answers_are_no_parameters() {
         );
     }
 }
+
+/// A coordinate that is called by its Greek letter is set as that letter wherever it stands.
+#[test]
+fn a_greek_coordinate_is_set_as_its_letter() {
+    let oscillator = Oscillator::parse("phi'' + (g/L)*sin(phi) = 0").unwrap();
+    let document = latex::solution(&solve(&oscillator, &Options::default()).unwrap(), None);
+    assert!(
+        document.contains("\\ddot{\\phi}") && document.contains("\n\\phi(t) &="),
+        "{document}"
+    );
+    assert_eq!(document.replace("\\phi", "").matches("phi").count(), 0, "{document}");
+}

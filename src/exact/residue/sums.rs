@@ -193,7 +193,7 @@ fn square<A: Arithmetic>(arithmetic: A, orders: &[Lanes]) -> A::Sum {
 pub fn reversed_products<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
     let mut sum = arithmetic.none();
     for (left, right) in left.chunks(2 * TOGETHER).zip(right.rchunks(2 * TOGETHER)) {
-        sum = arithmetic.join(sum, pairs(arithmetic, left, right));
+        sum = arithmetic.carry(arithmetic.join(sum, pairs(arithmetic, left, right)));
     }
     sum
 }

@@ -165,34 +165,20 @@ impl Modulus {
 
     /// The inverses of all of them with a single power; `None` if one of them is zero.
     pub fn invert(&self, residues: &mut [u64]) -> Option<()> {
-        /// Products that do not wait for each other.
-        const CHAINS: usize = 4;
-        let mut products = [self.one; CHAINS];
+        let mut product = self.one;
         let mut before = Vec::with_capacity(residues.len());
-        for (place, residue) in residues.iter().enumerate() {
-            let product = &mut products[place % CHAINS];
-            before.push(*product);
-            *product = self.product(*product, *residue);
+        for residue in residues.iter() {
+            before.push(product);
+            product = self.product(product, *residue);
         }
-        let [a, b, c, d] = products;
-        let (lower, upper) = (self.product(a, b), self.product(c, d));
-        let all = self.product(lower, upper);
-        if all == 0 {
+        if product == 0 {
             return None;
         }
-        let inverse = self.inverse(all);
-        let (lower, upper) = (self.product(inverse, upper), self.product(inverse, lower));
-        let mut inverses = [
-            self.product(lower, b),
-            self.product(lower, a),
-            self.product(upper, d),
-            self.product(upper, c),
-        ];
-        for (place, (residue, before)) in residues.iter_mut().zip(before).enumerate().rev() {
-            let inverse = &mut inverses[place % CHAINS];
-            let next = self.product(*inverse, *residue);
-            *residue = self.product(*inverse, before);
-            *inverse = next;
+        let mut inverse = self.inverse(product);
+        for (residue, before) in residues.iter_mut().zip(before).rev() {
+            let next = self.product(inverse, *residue);
+            *residue = self.product(inverse, before);
+            inverse = next;
         }
         Some(())
     }

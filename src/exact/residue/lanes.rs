@@ -1,4 +1,4 @@
-//! Eight residues side by side, rows of them, and what sums their products.
+//! Eight residues side by side, and what sums their products.
 
 use pulp::NullaryFnOnce;
 
@@ -8,9 +8,9 @@ use super::Moduli;
 pub const WIDTH: usize = 8;
 
 /// Eight residues, of one prime or of eight.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 // One line of the cache, so that no load touches two.
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub struct Lanes(pub [u64; WIDTH]);
 
 impl Lanes {
@@ -61,59 +61,4 @@ pub trait Arithmetic: Copy + Send + Sync {
     fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes;
     /// Runs a function compiled for this processor.
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output;
-}
-
-/// Lanes in a table, row by row: for every point (or harmonic) one row, with an entry for each order.
-#[derive(Clone, Debug)]
-pub struct Rows {
-    rows: usize,
-    length: usize,
-    entries: Vec<Lanes>,
-}
-
-impl Rows {
-    /// Zeros.
-    pub fn new(rows: usize, length: usize) -> Self {
-        Self {
-            rows,
-            length,
-            entries: vec![Lanes::default(); rows * length],
-        }
-    }
-
-    /// How many rows there are.
-    #[inline(always)]
-    pub fn count(&self) -> usize {
-        self.rows
-    }
-
-    /// Where an order stands: in rows too short for all of them, instead of one before it.
-    #[inline(always)]
-    pub fn place(&self, order: usize) -> usize {
-        if order < self.length {
-            order
-        } else {
-            order % self.length
-        }
-    }
-
-    /// All entries of a row.
-    #[inline(always)]
-    pub fn row(&self, row: usize) -> &[Lanes] {
-        &self.entries[row.wrapping_mul(self.length)..][..self.length]
-    }
-
-    /// One entry, to be written.
-    #[inline(always)]
-    pub fn entry(&mut self, row: usize, place: usize) -> &mut Lanes {
-        &mut self.entries[row.wrapping_mul(self.length).wrapping_add(place)]
-    }
-
-    /// Writes the same place of the first rows.
-    #[inline(always)]
-    pub fn write(&mut self, place: usize, values: &[Lanes]) {
-        for (row, value) in self.entries.chunks_exact_mut(self.length.max(1)).zip(values) {
-            row[place] = *value;
-        }
-    }
 }

@@ -9,22 +9,26 @@
 //! ```
 //!
 //! A long exact computation is done modulo many primes, each by machine words alone, and put together at the end. In come
-//! [`Modulus`] and rows of [`Lanes`], eight residues side by side, most often of [eight primes](moduli); an [`Arithmetic`] says how eight
+//! [`Modulus`] and [`Tables`] of [`Lanes`], eight residues side by side, most often of [eight primes](moduli); an [`Arithmetic`] says how eight
 //! products at a time are summed, by the processor's wide multiply-add where it has one ([`wide`]) and by plain words elsewhere
 //! ([`portable`]), with the same results after the [remainders](remainder) are put together.
 
 pub mod lanes;
+pub mod memory;
 pub mod moduli;
 #[cfg(target_arch = "x86_64")]
 pub mod narrow;
 pub mod portable;
 pub mod remainder;
 pub mod sums;
+pub mod tables;
 #[cfg(target_arch = "x86_64")]
 pub mod wide;
 
-pub use lanes::{Arithmetic, Lanes, Rows, WIDTH};
+pub use lanes::{Arithmetic, Lanes, WIDTH};
+pub use memory::Memory;
 pub use moduli::{Moduli, Residues};
+pub use tables::Tables;
 
 use num_integer::Integer as _;
 use num_traits::ToPrimitive;

@@ -9,15 +9,15 @@ use num_traits::{One, Signed, Zero};
 use pulp::NullaryFnOnce;
 
 use super::sums::multiples;
-use super::{Arithmetic, Lanes, Moduli, Modulus, Rows, WIDTH};
+use super::{Arithmetic, Lanes, Moduli, Modulus, WIDTH};
 use crate::exact::Integer;
 
 /// Primes, and what brings residues modulo all of them together.
 pub struct Remainders<A> {
     arithmetic: A,
     moduli: Vec<Modulus>,
-    /// The digits of `M/p_i`, eight in a row, a column for each prime.
-    cofactors: Rows,
+    /// The digits of `M/p_i`, eight at a time: of all primes the first eight, then of all the next.
+    cofactors: Vec<Lanes>,
     /// The digits of `M`, as many as those.
     product: Vec<u64>,
     /// `(M/p_i)^-1` modulo `p_i`.
@@ -30,12 +30,14 @@ impl<A: Arithmetic> Remainders<A> {
     /// For these primes, at most 2^13.
     pub fn new(arithmetic: A, moduli: &[Modulus]) -> Self {
         let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-        let rows = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;
-        let mut cofactors = Rows::new(rows, moduli.len());
+        let blocks = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;
+        let mut cofactors = vec![Lanes::default(); blocks * moduli.len()];
         for (i, modulus) in moduli.iter().enumerate() {
             let cofactor = &product / Integer::from(modulus.prime);
-            for (row, digits) in digits::<A>(&cofactor, rows * WIDTH).chunks_exact(WIDTH).enumerate() {
-                cofactors.entry(row, i).0.copy_from_slice(digits);
+            let digits = digits::<A>(&cofactor, blocks * WIDTH);
+            let own = cofactors.iter_mut().skip(i).step_by(moduli.len());
+            for (own, digits) in own.zip(digits.chunks_exact(WIDTH)) {
+                own.0.copy_from_slice(digits);
             }
         }
         let mut inverses: Vec<u64> = Vec::with_capacity(moduli.len());
@@ -50,7 +52,7 @@ impl<A: Arithmetic> Remainders<A> {
             arithmetic,
             moduli: moduli.to_vec(),
             reciprocals: moduli.iter().map(|modulus| 1.0 / modulus.prime as f64).collect(),
-            product: digits::<A>(&product, rows * WIDTH),
+            product: digits::<A>(&product, blocks * WIDTH),
             cofactors,
             inverses,
         }
@@ -88,6 +90,7 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         const TOGETHER: usize = 4;
         let Self(remainders, residues, weights, numbers) = self;
         let arithmetic = remainders.arithmetic;
+        let count = remainders.moduli.len();
         let mut quotients = [0.0; WIDTH];
         let primes = weights.iter().zip(&remainders.moduli).zip(&remainders.reciprocals);
         for (own, ((weight, modulus), reciprocal)) in residues.iter_mut().zip(primes) {
@@ -107,7 +110,7 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         for (lot, (digits, product)) in digits.zip(remainders.product.chunks_exact(TOGETHER)).enumerate() {
             let (block, first) = (lot * TOGETHER / WIDTH, lot * TOGETHER % WIDTH);
             let mut sums = [arithmetic.none(); TOGETHER];
-            let columns = remainders.cofactors.row(block);
+            let columns = &remainders.cofactors[block * count..][..count];
             for (columns, residues) in columns.chunks(A::RUN).zip(residues.chunks(A::RUN)) {
                 for (column, residue) in columns.iter().zip(residues) {
                     let column = &column.0[first..first + TOGETHER];

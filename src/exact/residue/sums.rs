@@ -3,7 +3,7 @@
 
 use pulp::NullaryFnOnce;
 
-use super::{Arithmetic, Lanes, Residues, Rows};
+use super::{Arithmetic, Lanes, Residues, Tables};
 
 /// A product of two series, both and the product among the same tables.
 #[derive(Clone, Copy, Debug)]
@@ -28,9 +28,9 @@ pub const TOGETHER: usize = 8;
 /// [`TOGETHER`] of them and those that are asked for later. Cost: a multiplication for each pair of
 /// orders and each point, half of them for a square.
 #[inline(always)]
-pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tables: &mut [Rows], order: usize) {
-    struct Convolve<'a, A>(&'a Residues<A>, &'a [Product], &'a mut [Rows], usize);
-    impl<A: Arithmetic> NullaryFnOnce for Convolve<'_, A> {
+pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tables: &mut Tables, order: usize) {
+    struct Convolve<'a, 'm, A>(&'a Residues<A>, &'a [Product], &'a mut Tables<'m>, usize);
+    impl<A: Arithmetic> NullaryFnOnce for Convolve<'_, '_, A> {
         type Output = ();
         #[inline(always)]
         fn call(self) {
@@ -43,7 +43,7 @@ pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tab
                 order - order % TOGETHER
             };
             // Point by point: what one product has read, the next finds in the cache.
-            for point in 0..tables.first().map_or(0, Rows::count) {
+            for point in 0..tables.rows() {
                 if order == start && start > 0 {
                     for product in products {
                         if order <= product.needed {
@@ -55,8 +55,8 @@ pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tab
                     if order > product.needed {
                         continue;
                     }
-                    let left = &tables[product.left].row(point)[..=order];
-                    let right = &tables[product.right].row(point)[..=order];
+                    let left = &tables.row(product.left, point)[..=order];
+                    let right = &tables.row(product.right, point)[..=order];
                     let square = product.left == product.right;
                     let sum = if start == 0 {
                         match square {
@@ -70,12 +70,12 @@ pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tab
                             true => first,
                             false => pairs(arithmetic, &left[start..], &right[..recent]),
                         };
-                        let before = &tables[product.to].row(point)[tables[product.to].place(order)];
+                        let before = &tables.row(product.to, point)[tables.place(product.to, order)];
                         let sum = arithmetic.carry(arithmetic.merge(first, last));
                         arithmetic.add_product(sum, &residues.moduli.one, before)
                     };
-                    let to = &mut tables[product.to];
-                    *to.entry(point, to.place(order)) = residues.reduce(sum);
+                    let place = tables.place(product.to, order);
+                    *tables.entry(product.to, point, place) = residues.reduce(sum);
                 }
             }
         }
@@ -87,12 +87,12 @@ pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tab
 
 /// The part of a product at the orders from `start` on in which both factors are of orders before it.
 #[inline(always)]
-fn prepare<A: Arithmetic>(residues: &Residues<A>, product: &Product, tables: &mut [Rows], point: usize, start: usize) {
+fn prepare<A: Arithmetic>(residues: &Residues<A>, product: &Product, tables: &mut Tables, point: usize, start: usize) {
     let arithmetic = residues.arithmetic;
-    let (orders, place) = (tables[product.to].row(point).len(), tables[product.to].place(start));
+    let (orders, place) = (tables.row(product.to, point).len(), tables.place(product.to, start));
     for first in [start, start + TOGETHER / 2] {
-        let left = &tables[product.left].row(point)[..start];
-        let right = &tables[product.right].row(point)[..start];
+        let left = &tables.row(product.left, point)[..start];
+        let right = &tables.row(product.right, point)[..start];
         let mut sums = [arithmetic.none(); 4];
         // Of a square the terms below the middle, twice, and the middle.
         let square = product.left == product.right;
@@ -113,7 +113,7 @@ fn prepare<A: Arithmetic>(residues: &Residues<A>, product: &Product, tables: &mu
         for (k, sum) in sums.into_iter().enumerate() {
             let place = place + (first - start) + k;
             if place < orders {
-                *tables[product.to].entry(point, place) = residues.reduce(sum);
+                *tables.entry(product.to, point, place) = residues.reduce(sum);
             }
         }
     }
@@ -232,14 +232,13 @@ pub struct Part {
 
 /// `out = sum of factor table_order` over a few parts, at every point.
 #[inline(always)]
-pub fn mixture<A: Arithmetic>(residues: &Residues<A>, parts: &[Part], tables: &[Rows], out: &mut [Lanes]) {
+pub fn mixture<A: Arithmetic>(residues: &Residues<A>, parts: &[Part], tables: &Tables, out: &mut [Lanes]) {
     let arithmetic = residues.arithmetic;
     for (point, out) in out.iter_mut().enumerate() {
         let mut sum = arithmetic.none();
         for parts in parts.chunks(A::RUN) {
             for part in parts {
-                let table = &tables[part.table];
-                let entry = &table.row(point)[table.place(part.order)];
+                let entry = &tables.row(part.table, point)[tables.place(part.table, part.order)];
                 sum = arithmetic.add_product(sum, &part.factor, entry);
             }
             sum = arithmetic.carry(sum);
@@ -252,13 +251,14 @@ pub fn mixture<A: Arithmetic>(residues: &Residues<A>, parts: &[Part], tables: &[
 #[inline(always)]
 pub fn vary<A: Arithmetic>(
     residues: &Residues<A>,
-    (table, order): (&mut Rows, usize),
+    tables: &mut Tables,
+    (table, order): (usize, usize),
     factor: Lanes,
     change: &[Lanes],
 ) {
-    let place = table.place(order);
+    let place = tables.place(table, order);
     for (point, change) in change.iter().enumerate() {
-        let entry = table.entry(point, place);
+        let entry = tables.entry(table, point, place);
         *entry = residues.sum(*entry, residues.product(factor, *change));
     }
 }

@@ -19,7 +19,7 @@ use crate::exact::Rational;
 use crate::exact::residue::sums::{
     Part, TOGETHER, add_multiple, convolve, mixture, multiply, reversed_products, subtract, vary,
 };
-use crate::exact::residue::{Arithmetic, Lanes, Moduli, Modulus, Residues, Rows};
+use crate::exact::residue::{Arithmetic, Lanes, Moduli, Modulus, Residues, Tables};
 use crate::interrupt::Interrupt;
 use crate::series::waves::{Wave, Waves};
 use crate::solution::AmplitudeConvention;
@@ -54,11 +54,11 @@ pub(super) struct Recursion<'a, A> {
     plan: &'a Plan<'a>,
     interrupt: Interrupt,
     /// Values at the points, an entry for each order; of a product that is no factor of another the latest alone.
-    tables: Vec<Rows>,
+    tables: Tables<'a>,
     /// The coefficients of the harmonics of all orders.
-    motion: Harmonics,
+    motion: Harmonics<'a>,
     /// Those of the derivative of all terms with one velocity.
-    damped: Harmonics,
+    damped: Harmonics<'a>,
     frequency_squared: Vec<Lanes>,
     frequency: Vec<Lanes>,
     of_amplitude: Option<Variation>,
@@ -208,12 +208,8 @@ impl<A: Arithmetic> NullaryFnOnce for Plain<'_, '_, A> {
     #[inline(always)]
     fn call(self) {
         let Self(recursion, residues) = self;
-        for rows in &mut recursion.motion.0 {
-            for row in rows {
-                for own in row {
-                    *own = residues.plain(*own);
-                }
-            }
+        for own in recursion.motion.entries() {
+            *own = residues.plain(*own);
         }
         for constants in [&mut recursion.frequency_squared, &mut recursion.frequency] {
             for own in constants {
@@ -236,12 +232,19 @@ impl<A: Arithmetic> NullaryFnOnce for Expand<'_, '_, A> {
 }
 
 impl<'a, A: Arithmetic> Recursion<'a, A> {
-    /// Room for all orders.
-    pub fn new(arithmetic: A, plan: &'a Plan, interrupt: Interrupt) -> Self {
+    /// How much room all orders take.
+    pub fn room(plan: &Plan) -> usize {
+        let tables = Tables::room(plan.grid.size(), &Self::lengths(plan));
+        tables
+            + Self::harmonics(plan)
+                .map(|count| Harmonics::room(plan, count))
+                .iter()
+                .sum::<usize>()
+    }
+
+    /// The entries in a row of each table.
+    fn lengths(plan: &Plan) -> Vec<usize> {
         let orders = plan.last + 1;
-        let points = plan.grid.size();
-        let harmonics = plan.most_harmonics();
-        let none = Lanes::default();
         let furthest = plan.terms.iter().map(|term| term.order).max().unwrap_or(0);
         let latest = orders.min((TOGETHER + furthest).next_multiple_of(TOGETHER));
         let mut lengths = vec![orders; plan.tables];
@@ -251,14 +254,34 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         for product in plan.products.iter().chain(plan.sine_products()) {
             (lengths[product.left], lengths[product.right]) = (orders, orders);
         }
+        lengths
+    }
+
+    /// How many harmonics are kept of the motion, and of the terms with one velocity.
+    fn harmonics(plan: &Plan) -> [usize; 2] {
         let has_damping = plan.of_terms.iter().any(|(_, derivative)| *derivative);
+        [
+            plan.most_harmonics(),
+            if has_damping { plan.most_harmonics() } else { 0 },
+        ]
+    }
+
+    /// All orders in that much [room](Self::room).
+    pub fn new(arithmetic: A, plan: &'a Plan<'a>, interrupt: Interrupt, memory: &'a mut [Lanes]) -> Self {
+        let orders = plan.last + 1;
+        let points = plan.grid.size();
+        let none = Lanes::default();
+        let lengths = Self::lengths(plan);
+        let (tables, rest) = memory.split_at_mut(Tables::room(points, &lengths));
+        let [harmonics, of_damped] = Self::harmonics(plan);
+        let (motion, damped) = rest.split_at_mut(Harmonics::room(plan, harmonics));
         Self {
             arithmetic,
             plan,
             interrupt,
-            tables: lengths.iter().map(|length| Rows::new(points, *length)).collect(),
-            motion: Harmonics::new(plan, harmonics),
-            damped: Harmonics::new(plan, if has_damping { harmonics } else { 0 }),
+            tables: Tables::new(points, &lengths, tables),
+            motion: Harmonics::new(plan, harmonics, motion),
+            damped: Harmonics::new(plan, of_damped, damped),
             frequency_squared: Vec::with_capacity(orders),
             frequency: Vec::with_capacity(orders),
             of_amplitude: None,
@@ -454,7 +477,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     fn prepare_sine(&mut self, field: &Field<A>, order: usize) {
         if let Some((sine, _)) = &self.plan.sine {
             self.values.fill(Lanes::default());
-            self.tables[sine.scaled].write(order, &self.values);
+            self.tables.write(sine.scaled, order, &self.values);
             let products = std::slice::from_ref(&sine.of_sine);
             convolve(&field.residues, products, &mut self.tables, order);
         }
@@ -477,7 +500,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             0 => {
                 self.form(residues, &[whole], (sine.sine, 0));
                 self.values.fill(residues.one());
-                self.tables[sine.cosine].write(0, &self.values);
+                self.tables.write(sine.cosine, 0, &self.values);
             }
             _ => self.form(residues, &[factors.sine(sine, order), whole], (sine.sine, order)),
         }
@@ -492,7 +515,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     #[inline(always)]
     fn form(&mut self, residues: &Residues<A>, parts: &[Part], (table, order): (usize, usize)) {
         mixture(residues, parts, &self.tables, &mut self.values);
-        self.tables[table].write(order, &self.values);
+        self.tables.write(table, order, &self.values);
     }
 
     /// `out = sum over i in range of frequency_(order-i) series_i`, where orders of the other symmetry are zero.
@@ -544,8 +567,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
         let secular = residues.negative(self.right_side[resonant]);
         let amplitude = residues.product(secular, variation.inverse_slope);
-        for (table, change) in self.tables.iter_mut().zip(&variation.tables) {
-            vary(residues, (table, order - 1), amplitude, change);
+        for (table, change) in variation.tables.iter().enumerate() {
+            vary(residues, &mut self.tables, (table, order - 1), amplitude, change);
         }
         add_multiple(residues, &mut self.right_side, amplitude, &variation.plain);
         let minus = residues.negative(amplitude);
@@ -594,7 +617,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let displacement = &self.right_side[..count];
         self.motion.push(plan, order, displacement);
         field.waves.values(&residues, wave, displacement, &mut self.values);
-        self.tables[0].write(order, &self.values);
+        self.tables.write(0, order, &self.values);
         if plan.has_velocity {
             let mut change = std::mem::take(&mut self.change);
             let own = &mut change[..count];
@@ -604,7 +627,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             }
             multiply(&residues, own, field.factors.derivative(wave));
             field.waves.values(&residues, wave.other(), own, &mut self.values);
-            self.tables[1].write(order, &self.values);
+            self.tables.write(1, order, &self.values);
             self.change = change;
         }
         convolve(&residues, &plan.products, &mut self.tables, order);
@@ -619,10 +642,10 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let none = Lanes::default();
         let mut tables: Vec<Vec<Lanes>> = Vec::with_capacity(plan.tables);
         // Of y and of omega y': themselves.
-        for table in &self.tables[..1 + usize::from(plan.has_velocity)] {
+        for table in 0..1 + usize::from(plan.has_velocity) {
             let mut change = vec![none; points];
             for (point, change) in change.iter_mut().enumerate() {
-                *change = table.row(point)[0];
+                *change = self.tables.row(table, point)[0];
             }
             tables.push(change);
         }
@@ -630,7 +653,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             let mut change = vec![none; points];
             for (one, other) in [(product.left, product.right), (product.right, product.left)] {
                 for (point, sum) in change.iter_mut().enumerate() {
-                    let value = self.tables[other].row(point)[0];
+                    let value = self.tables.row(other, point)[0];
                     *sum = residues.sum(*sum, residues.product(tables[one][point], value));
                 }
             }

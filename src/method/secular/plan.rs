@@ -257,46 +257,89 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each symmetry of its own.
-pub(super) struct Harmonics(pub [Vec<Vec<Lanes>>; 2]);
+/// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each symmetry of its own, all in one memory.
+pub(super) struct Harmonics<'m> {
+    rows: [Vec<Row>; 2],
+    entries: &'m mut [Lanes],
+}
 
-impl Harmonics {
-    pub fn new(plan: &Plan, count: usize) -> Self {
-        let rows = |parity: usize| {
-            let room = |index| (plan.last + 1).saturating_sub(plan.first(index, parity)) / plan.step() + 1;
-            (0..count).map(|index| Vec::with_capacity(room(index))).collect()
+/// Where a row begins, and how many of its orders there are.
+#[derive(Clone, Copy)]
+struct Row {
+    begin: usize,
+    length: usize,
+}
+
+impl<'m> Harmonics<'m> {
+    /// How many entries so many harmonics have.
+    pub fn room(plan: &Plan, count: usize) -> usize {
+        let parities = 0..plan.step();
+        parities
+            .map(|parity| (0..count).map(|index| Self::orders(plan, index, parity)).sum::<usize>())
+            .sum()
+    }
+
+    /// The orders of a symmetry at which a harmonic need not be zero.
+    fn orders(plan: &Plan, index: usize, parity: usize) -> usize {
+        (plan.last + 1)
+            .saturating_sub(plan.first(index, parity))
+            .div_ceil(plan.step())
+    }
+
+    /// So many harmonics, in that much [room](Self::room).
+    pub fn new(plan: &Plan, count: usize, entries: &'m mut [Lanes]) -> Self {
+        let mut end = 0;
+        let mut rows = |parity: usize| -> Vec<Row> {
+            let row = |index| {
+                let begin = end;
+                end += Self::orders(plan, index, parity);
+                Row { begin, length: 0 }
+            };
+            (0..count).map(row).collect()
         };
-        Self([rows(0), if plan.step() == 2 { rows(1) } else { vec![] }])
+        Self {
+            rows: [rows(0), if plan.step() == 2 { rows(1) } else { vec![] }],
+            entries,
+        }
     }
 
     pub fn clear(&mut self) {
-        self.0.iter_mut().flatten().for_each(Vec::clear);
+        self.rows.iter_mut().flatten().for_each(|row| row.length = 0);
     }
 
-    fn rows(&mut self, order: usize) -> &mut Vec<Vec<Lanes>> {
-        let parity = if self.0[1].is_empty() { 0 } else { order % 2 };
-        &mut self.0[parity]
+    /// All that there is.
+    pub fn entries(&mut self) -> impl Iterator<Item = &mut Lanes> {
+        self.entries.iter_mut()
+    }
+
+    fn parity(&self, order: usize) -> usize {
+        if self.rows[1].is_empty() { 0 } else { order % 2 }
     }
 
     /// The coefficients of the next order.
     pub fn push(&mut self, plan: &Plan, order: usize, coefficients: &[Lanes]) {
-        for (index, (row, coefficient)) in self.rows(order).iter_mut().zip(coefficients).enumerate() {
+        let parity = self.parity(order);
+        for (index, (row, coefficient)) in self.rows[parity].iter_mut().zip(coefficients).enumerate() {
             if plan.first(index, order) <= order {
-                row.push(*coefficient);
+                self.entries[row.begin + row.length] = *coefficient;
+                row.length += 1;
             }
         }
     }
 
     /// The last order of a symmetry.
     pub fn last(&mut self, order: usize, index: usize) -> Option<&mut Lanes> {
-        self.rows(order).get_mut(index)?.last_mut()
+        let row = self.rows[self.parity(order)].get(index)?;
+        let last = row.length.checked_sub(1)?;
+        self.entries.get_mut(row.begin + last)
     }
 
     /// The first order of a row and its entries, for the symmetry of an order.
     #[inline(always)]
     pub fn row(&self, plan: &Plan, index: usize, order: usize) -> (usize, &[Lanes]) {
         let parity = if plan.step() == 2 { order % 2 } else { 0 };
-        (plan.first(index, order), &self.0[parity][index])
+        let row = self.rows[parity][index];
+        (plan.first(index, order), &self.entries[row.begin..][..row.length])
     }
 
     pub fn at(&self, plan: &Plan, index: usize, order: usize) -> Lanes {

@@ -23,7 +23,7 @@ use super::orders::{Order, expansion};
 use super::plan::{Plan, Term};
 use super::{Amplitude, Expansion, ForceTerm, Scheme, fixed_width};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
+use crate::exact::residue::{Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Rational};
 use crate::interrupt::Supervision;
 use crate::series::fourier::fraction as in_lowest_terms;
@@ -275,7 +275,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let this = &*self;
         let interrupt = this.supervision.interrupt;
         let lot = |places: &[usize]| -> Option<Vec<Image>> {
-            let mut recursion = Recursion::new(this.arithmetic, this.plan, interrupt);
+            let mut memory = Memory::zeroed(Recursion::<A>::room(this.plan));
+            let mut recursion = Recursion::new(this.arithmetic, this.plan, interrupt, memory.lanes());
             let mut images = Vec::with_capacity(places.len());
             for eight in places.chunks(WIDTH) {
                 let primes = &this.primes[eight[0]..eight[0] + eight.len()];

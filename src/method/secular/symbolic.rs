@@ -27,7 +27,7 @@ use super::modular::{Field, Recursion};
 use super::plan::{Plan, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
+use crate::exact::residue::{Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
 use crate::interrupt::Supervision;
 use crate::series::FourierSeries;
@@ -287,7 +287,8 @@ impl<A: Arithmetic> Search<'_, A> {
     /// The numbers of all orders at these points, as far as the work is not stopped.
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
         let mut field = Field::new(self.arithmetic, self.plan, &[modulus])?;
-        let mut recursion = Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt);
+        let mut memory = Memory::zeroed(Recursion::<A>::room(self.plan));
+        let mut recursion = Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt, memory.lanes());
         let own = std::mem::take(&mut field.coefficients);
         let mut coefficients = own.clone();
         let mut found = Vec::with_capacity(points.len());

@@ -1,0 +1,73 @@
+//! Tables of lanes: a row of each for every point, with an entry for each order.
+
+use super::Lanes;
+
+/// Several tables with as many rows each, in one memory, where the rows of a point stand one after the other: what is formed of them
+/// at a point is formed of what lies together.
+pub struct Tables<'m> {
+    rows: usize,
+    /// From a row to the next of the same table.
+    stride: usize,
+    /// Where the rows of each table begin behind those of the tables before it, and their length.
+    places: Vec<(usize, usize)>,
+    entries: &'m mut [Lanes],
+}
+
+impl<'m> Tables<'m> {
+    /// How many entries tables with rows of these lengths have.
+    pub fn room(rows: usize, lengths: &[usize]) -> usize {
+        rows * lengths.iter().sum::<usize>()
+    }
+
+    /// Tables with rows of these lengths, in that much [room](Self::room).
+    pub fn new(rows: usize, lengths: &[usize], entries: &'m mut [Lanes]) -> Self {
+        let mut stride = 0;
+        let mut places = Vec::with_capacity(lengths.len());
+        for length in lengths {
+            places.push((stride, *length));
+            stride += length;
+        }
+        Self {
+            rows,
+            stride,
+            places,
+            entries,
+        }
+    }
+
+    /// How many rows each table has.
+    #[inline(always)]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Where an order stands in a table: in rows too short for all of them, instead of one before it.
+    #[inline(always)]
+    pub fn place(&self, table: usize, order: usize) -> usize {
+        let length = self.places[table].1;
+        if order < length { order } else { order % length }
+    }
+
+    /// All entries of a row.
+    #[inline(always)]
+    pub fn row(&self, table: usize, row: usize) -> &[Lanes] {
+        let (begin, length) = self.places[table];
+        &self.entries[row.wrapping_mul(self.stride).wrapping_add(begin)..][..length]
+    }
+
+    /// One entry, to be written.
+    #[inline(always)]
+    pub fn entry(&mut self, table: usize, row: usize, place: usize) -> &mut Lanes {
+        let begin = self.places[table].0;
+        &mut self.entries[row.wrapping_mul(self.stride).wrapping_add(begin).wrapping_add(place)]
+    }
+
+    /// Writes the same place of the first rows.
+    #[inline(always)]
+    pub fn write(&mut self, table: usize, place: usize, values: &[Lanes]) {
+        let begin = self.places[table].0;
+        for (row, value) in self.entries.chunks_exact_mut(self.stride.max(1)).zip(values) {
+            row[begin + place] = *value;
+        }
+    }
+}

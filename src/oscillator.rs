@@ -699,6 +699,13 @@ impl PerturbedForce {
         }
     }
 
+    /// A coefficient that belongs to the force, written as its [terms](Self::write_with_frequency) are, where that can be done.
+    pub(crate) fn written_with_frequency(&self, coefficient: Polynomial, names: &[Symbol]) -> Polynomial {
+        let (_, root) = self.linear_frequency(names);
+        let written = root.and_then(|root| self.with_frequency(&coefficient, root.symbol));
+        written.unwrap_or(coefficient)
+    }
+
     /// `None` where a product has other powers of the parameters than the linear force or a power of it.
     fn with_frequency(&self, coefficient: &Polynomial, frequency: Symbol) -> Option<Polynomial> {
         let (linear, number) = self.linear.single_term()?;

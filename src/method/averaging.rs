@@ -516,9 +516,15 @@ impl Projected {
         }
         let omega0 = Expr::from(&omega0);
         let terms = small.first_order()?;
+        let restoring = linear.linear_in_full();
         let (mut sines, mut cosines) = (vec![], vec![]);
         for term in terms.terms() {
-            let Some([sine, cosine]) = projections::of_term(term, oscillator.coordinate, amplitude, &omega0) else {
+            let in_frequency = match root {
+                Some(_) => with_frequency(term, &restoring, &omega0)?,
+                None => None,
+            };
+            let written = in_frequency.as_ref().unwrap_or(term);
+            let Some([sine, cosine]) = projections::of_term(written, oscillator.coordinate, amplitude, &omega0) else {
                 let term = term.clone().into();
                 return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
             };
@@ -547,6 +553,17 @@ impl Projected {
             Line::equation(letters.of("g", 1), self.terms.clone()).because("the small terms are"),
         ])
     }
+}
+
+/// A term with `omega0^2` for the coefficient of the linear force, where it is a multiple of that, as `g/L sin(x)` is of `g/L`.
+fn with_frequency(term: &Expr, linear: &Expr, omega0: &Expr) -> Result<Option<Expr>, ExprError> {
+    let letters = linear.symbols();
+    let has_any = |term: &Expr| letters.iter().any(|&letter| term.contains(letter));
+    if !has_any(term) {
+        return Ok(None);
+    }
+    let quotient = Expr::divide(term, linear)?;
+    Ok((!has_any(&quotient)).then(|| omega0 * omega0 * quotient))
 }
 
 /// The first order of any force whose terms have closed projections.

@@ -101,7 +101,7 @@ impl UnderDrive<'_> {
     /// # Errors
     /// A term that is no polynomial, nothing restores, powers that are too high.
     fn scaling(&self, order: u32) -> Result<Scaling, Refusal> {
-        let force = match self.small.expand(order) {
+        let mut force = match self.small.expand(order) {
             Ok(force) => force,
             Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_)) => {
                 self.small.linear_part()?;
@@ -112,6 +112,7 @@ impl UnderDrive<'_> {
         };
         let powers = force.terms.iter().map(|term| term.position + term.velocity);
         bounded(powers, order)?;
+        force.write_with_frequency(&self.oscillator.names());
         let (small, small_with, _) = small_in_words(&self.small, order);
         Ok(Scaling {
             force,

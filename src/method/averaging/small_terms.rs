@@ -47,8 +47,23 @@ impl SmallTerms {
             .terms()
             .iter()
             .partition(|term| is_linear(term) && first.is_none_or(|name| !term.contains(name)));
+        let x = oscillator.coordinate;
+        let slopes = others.iter().filter(|term| !term.contains(oscillator.velocity()));
+        let slopes = slopes.filter_map(|term| {
+            let series = taylor(term, &[(x, Rational::zero())], 1).ok()?;
+            series.get(1).cloned()
+        });
+        let slopes: Vec<Expr> = slopes.collect();
+        // Where a function alone restores, as in k*sin(x), the letter before it is not small: its vanishing leaves nothing.
+        let function_restores = linear.is_empty() && !Expr::sum(slopes.iter().cloned()).expand()?.is_zero();
         let found = match asked {
             Some(SmallParameter::Amplitude) => Err(None),
+            _ if function_restores => {
+                let mut left = others
+                    .iter()
+                    .filter(|term| first.is_none_or(|name| !term.contains(name)));
+                Err(left.next().map(|&term| term.clone()))
+            }
             _ => letters(&linear, &others, &oscillator.parameters, first).map_err(Some),
         };
         if let (Some(name), Err(Some(term))) = (first, &found) {
@@ -78,12 +93,6 @@ impl SmallTerms {
             }
             split.letters.clear();
         }
-        let x = oscillator.coordinate;
-        let slopes = others.iter().filter(|term| !term.contains(oscillator.velocity()));
-        let slopes = slopes.filter_map(|term| {
-            let series = taylor(term, &[(x, Rational::zero())], 1).ok()?;
-            series.get(1).cloned()
-        });
         split.linear = Expr::sum(linear.into_iter().cloned().chain(slopes)).expand()?;
         let rest = (&expanded - &split.linear).expand()?;
         split.marked.force = &split.linear + &(&Expr::from(delta) * &rest);

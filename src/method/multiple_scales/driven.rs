@@ -51,7 +51,9 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
             ..options.clone()
         };
         let scaling = scaling(&free, &parts, &options, [1, 2], [HIGHEST, 2 * HIGHEST])?;
-        Ok(scaling.spelt_out(&oscillator.names()))
+        let mut scaling = scaling.spelt_out(&oscillator.names());
+        scaling.force.write_with_frequency(&oscillator.names());
+        Ok(scaling)
     };
     let asked = Asked {
         method: Method::MultipleScales,
@@ -258,11 +260,13 @@ impl<'a> Question<'a> {
             Ok(written) if written > 0 && self.scaling.marker.is_some() => written,
             _ => natural.max(self.small_order()),
         };
+        let coefficient = Polynomial::term(rest, number.clone());
+        let names = self.oscillator.names();
         Ok(DrivenTerm {
             order,
             position,
             velocity,
-            coefficient: Polynomial::term(rest, number.clone()),
+            coefficient: self.scaling.force.written_with_frequency(coefficient, &names),
             drive: Some((self.resonance.0 as i32, driven.quadrature)),
         })
     }
@@ -322,7 +326,10 @@ impl<'a> Question<'a> {
             if factors.is_empty() {
                 continue;
             }
-            let linear = Expr::from(&self.scaling.force.linear);
+            let linear = match &self.root {
+                Some(root) => Expr::from(root.symbol).integer_power(2)?,
+                None => Expr::from(&self.scaling.force.linear),
+            };
             let squared = Expr::product([self.drive.frequency.clone(), self.drive.frequency.clone()]);
             let below = &Expr::from(2) * &(&linear - &squared);
             // The drive stands on the left side of the equation.

@@ -445,6 +445,11 @@ impl Oscillator {
         if self.parameters.contains(&eps) {
             return Ok(SmallParameter::Parameter(eps));
         }
+        let own = [self.coordinate, self.velocity(), Symbol::new("t")];
+        let stiffness = self.stiffness();
+        if own.iter().all(|&name| !stiffness.contains(name)) {
+            return Ok(SmallParameter::Amplitude);
+        }
         let candidates: Vec<Symbol> = self
             .parameters
             .iter()
@@ -454,8 +459,36 @@ impl Oscillator {
         match candidates.as_slice() {
             [] => Ok(SmallParameter::Amplitude),
             [only] => Ok(SmallParameter::Parameter(*only)),
-            _ => Err(OscillatorError::AmbiguousSmallParameter(candidates)),
+            [first, others @ ..] => match others.iter().all(|other| self.stand_together(*first, *other)) {
+                // Either gives the same orders; a Greek letter is the likelier one.
+                true => Ok(SmallParameter::Parameter(
+                    candidates
+                        .iter()
+                        .copied()
+                        .find(|name| name.is_greek())
+                        .unwrap_or(*first),
+                )),
+                false => Err(OscillatorError::AmbiguousSmallParameter(candidates)),
+            },
         }
+    }
+
+    /// Whether two parameters occur as factors alone, with the same powers in every term, as in `mu*N*sgn(x')`.
+    fn stand_together(&self, one: Symbol, other: Symbol) -> bool {
+        let power = |term: &Expr, name: Symbol| {
+            let (_, factors) = term.factors();
+            let mut powers = factors.iter().filter(|factor| factor.contains(name));
+            match powers.next() {
+                None => Some(Expr::zero()),
+                Some(factor) => {
+                    let (base, exponent) = factor.base_and_exponent();
+                    let alone = powers.next().is_none() && !exponent.contains(name);
+                    (alone && base.as_symbol() == Some(name)).then(|| exponent.clone())
+                }
+            }
+        };
+        let alike = |term: &Expr| power(term, one).is_some_and(|own| Some(own) == power(term, other));
+        self.force.expand().is_ok_and(|force| force.terms().iter().all(alike))
     }
 
     /// The degree of the force in the coordinate, where it is a polynomial in it.
@@ -682,39 +715,53 @@ impl PerturbedForce {
         )
     }
 
-    /// Writes the terms in powers of the linear frequency where that leaves none of the parameters under its root: of
+    /// Writes the terms in powers of the linear frequency where a parameter under its root is left in none of them: of
     /// `omega0^2 = g/L` and `g*sin(x)/L` all that is left is `omega0^2 sin(x)`.
     pub(crate) fn write_with_frequency(&mut self, names: &[Symbol]) {
         let (_, Some(root)) = self.linear_frequency(names) else {
             return;
         };
-        let written = self
-            .terms
-            .iter()
-            .map(|term| self.with_frequency(&term.coefficient, root.symbol));
-        if let Some(written) = written.collect::<Option<Vec<Polynomial>>>() {
-            for (term, coefficient) in self.terms.iter_mut().zip(written) {
-                term.coefficient = coefficient;
+        for letter in self.letters_under_root() {
+            let terms = self.terms.iter();
+            let written = terms.map(|term| self.with_frequency(&term.coefficient, letter, root.symbol));
+            if let Some(written) = written.collect::<Option<Vec<Polynomial>>>() {
+                for (term, coefficient) in self.terms.iter_mut().zip(written) {
+                    term.coefficient = coefficient;
+                }
+                return;
             }
         }
     }
 
+    /// The parameters of a linear force that is a single product.
+    fn letters_under_root(&self) -> Vec<Symbol> {
+        let product = self.linear.single_term();
+        product.map_or_else(Vec::new, |(monomial, _)| {
+            monomial.factors().iter().map(|(symbol, _)| *symbol).collect()
+        })
+    }
+
     /// A coefficient that belongs to the force, written as its [terms](Self::write_with_frequency) are, where that can be done.
     pub(crate) fn written_with_frequency(&self, coefficient: Polynomial, names: &[Symbol]) -> Polynomial {
-        let (_, root) = self.linear_frequency(names);
-        let written = root.and_then(|root| self.with_frequency(&coefficient, root.symbol));
+        let (_, Some(root)) = self.linear_frequency(names) else {
+            return coefficient;
+        };
+        let mut letters = self.letters_under_root().into_iter();
+        let written = letters.find_map(|letter| self.with_frequency(&coefficient, letter, root.symbol));
         written.unwrap_or(coefficient)
     }
 
-    /// `None` where a product has other powers of the parameters than the linear force or a power of it.
-    fn with_frequency(&self, coefficient: &Polynomial, frequency: Symbol) -> Option<Polynomial> {
+    /// Without a letter of the linear force, whose power says that of the force; `None` where another of its letters is there more often
+    /// than before.
+    fn with_frequency(&self, coefficient: &Polynomial, letter: Symbol, frequency: Symbol) -> Option<Polynomial> {
         let (linear, number) = self.linear.single_term()?;
-        let (first, unit) = *linear.factors().first()?;
+        let unit = linear.exponent(letter);
         let mut written = Polynomial::zero();
         for (monomial, own) in coefficient.terms() {
-            let power = monomial.exponent(first) / unit;
+            let power = monomial.exponent(letter) / unit;
             let rest = monomial.product(&linear.power(-power));
-            if linear.factors().iter().any(|(symbol, _)| rest.exponent(*symbol) != 0) {
+            let more = |symbol: Symbol| rest.exponent(symbol).abs() > monomial.exponent(symbol).abs();
+            if rest.exponent(letter) != 0 || linear.factors().iter().any(|(symbol, _)| more(*symbol)) {
                 return None;
             }
             let scale = num_traits::pow::Pow::pow(number, -power);

@@ -55,6 +55,12 @@ impl Symbol {
         self.0.len() - self.0.trim_end_matches('\'').len()
     }
 
+    /// Whether the name is that of a Greek letter, with an index or without.
+    pub(crate) fn is_greek(self) -> bool {
+        let stem = self.0.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        GREEK.contains(&stem.trim_end_matches('_'))
+    }
+
     /// The name without its primes: the coordinate itself.
     pub fn coordinate(self) -> Self {
         Self::new(self.0.trim_end_matches('\''))

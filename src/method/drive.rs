@@ -7,9 +7,13 @@
 //! Time begins where the first wave does: of the others the phase beside that of the first counts,
 //! `cos(theta + delta) = cos(delta) cos(theta) - sin(delta) sin(theta)`.
 
+use num_traits::Zero;
+
 use super::{Refusal, Unsuited};
+use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Parts;
+use crate::series::taylor::taylor;
 use crate::solution::{Definition, Method};
 use crate::symbol::{Symbol, fresh_stem};
 
@@ -30,6 +34,8 @@ pub(super) struct Driven {
     /// What stands before the wave.
     pub(super) factor: Expr,
     pub(super) quadrature: Quadrature,
+    /// Of a [series](Drive::in_small_motions), by how much its degree is above that of the first term.
+    pub(super) above: u32,
     /// The whole term, for messages.
     pub(super) term: Expr,
 }
@@ -48,6 +54,29 @@ impl Driven {
     pub(super) fn is_force(&self, coordinate: Symbol) -> bool {
         let own = [coordinate, coordinate.derivative()];
         own.iter().all(|&name| !self.factor.contains(name))
+    }
+
+    /// The terms of the series of the factor about rest; `None` where it is a polynomial already, or has none.
+    fn in_small_motions(&self, coordinate: Symbol, degree: u32) -> Option<Vec<Self>> {
+        if self.factor.to_polynomial(&mut |_| None).ok()?.is_some() {
+            return None;
+        }
+        let rest = [coordinate, coordinate.derivative()].map(|name| (name, Rational::zero()));
+        let parts = taylor(&self.factor, &rest, degree).ok()?;
+        let first = parts.iter().position(|part| !part.is_zero())?;
+        let mut terms = vec![];
+        for (power, part) in parts.iter().enumerate().skip(first) {
+            let polynomial = part.to_polynomial(&mut |_| None).ok()??;
+            for (monomial, number) in polynomial.terms() {
+                terms.push(Self {
+                    factor: Expr::from(&Polynomial::term(monomial.clone(), number.clone())),
+                    quadrature: self.quadrature,
+                    above: u32::try_from(power - first).ok()?,
+                    term: self.term.clone(),
+                });
+            }
+        }
+        Some(terms)
     }
 }
 
@@ -77,6 +106,20 @@ impl Drive {
         Ok(drive)
     }
 
+    /// The same with functions of the motion as their series about rest, up to a degree: `h sin(x) cos(Omega t)` of a shaken pendulum.
+    /// What has no such series stays as it is.
+    pub(super) fn in_small_motions(mut self, coordinate: Symbol, degree: u32) -> Self {
+        self.terms = self
+            .terms
+            .into_iter()
+            .flat_map(|driven| match driven.in_small_motions(coordinate, degree) {
+                Some(series) => series,
+                None => vec![driven],
+            })
+            .collect();
+        self
+    }
+
     /// The argument of the waves: `Omega t + phi`.
     pub(super) fn angle(&self) -> Expr {
         &(&self.frequency * &Expr::symbol("t")) + &self.phase
@@ -88,6 +131,7 @@ impl Drive {
                 self.terms.push(Driven {
                     factor,
                     quadrature,
+                    above: 0,
                     term: term.clone(),
                 });
             }

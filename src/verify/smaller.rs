@@ -17,6 +17,7 @@ use crate::exact::rational::{from_f64, ratio};
 use crate::expr::{Expr, ExprError};
 use crate::method::{Options, solve};
 use crate::oscillator::Oscillator;
+use crate::series::taylor::taylor;
 use crate::solution::modulation::Resonance;
 use crate::solution::{AmplitudeConvention, Note, Solution};
 use crate::symbol::Symbol;
@@ -220,15 +221,21 @@ fn drive_left(
     Some(scale.powi(wanted - (degree - 1)))
 }
 
-/// The power of the coordinate and the velocity together; `None` where they stand elsewhere.
+/// The lowest power of the coordinate and the velocity together; `None` where they stand in what has no series.
 fn degree(term: &Expr, own: [Symbol; 2]) -> Option<i32> {
+    /// The series of a function begins below.
+    const HIGHEST: u32 = 4;
     let (_, factors) = term.factors();
     let mut sum = ratio(0, 1);
     for factor in factors {
         let (base, exponent) = factor.base_and_exponent();
         match base.as_symbol().is_some_and(|name| own.contains(&name)) {
             true => sum += exponent.as_number()?,
-            false if own.iter().any(|&name| factor.contains(name)) => return None,
+            false if own.iter().any(|&name| factor.contains(name)) => {
+                let series = taylor(factor, &own.map(|name| (name, ratio(0, 1))), HIGHEST).ok()?;
+                let first = series.iter().position(|part| !part.is_zero())?;
+                sum += ratio(i64::try_from(first).ok()?, 1);
+            }
             false => {}
         }
     }

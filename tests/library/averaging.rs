@@ -58,6 +58,19 @@ fn published_slow_equations() {
         ("x'' + 2*zeta*x' + x = 0", 2, "-zeta*a", "1 - zeta^2/2"),
         // The pendulum, where the first harmonic of the sine is a Bessel function.
         ("x'' + 2*zeta*x' + sin(x) = 0", 1, "-zeta*a", "1/2 + J1(a)/a"),
+        (
+            "phi'' + 2*zeta*phi' + (g/L)*sin(phi) = 0",
+            1,
+            "-zeta*a",
+            "omega0/2 + omega0*J1(a)/a",
+        ),
+        // What a letter is taken to be small for has to leave a restoring force.
+        (
+            "x'' + c*x' + k*sin(x) + m*x^3 = 0",
+            1,
+            "-c*a/2",
+            "omega0/2 + omega0*J1(a)/a + 3*m*a^2/(8*omega0)",
+        ),
     ] {
         let found = slow(equation, order);
         assert!(

@@ -238,8 +238,22 @@ fn published_slow_equations_of_driven_motions() {
             "-c*a/2 - g*Lambda/w*a*sin(psi)",
             "sigma - 2*g*Lambda/w*cos(psi)",
         ),
+        // A pendulum in the square of its amplitude, driven and shaken: equation (4.1.18) with g = -omega0^2/6, and (5.7.19) with h.
+        (
+            "x'' + c*x' + k*sin(x) = F*cos(Omega*t)",
+            (1, 1),
+            "-c*a/2 + F/(2*omega0)*sin(psi)",
+            "sigma + omega0*a^2/16 + F/(2*omega0*a)*cos(psi)",
+        ),
+        (
+            "x'' + c*x' + k*(1 + h*cos(Omega*t))*sin(x) = 0",
+            (2, 1),
+            "-c*a/2 - h*omega0/4*a*sin(psi)",
+            "sigma + omega0*a^2/8 - h*omega0/2*cos(psi)",
+        ),
     ] {
-        let solution = driven(equation, resonance, 1);
+        let order = if equation.contains("sin(x)") { 2 } else { 1 };
+        let solution = driven(equation, resonance, order);
         let slow = solution.modulation.as_ref().expect("slow equations");
         for (found, expected) in [(&slow.amplitude_rate, amplitude_rate), (&slow.phase_rate, phase_rate)] {
             let difference = found - &parse_expression(expected).expect("an expression");
@@ -970,6 +984,14 @@ fn verdicts_measure_the_order_of_steady_motions() {
             2.0,
         ),
         ("x'' + x'/50 + x + x^2/10 - 1 = cos(11*t/10)/200", 4, "", 4.0),
+        // A pendulum whose support is shaken upwards, sideways, and far from resonance.
+        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 2, "", 2.0),
+        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 4, "", 4.0),
+        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 6, "", 6.0),
+        ("x'' + x'/20 + sin(x) = cos(x)*cos(39*t/40)/40", 2, "", 2.0),
+        ("x'' + x'/20 + sin(x) = cos(x)*cos(39*t/40)/40", 4, "", 4.0),
+        ("x'' + x'/500 + sin(x) = cos(x)*cos(33*t/100)/5", 2, "", 2.0),
+        ("x'' + x'/500 + sin(x) = cos(x)*cos(33*t/100)/5", 4, "", 4.0),
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at: Values = at.parse().unwrap_or_default();

@@ -21,6 +21,12 @@ fn is_letter(name: &str) -> bool {
 }
 
 impl Parser<'_> {
+    /// Whether a name stands anywhere.
+    fn has_name(&self, name: &str) -> bool {
+        let mut names = self.tokens.iter().filter(|token| token.kind == Kind::Name);
+        names.any(|token| &self.text[token.span()] == name)
+    }
+
     /// The letter that carries primes, after a look at every name.
     pub(super) fn coordinate(&self) -> Result<Symbol, ParseError> {
         let mut primed: Option<(Token, &str)> = None;
@@ -42,6 +48,9 @@ impl Parser<'_> {
                 let message = format!("`{bare}` is reserved: it is {meaning} in the answer");
                 let help = match bare {
                     "theta" => "another name, such as `phi`".to_owned(),
+                    // That of a drive, or the linear one.
+                    "omega" if self.has_name("t") => "another name, such as `Omega`".to_owned(),
+                    "omega" if !self.has_name("omega0") => "another name, such as `omega0`".to_owned(),
                     _ => format!("another name, such as `{bare}1`"),
                 };
                 return Err(self.error(token.span(), &message, &help));

@@ -156,7 +156,7 @@ fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
 }
 
 /// Letters that are factors of all small terms and of no linear one, `first` among them: always the one next that takes most of
-/// what is left, of equally good ones the first in the alphabet. The error is a term that none takes.
+/// what is left, of equally good ones a Greek one, the first in the alphabet. The error is a term that none takes.
 pub(super) fn letters(
     linear: &[&Expr],
     others: &[&Expr],
@@ -183,7 +183,7 @@ pub(super) fn letters(
         let free = parameters.iter().copied();
         let candidates = free.filter(|&name| !linear.iter().any(|term| term.contains(name)));
         let taken = |name: Symbol| left.iter().filter(|term| has(term, name)).count();
-        let best = candidates.max_by_key(|&name| (taken(name), std::cmp::Reverse(name)));
+        let best = candidates.max_by_key(|&name| (taken(name), name.is_greek(), std::cmp::Reverse(name)));
         let Some(best) = best.filter(|&name| taken(name) > 0) else {
             return Err(term.clone());
         };

@@ -55,13 +55,17 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
         scaling.force.write_with_frequency(&oscillator.names());
         Ok(scaling)
     };
+    let scaling = scaling_of(options.order)?;
+    let drive = match scaling.marker {
+        Some(_) => drive,
+        None => drive.in_small_motions(oscillator.coordinate, 2 * HIGHEST + 1),
+    };
     let asked = Asked {
         method: Method::MultipleScales,
         oscillator,
         drive: &drive,
         resonance: options.resonance,
     };
-    let scaling = scaling_of(options.order)?;
     let answer = asked.answer(&scaling);
     if options.order.is_some() || !answer.as_ref().is_err_and(is_of_resonance) {
         return answer;
@@ -251,14 +255,16 @@ impl<'a> Question<'a> {
             rest = rest.without(marker);
         }
         // A drive without a small parameter counts as small as what it has to balance.
-        let natural = if self.scaling.marker.is_none() {
-            (position + velocity).saturating_sub(1) as usize
-        } else {
-            0
+        let above = driven.above as usize;
+        let natural = match self.scaling.marker {
+            None => ((position + velocity) as usize).saturating_sub(1 + above),
+            Some(_) => 0,
         };
         let order = match usize::try_from(written) {
             Ok(written) if written > 0 && self.scaling.marker.is_some() => written,
-            _ => natural.max(self.small_order()),
+            // Beside a force that is not small at all.
+            _ if above > 0 && self.forces(driven) => above,
+            _ => natural.max(self.small_order()) + above,
         };
         let coefficient = Polynomial::term(rest, number.clone());
         let names = self.oscillator.names();
@@ -287,6 +293,9 @@ impl<'a> Question<'a> {
                 continue;
             }
             let term = self.scaled(driven)?;
+            if term.order > self.scaling.order as usize && driven.above > 0 {
+                continue;
+            }
             bounded(
                 std::iter::once(term.position.saturating_add(term.velocity)),
                 self.scaling.order,
@@ -307,6 +316,12 @@ impl<'a> Question<'a> {
             order: self.scaling.order as usize,
         };
         Ok(scaled.expand(self.names.complex))
+    }
+
+    /// Whether the series of this drive begins with a force far from resonance.
+    fn forces(&self, driven: &Driven) -> bool {
+        let mut beginnings = self.drive.terms.iter().filter(|own| own.above == 0);
+        beginnings.any(|own| own.term == driven.term && self.is_hard(own))
     }
 
     /// Whether a drive is a force far from resonance, which is not small.
@@ -426,7 +441,7 @@ impl Question<'_> {
     /// What counts as small beside the small parameters of the answer: the detuning, and drives without such a parameter.
     fn counted_small(&self) -> Vec<Expr> {
         let mut small = vec![Expr::from(self.sigma)];
-        for driven in &self.drive.terms {
+        for driven in self.drive.terms.iter().filter(|driven| driven.above == 0) {
             let written = std::iter::once(self.scaling.small)
                 .chain(self.scaling.small_with.iter().copied())
                 .any(|name| driven.factor.contains(name));

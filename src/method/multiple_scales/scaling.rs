@@ -104,6 +104,7 @@ pub(super) fn scaling(
     highest: [u32; 2],
 ) -> Result<Scaling, Refusal> {
     let small = oscillator.small_parameter(options.small.as_deref())?;
+    let mut refused = None;
     if let SmallParameter::Parameter(name) = small {
         let order = order_of(options, default[0], highest[0])?;
         match oscillator.expand(small, order) {
@@ -121,6 +122,8 @@ pub(super) fn scaling(
                 });
             }
             Err(OscillatorError::NotSmall { .. }) if !parts.damping.is_zero() => {}
+            // A name alone says little: what is no polynomial may be one for small motions.
+            Err(error @ OscillatorError::NotPolynomial(_)) if options.small.is_none() => refused = Some(error),
             Err(error) => return Err(error.into()),
         }
     }
@@ -128,7 +131,10 @@ pub(super) fn scaling(
         return Ok(found);
     }
     let order = order_of(options, default[1], highest[1])?;
-    in_amplitude(oscillator, parts, order)
+    match (in_amplitude(oscillator, parts, order), refused) {
+        (Err(_), Some(error)) => Err(error.into()),
+        (found, _) => found,
+    }
 }
 
 /// The expansion in parameters that are small together, or in one that marks all terms but the linear one of an equation that

@@ -230,6 +230,11 @@ impl OscillatorError {
                 .choose(Setting::Small(AmplitudeConvention::Initial.symbol()))
                 .then("`"),
             Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
+                if term.expression().contains(Symbol::new("t")) =>
+            {
+                Advice::words("in numbers `lindstedt response` finds the steady states of a drive that repeats itself")
+            }
+            Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
                 if term.expression().symbols().iter().all(|symbol| symbol.primes() == 0) =>
             {
                 either(

@@ -251,6 +251,13 @@ fn published_slow_equations_of_driven_motions() {
             "-c*a/2 - h*omega0/4*a*sin(psi)",
             "sigma + omega0*a^2/8 - h*omega0/2*cos(psi)",
         ),
+        // A linear oscillator has no small letter but its damping: the amplitude is small where the drive needs it.
+        (
+            "x'' + c*x' + w^2*x + h*sin(x)*cos(Omega*t) = 0",
+            (2, 1),
+            "-c*a/2 - h/(4*w)*a*sin(psi)",
+            "sigma - h/(2*w)*cos(psi)",
+        ),
     ] {
         let order = if equation.contains("sin(x)") { 2 } else { 1 };
         let solution = driven(equation, resonance, order);

@@ -30,7 +30,7 @@ use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::resonance::{RESONANCES, by_distance, is_near, ratio_of};
 use crate::method::{Options, Refusal, Unsuited};
 use crate::oscillator::{Oscillator, OscillatorError, Parts};
-use crate::solution::{Definition, Law, Method, Note, Solution};
+use crate::solution::{AmplitudeConvention, Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
 /// The highest order of a driven motion in a parameter; twice that in the amplitude.
@@ -41,6 +41,21 @@ const HIGHEST: u32 = 3;
 /// # Errors
 /// A drive that is no single wave, a resonance that the equation does not have, or what stops an expansion.
 pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+    let found = expanded(oscillator, parts, options);
+    let refused = |refusal: &Refusal| matches!(refusal, Refusal::Oscillator(OscillatorError::NotPolynomial(_)));
+    if options.small.is_some() || !found.as_ref().is_err_and(refused) {
+        return found;
+    }
+    // What is no polynomial may be one for small motions.
+    let in_amplitude = Options {
+        small: Some(AmplitudeConvention::Initial.symbol().to_string()),
+        ..options.clone()
+    };
+    expanded(oscillator, parts, &in_amplitude).or(found)
+}
+
+/// The same with the small parameter that is asked for, or the likeliest.
+fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
     let drive = Drive::of(parts, &oscillator.names(), Method::MultipleScales)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;

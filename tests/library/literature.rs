@@ -718,8 +718,9 @@ fn what_does_not_apply_is_refused_by_name() {
     );
 }
 
-/// With `omega0^2 = g/L` the pendulum's terms are powers of it; where a parameter of the linear force stands elsewhere as well, all of
-/// them stay as they were typed. Either way the numbers are those of the same equation without names.
+/// With `omega0^2 = g/L` the pendulum's terms are powers of it, and those of a bead on a parabola have no `g`; where every parameter of the
+/// linear force stands elsewhere as well, all terms stay as they were typed. Either way the numbers are those of the same equation
+/// without names.
 #[test]
 fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
     for (equation, values, expected) in [
@@ -737,6 +738,11 @@ fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
             "x'' + k*x/m + b*x^3/m = 0",
             vec![("k", 2.0), ("m", 8.0), ("b", 0.5)],
             "omega0^2 + 3*b*A^2/(4*m) - 3*b^2*A^4/(128*m^2*omega0^2)",
+        ),
+        (
+            "(1 + 4*p^2*x^2)*x'' + 4*p^2*x*x'^2 + 2*g*p*x = 0",
+            vec![("p", 0.25), ("g", 0.5)],
+            "omega0^2 - 2*omega0^2*p^2*A^2 + 9*omega0^2*p^4*A^4/2",
         ),
     ] {
         let options = Options {

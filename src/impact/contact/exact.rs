@@ -7,7 +7,7 @@
 //! v^2/2 = W(D),  W(d) = int_0^d g                 u(d) = sqrt(v^2 - 2 W(d)) the speed at depth d
 //! T/2 = int_0^D dd/u = int 2 q dq / u             d = q^2, from the touch to half the way: roots of the depth are smooth in q
 //!                    + int q h(w) dw              q = q_D (1 - w^2), from there to the deepest point, q_D = sqrt(D)
-//!                                                 h = 4 q_D / sqrt(2 q_D M(w)), M the mean of 2 q g(q^2) between q and q_D
+//!                                                 h = 4 q_D w / sqrt(2 G(w)), G = W(D) - W(q^2), an integral over w itself
 //! d(s) = (g(0)/2) s (T - s) + sum_(k odd) b_k sin(k pi s/T)
 //! b_k = (4/(k pi)) int_0^D cos(k pi t(d)/T) dd - 4 g(0) T^2/(k pi)^3
 //! ```
@@ -29,6 +29,7 @@
 //! # Ok::<(), lindstedt::impact::contact::ContactError>(())
 //! ```
 
+use std::cell::RefCell;
 use std::f64::consts::PI;
 
 use num_complex::Complex64;
@@ -83,22 +84,24 @@ impl ExactContact {
         }
         let deepest = deepest_root(&force, speed)?;
         let depth = in_range("depth", deepest * deepest)?;
+        let work = Running::new(|q: f64| 2.0 * q * force(q * q));
         let slowness = |q: f64| -> Result<f64, ContactError> {
-            let square = speed * speed - 2.0 * work(&force, q)?;
+            let square = speed * speed - 2.0 * work.up_to(q)?;
             match square > 0.0 {
                 true => Ok(1.0 / square.sqrt()),
                 false => Err(ContactError::NeverTurns { searched: q * q }),
             }
         };
         let first = expand(slowness, |q| 2.0 * q, 0.0, 0.5 * deepest)?;
+        // From the deepest point back, q = Q (1 - w^2), the force gives what it took.
+        let given = Running::new(|w: f64| {
+            let q = deepest * (1.0 - w * w);
+            4.0 * deepest * w * q * force(q * q)
+        });
         let rate = |w: f64| -> Result<f64, ContactError> {
-            let per_root = |part: f64| {
-                let q = deepest * (1.0 - w * w * part);
-                2.0 * q * force(q * q)
-            };
-            let mean = integrate_smooth(per_root, 0.0, 1.0, 1e-14)?.0;
-            match mean > 0.0 {
-                true => Ok(4.0 * deepest / (2.0 * deepest * mean).sqrt()),
+            let given = given.up_to(w)?;
+            match given > 0.0 {
+                true => Ok(4.0 * deepest * w / (2.0 * given).sqrt()),
                 false => Err(ContactError::NeverTurns { searched: depth }),
             }
         };
@@ -352,6 +355,32 @@ impl SineSeries {
     }
 }
 
+/// An integral from zero that goes on from the nearest place before at which it is known: a corner or a jump on the way is met once, not by
+/// every integral beyond it.
+struct Running<F> {
+    integrand: F,
+    /// Places in rising order, and the integral up to each.
+    known: RefCell<Vec<(f64, f64)>>,
+}
+
+impl<F: Fn(f64) -> f64> Running<F> {
+    fn new(integrand: F) -> Self {
+        Self {
+            integrand,
+            known: RefCell::new(vec![(0.0, 0.0)]),
+        }
+    }
+
+    fn up_to(&self, place: f64) -> Result<f64, QuadratureError> {
+        let mut known = self.known.borrow_mut();
+        let next = known.partition_point(|(known, _)| *known <= place);
+        let (from, before) = known[..next].last().copied().unwrap_or((0.0, 0.0));
+        let whole = before + integrate_smooth(&self.integrand, from, place, 1e-14)?.0;
+        known.insert(next, (place, whole));
+        Ok(whole)
+    }
+}
+
 /// The work of the force up to the depth q^2.
 fn work(force: impl Fn(f64) -> f64, q: f64) -> Result<f64, QuadratureError> {
     Ok(integrate_smooth(|q| 2.0 * q * force(q * q), 0.0, q, 1e-14)?.0)
@@ -438,6 +467,35 @@ mod tests {
                         assert_eq!((contact.position(time), contact.velocity(time)), (depth, velocity));
                     }
                 }
+            }
+        }
+    }
+
+    /// A spring whose force jumps at a depth: two pieces of sines, k (D^2 - d0^2) + 2 F (D - d0) = v^2 - k d0^2.
+    #[test]
+    fn a_jump_on_the_way_is_met_in_closed_form() {
+        let (stiffness, jump_at, speed) = (400.0_f64, 0.02, 1.0_f64);
+        let omega = stiffness.sqrt();
+        for jump in [1e-3, 1.0, 30.0] {
+            let contact = ExactContact::new(|d| stiffness * d + if d > jump_at { jump } else { 0.0 }, speed).unwrap();
+            let centre = jump / stiffness;
+            let whole = centre * centre + speed * speed / stiffness + 2.0 * centre * jump_at;
+            let depth = whole.sqrt() - centre;
+            let before = (jump_at * omega / speed).asin() / omega;
+            let beyond = ((jump_at + centre) / (depth + centre)).acos() / omega;
+            let relative = [
+                contact.depth / depth - 1.0,
+                contact.duration / (2.0 * (before + beyond)) - 1.0,
+            ];
+            assert!(relative.iter().all(|error| error.abs() < 1e-11), "{jump}: {relative:?}");
+            for part in 1..8 {
+                let time = before + beyond * f64::from(part) / 8.0;
+                let expected = (depth + centre) * (omega * (before + beyond - time)).cos() - centre;
+                let (found, _) = contact.at(time);
+                assert!(
+                    (found - expected).abs() < 1e-11 * depth,
+                    "{jump} at {part}/8: {found} for {expected}"
+                );
             }
         }
     }

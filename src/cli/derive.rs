@@ -9,7 +9,7 @@ use lindstedt::catalog::nearest;
 use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
-use lindstedt::method::{self, Options, Refusal};
+use lindstedt::method::{self, Options, Refusal, Unsuited};
 use lindstedt::problem::{Formula, Order, Problem, Reader};
 use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
@@ -214,17 +214,27 @@ pub(super) fn patience() -> Duration {
     }
 }
 
-/// The solution; where a limit cycle depends on the values of parameters and they are given, that of the equation with those
-/// numbers in it.
+/// The solution; where a limit cycle depends on the values of parameters, or letters stand in the way, and values are given, that of the
+/// equation with those numbers in it.
 fn solve_at(
     oscillator: Oscillator,
     values: Option<Values>,
     options: &Options,
 ) -> Result<(Oscillator, Option<Values>, Solution), Failure> {
-    match (method::solve(&oscillator, options), values) {
-        (Ok(solution), values) => Ok((oscillator, values, solution)),
-        (Err(Refusal::LimitCycle { equation, .. }), Some(values)) => {
-            let names: Vec<Symbol> = equation.symbols().into_iter().collect();
+    let refusal = match method::solve(&oscillator, options) {
+        Ok(solution) => return Ok((oscillator, values, solution)),
+        Err(refusal) => refusal,
+    };
+    let names: Vec<Symbol> = match &refusal {
+        Refusal::LimitCycle { equation, .. } => equation.symbols().into_iter().collect(),
+        Refusal::Unsuited {
+            reason: Unsuited::SeveralVariables,
+            ..
+        } => oscillator.parameters.clone(),
+        _ => vec![],
+    };
+    match values {
+        Some(values) if !names.is_empty() => {
             let (known, rest) = values.split(&names);
             let oscillator = oscillator
                 .with_values(&known)
@@ -232,7 +242,7 @@ fn solve_at(
             let solution = method::solve(&oscillator, options).map_err(|refusal| refused(&oscillator, &refusal))?;
             Ok((oscillator, Some(rest), solution))
         }
-        (Err(refusal), None) | (Err(refusal), Some(_)) => Err(refused(&oscillator, &refusal)),
+        _ => Err(refused(&oscillator, &refusal)),
     }
 }
 

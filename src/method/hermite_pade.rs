@@ -28,7 +28,7 @@ use std::cmp::Ordering;
 use num_traits::{One, Signed, Zero};
 
 use super::power_series::{CONSTANT, Resummed, STOPPED, TOO_LONG, has_values};
-use super::{Options, Refusal};
+use super::{Options, Refusal, Unsuited};
 use crate::derivation::Line;
 use crate::exact::big_float::BigFloat;
 use crate::exact::zero_clusters::{Cluster, clusters};
@@ -93,7 +93,7 @@ fn of_degrees(oscillator: &Oscillator, options: &Options, degrees: Degrees) -> R
     }
     let (variable, mut numbers) = series
         .in_one_variable()
-        .ok_or_else(|| refused("its symbols do not enter in one combination; give numbers for them"))?;
+        .ok_or_else(|| Unsuited::SeveralVariables.to(METHOD))?;
     // f begins with one; what it is a multiple of stands before the law.
     let first = numbers[0].clone();
     numbers.iter_mut().for_each(|number| *number = &*number / &first);
@@ -568,7 +568,7 @@ mod tests {
     fn degrees_without_an_approximant_say_why() {
         for (equation, degrees, reason) in [
             ("x'' + 4*x = 0", [1, 1, 1], "does not depend"),
-            ("x'' + x + b*x^3 + c*x^5 = 0", [1, 1, 1], "give numbers"),
+            ("x'' + x + b*x^3 + c*x^5 = 0", [1, 1, 1], "several combinations"),
             ("x'' + sin(x) = 0", [41, 1, 1], "[40/40/40]"),
         ] {
             let refusal = derived(equation, degrees).unwrap_err().to_string();

@@ -300,6 +300,9 @@ pub enum Unsuited {
         /// The inertia term.
         term: Quotation,
     },
+    /// A series in several combinations of letters, in a method for one variable.
+    #[error("needs a series in one variable, but the symbols of omega^2 enter in several combinations")]
+    SeveralVariables,
     /// An order beyond what a method has.
     #[error("has no order above {highest}")]
     HighestOrder {
@@ -406,6 +409,12 @@ impl Unsuited {
             )
             .choose(Setting::Method(Method::MultipleScales)),
             Self::Velocity { .. } => Advice::words("try ").choose(Setting::Method(Method::LindstedtPoincare)),
+            Self::SeveralVariables => {
+                Advice::words("give numbers for them, in the equation or by `")
+                    .choose(Setting::Values)
+                    .then("`, or try ")
+                    .choose(Setting::Method(Method::Pade))
+            }
             Self::Convention => {
                 Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::FirstHarmonic))
             }

@@ -388,6 +388,32 @@ fn a_number_of_an_impact_wins_over_the_file() {
     }
 }
 
+/// Letters in several combinations, which a quadratic approximant does not take, are answered by the numbers given for them.
+#[test]
+fn numbers_given_for_letters_answer_as_numbers_typed() {
+    let method = ["--method", "hermite-pade", "--at", "A=1/2"];
+    let letters = [
+        "derive",
+        "x'' + x + b*x^3 + c*x^5 = 0",
+        "--at",
+        "b=1/3",
+        "--at",
+        "c=-1/7",
+    ];
+    let by_option = json(&[&letters[..], &method[..]].concat());
+    let typed = json(&[&["derive", "x'' + x + x^3/3 - x^5/7 = 0"][..], &method[..]].concat());
+    assert!(by_option["verification"]["frequency"].is_number(), "{by_option}");
+    assert_eq!(by_option["closed_form"], typed["closed_form"]);
+    assert_eq!(by_option["verification"], typed["verification"]);
+    let refused = run(&[&letters[..2], &method[..2]].concat());
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(1), "{message}");
+    assert!(
+        message.contains("several combinations") && message.contains("--at"),
+        "{message}"
+    );
+}
+
 #[test]
 fn the_frequency_is_the_same_with_and_without_the_motion() {
     for (equation, order) in [

@@ -565,10 +565,16 @@ fn reach(series: &[f64], tolerance: f64, longest: f64) -> f64 {
         return longest;
     };
     let term = |k: usize, h: f64| series[k].abs() * h.powi(k as i32);
+    // The same for every trial.
+    let mut allowed = [0.0; LAST];
+    for (allowed, k) in allowed.iter_mut().zip(last.clone()) {
+        *allowed = tolerance.powf(k as f64 / order as f64);
+    }
     let within = |h: f64| {
         let size = (0..=order / 2).map(|k| term(k, h)).fold(0.0, f64::max);
-        let kept = |k: usize| term(k, h) <= size * tolerance.powf(k as f64 / order as f64);
-        last.clone().all(kept)
+        last.clone()
+            .zip(allowed)
+            .all(|(k, allowed)| term(k, h) <= size * allowed)
     };
     // The root test; from there shorter until the last terms are small enough.
     let radius = |k: usize| (series[first].abs() / series[k].abs()).powf(1.0 / (k - first) as f64);

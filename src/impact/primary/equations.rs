@@ -8,7 +8,9 @@
 //!
 //! Beside the states run the energies that damping takes and the force gives: each its own rate.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::super::model::{Friction, STEEPNESS, Side};
 use super::{PrimaryCase, PrimaryError};
@@ -28,7 +30,12 @@ pub(super) struct Equations {
     held: Expr,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
+    /// The systems of the phases that there were: a motion goes through the same ones again and again.
+    built: RefCell<Vec<(Phase, Rc<System>)>>,
 }
+
+/// A phase with equations of its own: in the barrier of a side or in none, and the direction in which dry friction acts.
+type Phase = (Option<Side>, f64);
 
 /// An expression of this file.
 fn own(text: &str) -> Expr {
@@ -79,7 +86,28 @@ impl Equations {
             held,
             numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
             case,
+            built: RefCell::default(),
         })
+    }
+
+    /// The system of a phase, built when it is first met.
+    fn once(
+        &self,
+        phase: Phase,
+        build: impl FnOnce() -> Result<System, PrimaryError>,
+    ) -> Result<Rc<System>, PrimaryError> {
+        let known = self
+            .built
+            .borrow()
+            .iter()
+            .find(|own| own.0 == phase)
+            .map(|own| own.1.clone());
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let system = Rc::new(build()?);
+        self.built.borrow_mut().push((phase, system.clone()));
+        Ok(system)
     }
 
     /// The torque of dry friction in this direction, and what it takes per time.
@@ -138,7 +166,11 @@ impl Equations {
     }
 
     /// Away from the barriers, moving in this direction where dry friction asks for one.
-    pub(super) fn flight(&self, direction: f64) -> Result<System, PrimaryError> {
+    pub(super) fn flight(&self, direction: f64) -> Result<Rc<System>, PrimaryError> {
+        self.once((None, direction), || self.flight_system(direction))
+    }
+
+    fn flight_system(&self, direction: f64) -> Result<System, PrimaryError> {
         let [torque, power] = self.friction(direction);
         let mut right = vec![own("x'")];
         let put = |acceleration: &Expr| self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())]);
@@ -148,8 +180,12 @@ impl Equations {
         self.system(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
 
-    /// In a barrier, in s; it pushes as Hertz and Hunt and Crossley say.
-    pub(super) fn contact(&self, side: Side, place: f64, direction: f64) -> Result<System, PrimaryError> {
+    /// In the barrier of a side, at its place, in s; it pushes as Hertz and Hunt and Crossley say.
+    pub(super) fn contact(&self, side: Side, place: f64, direction: f64) -> Result<Rc<System>, PrimaryError> {
+        self.once((Some(side), direction), || self.contact_system(side, place, direction))
+    }
+
+    fn contact_system(&self, side: Side, place: f64, direction: f64) -> Result<System, PrimaryError> {
         let sign = Expr::from(side.sign() as i64);
         let [torque, power] = self.friction(direction);
         let force = own("w^3") * (own("gamma") + &sign * &own("mu*x'"));

@@ -163,6 +163,46 @@ impl Budget {
             .ok_or(ExprError::TooManyTerms(self.limit))?;
         Ok(())
     }
+
+    /// Refuses what is known to be too much before it is begun.
+    fn allow(&self, amount: usize) -> Result<(), ExprError> {
+        match amount <= self.left {
+            true => Ok(()),
+            false => Err(ExprError::TooManyTerms(self.limit)),
+        }
+    }
+}
+
+/// How many products of two terms the power of a sum takes, one multiplication after the other, where that is known beforehand: if
+/// every term but one has a symbol of its own, no two products of `m` of the terms are alike, and there are `C(m + n - 1, m)` of them
+/// for `n` terms. Zero where some may be alike; no longer counted where there are more than `enough`.
+fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
+    let mut shared = 0;
+    for term in terms {
+        let others = || terms.iter().filter(|other| *other != term);
+        let own = term.factors().1.iter().any(|factor| {
+            let (base, exponent) = factor.base_and_exponent();
+            let symbol = base.as_symbol().filter(|_| exponent.as_number().is_some());
+            symbol.is_some_and(|symbol| !others().any(|other| other.contains(symbol)))
+        });
+        shared += usize::from(!own);
+    }
+    if shared > 1 {
+        return 0;
+    }
+    let (mut total, mut length) = (0_usize, 1_usize);
+    for power in 0..times as usize {
+        total = total.saturating_add(length.saturating_mul(terms.len()) - 1);
+        if total > enough {
+            break;
+        }
+        // C(m + n, m + 1) = C(m + n - 1, m) (m + n)/(m + 1).
+        match length.checked_mul(power + terms.len()) {
+            Some(product) => length = product / (power + 1),
+            None => return usize::MAX,
+        }
+    }
+    total
 }
 
 fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Expr, ExprError> {
@@ -178,7 +218,8 @@ fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Ex
                 .filter(|number| number.is_integer())
                 .and_then(|number| number.to_integer().to_u32());
             match (base.node(), times) {
-                (Node::Sum(_), Some(times)) => {
+                (Node::Sum(terms), Some(times)) => {
+                    budget.allow(products_of_power(terms, times, budget.left))?;
                     (0..times).try_fold(Expr::one(), |product, _| multiply(&product, base, budget))
                 }
                 _ => Expr::power(base, exponent),
@@ -201,6 +242,40 @@ fn multiply(a: &Expr, b: &Expr, budget: &mut Budget) -> Result<Expr, ExprError> 
 mod tests {
     use super::*;
     use crate::expr::parse_expression;
+
+    /// What is foretold of a power is what it takes.
+    #[test]
+    fn a_power_takes_the_products_that_are_foretold() {
+        for (text, times, known) in [
+            ("x + y", 1, true),
+            ("1 + x", 9, true),
+            ("1 + x + 2*y^3 - z*sin(1 + z)", 5, true),
+            ("x*y + y + z", 4, true),
+            ("x + x^2 + x^3", 6, false),
+            ("x + y + x*y", 6, false),
+        ] {
+            let sum = parsed(text);
+            let mut budget = Budget {
+                left: 10_000,
+                limit: 10_000,
+            };
+            expand_node(
+                &sum.integer_power(times).unwrap(),
+                &[sum.clone(), Expr::from(times)],
+                &mut budget,
+            )
+            .unwrap();
+            let foretold = products_of_power(sum.terms(), times as u32, 10_000);
+            match (known, times) {
+                (true, 2..) => assert_eq!(foretold, 10_000 - budget.left, "{text}"),
+                (true, _) => assert_eq!(foretold, sum.terms().len() - 1),
+                (false, _) => assert_eq!(foretold, 0, "{text}"),
+            }
+        }
+        for long in ["(x + y + z + 1)^60", "(1 + x)^10000"] {
+            assert_eq!(parsed(long).expand(), Err(ExprError::TooManyTerms(EXPANSION_LIMIT)));
+        }
+    }
 
     fn parsed(text: &str) -> Expr {
         parse_expression(text).unwrap()

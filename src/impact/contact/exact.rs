@@ -426,7 +426,8 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
         .map(|part| deepest * f64::from(part) / 64.0)
         .find(|&q| left(q) < 0.0);
     if let Some(beyond) = earlier {
-        deepest = find_root(left, beyond - deepest / 64.0, beyond)?;
+        (low, high) = (beyond - deepest / 64.0, beyond);
+        deepest = find_root(left, low, high)?;
     }
     // A jump that one way of adding up the work has overlooked, the other has not.
     let again = |q: f64| match work_by_sections(&force, q) {

@@ -284,7 +284,7 @@ impl System {
             critical: vec![],
             narrow: narrow::arguments(right, state),
         };
-        taylor::expansion(&system, &[], 1)?;
+        taylor::check(&system, &[])?;
         Ok(system)
     }
 

@@ -22,7 +22,7 @@ use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{CompiledFunction, Expr, ExprError};
-use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_piecewise};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep};
@@ -263,15 +263,13 @@ pub(crate) fn coefficient(force: &Force, amplitude: f64, k: usize) -> (f64, f64)
     angles.extend([0.0, PI]);
     angles.sort_by(f64::total_cmp);
     let integrand = |theta: f64| force.at(amplitude * theta.cos()) * (k as f64 * theta).cos();
-    let piece = |pair: &[f64]| match integrate_smooth(integrand, pair[0], pair[1], TOLERANCE) {
+    let sum = match integrate_piecewise(integrand, &angles, TOLERANCE) {
         Ok(found) => found,
         Err(QuadratureError::NotConverged {
             value, error_estimate, ..
         }) => (value, error_estimate),
         Err(_) => (f64::NAN, f64::NAN),
     };
-    let pieces = angles.windows(2).filter(|pair| pair[1] > pair[0]).map(piece);
-    let sum = pieces.fold((0.0, 0.0), |sum, piece| (sum.0 + piece.0, sum.1 + piece.1));
     (sum.0 * 2.0 / PI, sum.1 * 2.0 / PI)
 }
 

@@ -5,12 +5,51 @@ pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
+/// `h^0, h^1, ...`, as many as there is room for, each with a multiplication.
+pub(super) fn powers(h: f64, into: &mut [f64]) {
+    let Some(first) = into.first_mut() else { return };
+    *first = 1.0;
+    // h^2, h^4, h^8, ... and what stands before them.
+    let (mut half, mut square) = (1, h);
+    while half < into.len() {
+        let (lower, higher) = into.split_at_mut(half);
+        for (power, low) in higher.iter_mut().zip(lower) {
+            *power = *low * square;
+        }
+        (half, square) = (2 * half, square * square);
+    }
+}
+
+/// Bounds of all that is added to the constant, and of the same of its slope beside the first term, times `size`, for |s| <= `size`.
+fn beyond(series: &[f64], size: f64) -> [f64; 2] {
+    let (mut change, mut bend) = (0.0, 0.0);
+    for (k, coefficient) in series.iter().enumerate().skip(1).rev() {
+        change = change * size + coefficient.abs();
+        if k > 1 {
+            bend = bend * size + k as f64 * coefficient.abs();
+        }
+    }
+    [change * size, bend * size * size]
+}
+
 /// The first root after `from`, at most `to`, and whether the polynomial grows there; a root at `from` itself is not counted.
 ///
 /// By bounds: where the constant outweighs all that is added there is no root, where the slope keeps its sign there is at most
 /// one, and everything else is halved.
 pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, bool)> {
-    let mut open = vec![(from + apart(from, to), to)];
+    let [constant, slope, ..] = *series else { return None };
+    // Most series have none, and the bounds about 0 say so.
+    let [change, bend] = beyond(series, to.abs().max(from.abs()));
+    if constant.abs() > change {
+        return None;
+    }
+    let first = from + apart(from, to);
+    let monotonic = slope.abs() * to.abs().max(from.abs()) > bend;
+    let (at_first, at_last) = (value(series, first), value(series, to));
+    if monotonic && at_first * at_last > 0.0 {
+        return None;
+    }
+    let mut open = vec![(first, to)];
     let mut looked_at = 0;
     while let Some((low, high)) = open.pop() {
         const MOST: usize = 4000;
@@ -20,15 +59,12 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
         }
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let shifted = about(series, middle);
-        let beyond = |from: usize, weight: &dyn Fn(usize) -> f64| -> f64 {
-            let terms = shifted.iter().enumerate().skip(from);
-            terms.map(|(k, c)| weight(k) * c.abs() * half.powi(k as i32)).sum()
-        };
-        if shifted[0].abs() > beyond(1, &|_| 1.0) {
+        let [change, bend] = beyond(&shifted, half);
+        if shifted[0].abs() > change {
             continue;
         }
         let slope = shifted.get(1).map_or(0.0, |slope| slope.abs() * half);
-        let monotonic = slope > beyond(2, &|k| k as f64);
+        let monotonic = slope > bend;
         if !monotonic && half > 1e-13 * (to - from) {
             open.push((middle, high));
             open.push((low, middle));
@@ -87,6 +123,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn powers_are_those_of_the_standard_library() {
+        for length in 0..40 {
+            let mut table = vec![0.0; length];
+            powers(-0.7, &mut table);
+            for (k, power) in table.iter().enumerate() {
+                let expected = (-0.7_f64).powi(k as i32);
+                assert!(
+                    (power - expected).abs() <= 1e-15 * expected.abs(),
+                    "{k}: {power} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn every_root_is_found_in_its_turn() {
         // (s - 1/10)(s - 1/5)(s - 9/10), and a double root that does not cross.
         let cubic = [-0.018, 0.29, -1.2, 1.0];
@@ -107,5 +158,9 @@ mod tests {
         // One at the very end, where the value is exactly zero.
         assert_eq!(first_root(&[-1.0, 1.0], 0.0, 1.0), Some((1.0, true)));
         assert_eq!(first_root(&[1.0, -1.0], 0.0, 1.0), Some((1.0, false)));
+        // What the bounds about 0 decide by themselves.
+        assert_eq!(first_root(&[2.0, -1.0, 0.5], 0.0, 1.0), None);
+        assert_eq!(first_root(&[1e-3, 1.0, 0.1], 0.0, 1.0), None);
+        assert_eq!(first_root(&[3.0], 0.0, 1.0), None);
     }
 }

@@ -96,7 +96,7 @@ pub(super) fn follow(
     options: &Options,
 ) -> Result<Path, SystemError> {
     // What cannot be expanded is refused by either integrator.
-    taylor::expansion(system, events, 1)?;
+    taylor::check(system, events)?;
     let smooth = Smooth::new(system, events)?;
     let units = Units::new(system, [start, end], values, events);
     let scaled = Scaled {

@@ -12,7 +12,7 @@
 //! Time is counted from the start, so that a late start costs no digits.
 
 use super::narrow::{Kind, end_of_step};
-use super::polynomial::{first_root, sign_at_start, value};
+use super::polynomial::{first_root, powers, sign_at_start, value};
 use super::{End, Event, Motion, Occurrence, Options, Path, System, SystemError};
 use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
@@ -36,8 +36,20 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
     Some(polynomials.map(|series| value(series, time - step.start)).collect())
 }
 
-/// The right sides of a system and these events, to be expanded to this order.
-pub(super) fn expansion(system: &System, events: &[Event], order: usize) -> Result<Expansion, RecurrenceError> {
+/// Whether there are recurrences for the right sides of a system and these events.
+///
+/// # Errors
+/// What there is none for.
+pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceError> {
+    const ANY: f64 = 0.1;
+    expansion(system, events, ANY).map(drop)
+}
+
+/// The right sides of a system and these events, to be expanded so far that steps within this tolerance are cheapest.
+fn expansion(system: &System, events: &[Event], tolerance: f64) -> Result<Expansion, RecurrenceError> {
+    /// An argument need be known to this part of itself only.
+    const CLOSELY: f64 = 1e-9;
+    let order = order(tolerance);
     let states = system.state.iter().map(|state| (*state, None));
     let variables: Vec<(Symbol, Option<usize>)> = states.chain([(system.time, Some(1))]).collect();
     let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
@@ -54,6 +66,8 @@ pub(super) fn expansion(system: &System, events: &[Event], order: usize) -> Resu
         order,
         outputs,
         narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
+        of_steps: Allowance::new(tolerance, order),
+        of_arguments: Allowance::new(CLOSELY, order),
     })
 }
 
@@ -66,10 +80,10 @@ fn order(tolerance: f64) -> usize {
 pub(super) fn first_step(system: &System, start: f64, values: &[f64], events: &[Event]) -> Option<(f64, Vec<f64>)> {
     const SAMPLES: u32 = 8;
     let tolerance = f64::EPSILON;
-    let mut expansion = expansion(system, events, order(tolerance)).ok()?;
+    let mut expansion = expansion(system, events, tolerance).ok()?;
     expansion.begin(start, values);
     expansion.expand(start, values).ok()?;
-    let reach = expansion.step(tolerance);
+    let reach = expansion.step();
     let size = |state: usize| {
         let place = |sample: u32| {
             if reach.is_finite() {
@@ -92,7 +106,7 @@ pub(super) fn follow(
     events: &[Event],
     options: &Options,
 ) -> Result<Path, SystemError> {
-    let mut expansion = expansion(system, events, order(options.tolerance))?;
+    let mut expansion = expansion(system, events, options.tolerance)?;
     expansion.begin(start, values);
     let mut run = Run {
         system,
@@ -216,10 +230,7 @@ impl Run<'_> {
 
     /// How far the series reach from here, and nothing is stepped over.
     fn reach(&self, now: f64) -> f64 {
-        let reach = self
-            .expansion
-            .step(self.options.tolerance)
-            .min(self.duration - self.time);
+        let reach = self.expansion.step().min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
         let reach = next.map_or(reach, |next| reach.min(next - now));
         let reach = self.expansion.short_of_narrow(reach);
@@ -353,6 +364,10 @@ pub(super) struct Expansion {
     /// The places of the rates, then of the events, then of what may turn faster than the motion.
     outputs: Vec<usize>,
     narrow: Vec<Kind>,
+    /// What the last terms of states, events and corners may be.
+    of_steps: Allowance,
+    /// Those of arguments of what is narrow.
+    of_arguments: Allowance,
 }
 
 impl Expansion {
@@ -422,7 +437,7 @@ impl Expansion {
     }
 
     /// The longest step within the tolerance of every state, event and argument of a corner.
-    pub(super) fn step(&self, tolerance: f64) -> f64 {
+    pub(super) fn step(&self) -> f64 {
         let followed = (0..self.states).map(|state| self.state(state));
         let events = self.outputs.iter().skip(self.states).take(self.events);
         let events = events.map(|output| self.tape.series(*output));
@@ -432,13 +447,11 @@ impl Expansion {
         followed
             .chain(events)
             .chain(corners)
-            .fold(f64::INFINITY, |longest, series| reach(series, tolerance, longest))
+            .fold(f64::INFINITY, |longest, series| self.of_steps.reach(series, longest))
     }
 
     /// The step, no longer than this, that ends beside the first place that is narrow for it, where there is one.
     fn short_of_narrow(&self, longest: f64) -> f64 {
-        /// An argument need be known to this part of itself only.
-        const CLOSELY: f64 = 1e-9;
         let arguments = self.outputs.iter().skip(self.states + self.events);
         let mut length = longest;
         for (kind, output) in self.narrow.iter().zip(arguments) {
@@ -447,7 +460,7 @@ impl Expansion {
                 continue;
             }
             // Beyond its own reach the series of the argument says nothing.
-            length = reach(series, CLOSELY, length);
+            length = self.of_arguments.reach(series, length);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
             }
@@ -553,38 +566,65 @@ impl Expansion {
     }
 }
 
-/// The longest step, no longer than this, on which the last terms of a series are within the tolerance: several, since symmetry
-/// may leave some of them zero.
-fn reach(series: &[f64], tolerance: f64, longest: f64) -> f64 {
-    const LAST: usize = 8;
-    const SHORTER: f64 = 0.9;
-    const TRIALS: usize = 400;
-    let order = series.len() - 1;
-    let last = order.saturating_sub(LAST - 1).max(1)..=order;
-    let Some(first) = series.iter().position(|c| *c != 0.0) else {
-        return longest;
-    };
-    let term = |k: usize, h: f64| series[k].abs() * h.powi(k as i32);
-    // The same for every trial.
-    let mut allowed = [0.0; LAST];
-    for (allowed, k) in allowed.iter_mut().zip(last.clone()) {
-        *allowed = tolerance.powf(k as f64 / order as f64);
-    }
-    let within = |h: f64| {
-        let size = (0..=order / 2).map(|k| term(k, h)).fold(0.0, f64::max);
-        last.clone()
-            .zip(allowed)
-            .all(|(k, allowed)| term(k, h) <= size * allowed)
-    };
-    // The root test; from there shorter until the last terms are small enough.
-    let radius = |k: usize| (series[first].abs() / series[k].abs()).powf(1.0 / (k - first) as f64);
-    let radii = last.clone().filter(|&k| k > first && series[k] != 0.0).map(radius);
-    let mut h = radii.fold(longest, f64::min);
-    for _ in 0..TRIALS {
-        if h.is_infinite() || within(h) {
-            break;
+/// So many of the last terms of a series are looked at: symmetry may leave some of them zero.
+const LAST: usize = 8;
+
+/// What the last terms of a series may be, of its size on the step.
+#[derive(Clone, Debug)]
+struct Allowance {
+    order: usize,
+    /// For the orders from [`Self::first`] on.
+    parts: [f64; LAST],
+}
+
+impl Allowance {
+    /// `tolerance` of the size for the last order, roots of it for those before.
+    fn new(tolerance: f64, order: usize) -> Self {
+        let mut parts = [0.0; LAST];
+        let first = Self::first(order);
+        for (part, k) in parts.iter_mut().zip(first..=order) {
+            *part = tolerance.powf(k as f64 / order as f64);
         }
-        h *= SHORTER;
+        Self { order, parts }
     }
-    h
+
+    /// The lowest of the last orders.
+    fn first(order: usize) -> usize {
+        order.saturating_sub(LAST - 1).max(1)
+    }
+
+    /// The longest step, no longer than this, on which the last terms of a series of this order are within the tolerance.
+    fn reach(&self, series: &[f64], longest: f64) -> f64 {
+        const SHORTER: f64 = 0.9;
+        const TRIALS: usize = 400;
+        let order = self.order;
+        let Some(lead) = series.iter().position(|c| *c != 0.0) else {
+            return longest;
+        };
+        let mut table = vec![0.0; order + 1];
+        let mut within = |h: f64| {
+            powers(h, &mut table);
+            let term = |k: usize| series[k].abs() * table[k];
+            let size = (0..=order / 2).map(term).fold(0.0, f64::max);
+            let mut last = (Self::first(order)..=order).zip(self.parts);
+            last.all(|(k, part)| term(k) <= size * part)
+        };
+        // The root test; from there shorter until the last terms are small enough.
+        let mut h = longest;
+        for k in Self::first(order).max(lead + 1)..=order {
+            let (size, power) = (series[k].abs(), h.powi((k - lead) as i32));
+            // A root is drawn only where it may come out shorter.
+            let clearly_longer = power >= f64::MIN_POSITIVE && series[lead].abs() > size * power * (1.0 + 1e-9);
+            if size != 0.0 && !clearly_longer {
+                h = h.min((series[lead].abs() / size).powf(1.0 / (k - lead) as f64));
+            }
+        }
+        for _ in 0..TRIALS {
+            if h.is_infinite() || within(h) {
+                break;
+            }
+            h *= SHORTER;
+        }
+        h
+    }
 }

@@ -75,28 +75,56 @@ static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINT
 /// [`QuadratureError`]: an infinite interval, a tolerance that is no positive number, an integrand without a finite
 /// value, or no convergence within 1000 panels; the last one carries the best value.
 pub fn integrate_smooth(
-    mut function: impl FnMut(f64) -> f64,
+    function: impl FnMut(f64) -> f64,
     from: f64,
     to: f64,
     tolerance: f64,
 ) -> Result<(f64, f64), QuadratureError> {
-    if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
+    integrate_piecewise(function, &[from, to], tolerance)
+}
+
+/// Integral of a `function` that is smooth between neighbouring `ends`, from the first of them to the last, and its absolute error
+/// estimate.
+///
+/// `tolerance` is relative to the integral of |f| over all pieces, so that one that adds next to nothing, where the integrand
+/// may be little but rounding, is not halved for the sake of its own size. Otherwise as [`integrate_smooth`].
+///
+/// # Errors
+/// As [`integrate_smooth`], with as many panels more as there are pieces.
+///
+/// ```
+/// use lindstedt::numeric::ode::quadrature::integrate_piecewise;
+/// let (area, _) = integrate_piecewise(f64::abs, &[-1.0, 0.0, 2.0], 1e-13)?;
+/// assert!((area - 2.5).abs() < 1e-14);
+/// # Ok::<(), lindstedt::numeric::ode::quadrature::QuadratureError>(())
+/// ```
+pub fn integrate_piecewise(
+    mut function: impl FnMut(f64) -> f64,
+    ends: &[f64],
+    tolerance: f64,
+) -> Result<(f64, f64), QuadratureError> {
+    let pieces = || ends.windows(2).map(|pair| (pair[0], pair[1]));
+    if let Some((from, to)) =
+        pieces().find(|(from, to)| !(from.is_finite() && to.is_finite() && (to - from).is_finite()))
+    {
         return Err(QuadratureError::Interval { from, to });
     }
     if tolerance.is_nan() || tolerance <= 0.0 {
         return Err(QuadratureError::Tolerance(tolerance));
     }
-    if from == to {
-        return Ok((0.0, 0.0));
-    }
     let tolerance = tolerance.max(1e-14);
-    let coarse = gauss(&mut function, from, to)?.0;
-    let first = Panel::split(&mut function, from, to, coarse)?;
+    let mut panels = Vec::new();
+    for (from, to) in pieces().filter(|(from, to)| from != to) {
+        let coarse = gauss(&mut function, from, to)?.0;
+        panels.push(Panel::split(&mut function, from, to, coarse)?);
+    }
+    let most = MAXIMUM_PANELS + panels.len();
     // The sums as they change panel by panel say when it is worth adding up all of them.
-    let (mut running_error, mut running_magnitude) = (first.error, first.magnitude);
-    let mut panels = vec![first];
+    let total = |panels: &[Panel], of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
+    let mut running_error = total(&panels, |panel| panel.error);
+    let mut running_magnitude = total(&panels, |panel| panel.magnitude);
     loop {
-        let sum = |of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
+        let sum = |of: fn(&Panel) -> f64| total(&panels, of);
         if running_error.is_nan() || running_error <= 2.0 * tolerance * running_magnitude {
             let error_estimate = sum(|panel| panel.error);
             if error_estimate <= tolerance * sum(|panel| panel.magnitude) {
@@ -108,10 +136,10 @@ pub fn integrate_smooth(
             .enumerate()
             .max_by(|one, other| one.1.error.total_cmp(&other.1.error));
         let Some((index, &panel)) = worst else {
-            return Ok((sum(Panel::value), sum(|panel| panel.error)));
+            return Ok((0.0, 0.0));
         };
         let middle = panel.middle();
-        if panels.len() >= MAXIMUM_PANELS || middle <= panel.from.min(panel.to) || middle >= panel.from.max(panel.to) {
+        if panels.len() >= most || middle <= panel.from.min(panel.to) || middle >= panel.from.max(panel.to) {
             return Err(QuadratureError::NotConverged {
                 value: sum(Panel::value),
                 error_estimate: sum(|panel| panel.error),
@@ -259,5 +287,32 @@ mod tests {
             Err(QuadratureError::Tolerance(_))
         ));
         assert_eq!(integrate_smooth(f64::exp, 2.0, 2.0, 1e-10), Ok((0.0, 0.0)));
+        assert_eq!(integrate_piecewise(f64::exp, &[2.0], 1e-10), Ok((0.0, 0.0)));
+        assert!(matches!(
+            integrate_piecewise(f64::exp, &[0.0, f64::NAN, 1.0], 1e-10),
+            Err(QuadratureError::Interval { .. })
+        ));
+    }
+
+    /// Where it is all but a jump its argument is rounded to nine digits, and the pieces there have none of their own to lose.
+    #[test]
+    fn a_piece_that_adds_nothing_is_not_halved_for_its_rounding() {
+        let places = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];
+        let mirrored = places.iter().rev().map(|place| -place);
+        let cuts = mirrored.chain(places).map(|place| f64::acos(-place));
+        let ends: Vec<f64> = [0.0].into_iter().chain(cuts).chain([std::f64::consts::PI]).collect();
+        let mut calls = 0;
+        let integrand = |theta: f64| {
+            calls += 1;
+            (1e6 * theta.cos()).atan() * theta.cos()
+        };
+        let (value, error) = integrate_piecewise(integrand, &ends, 1e-14).unwrap();
+        // int_0^pi atan(a cos) cos = pi (sqrt(1 + a^2) - 1)/a.
+        let exact = std::f64::consts::PI * (1e12_f64.sqrt().hypot(1.0) - 1.0) / 1e6;
+        assert!(
+            (value - exact).abs() < 1e-13 && error < 1e-13,
+            "{value} {exact} {error}"
+        );
+        assert!(calls < 10_000, "{calls}");
     }
 }

@@ -25,7 +25,7 @@ use crate::series::taylor::taylor;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::{DEFAULT_TOLERANCE, judge, needed_values};
+use crate::verify::{DEFAULT_TOLERANCE, Extent, judge_to, needed_values};
 
 /// What the program computes by name, beside the values that a file gives: the name, what it needs, what it is.
 pub const NAMES: [(&str, &str, &str); 29] = [
@@ -445,11 +445,12 @@ impl Scope<'_, '_> {
         }
     }
 
+    /// The formula beside the true motion there; how far it is good nobody asks.
     fn judged(&mut self) -> Result<crate::verify::Verification, Lack> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let at = exact(&numbers)?;
-        judge(equation, solution, &at, DEFAULT_TOLERANCE).map_err(|error| refused(&error))
+        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, Extent::Motion).map_err(|error| refused(&error))
     }
 
     /// The three phases of an impact with a line for the barrier.

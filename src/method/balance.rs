@@ -17,7 +17,7 @@
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::f64::consts::PI;
 use std::rc::Rc;
 
@@ -68,19 +68,44 @@ pub enum Lost {
     },
 }
 
+/// What is known of the branch from rest of one balance, force and harmonics being the same, from the amplitudes that were asked for
+/// before: the next is reached from the nearest below it instead of from rest.
+#[derive(Debug, Default)]
+pub struct Continuation(RefCell<Vec<State>>);
+
+impl Continuation {
+    /// The motion of the largest amplitude known that is no larger than this one, which is on this side.
+    fn below(&self, amplitude: f64) -> Option<State> {
+        let goal = amplitude.abs().ln();
+        let known = self.0.borrow();
+        let reached = known
+            .iter()
+            .filter(|state| state.logarithm() <= goal && state.side() == amplitude.signum());
+        reached
+            .max_by(|one, other| one.logarithm().total_cmp(&other.logarithm()))
+            .cloned()
+    }
+}
+
 /// Solves the balance of `harmonics` for the motion with `x(0) = amplitude` about the equilibrium. `degree` is that of a
 /// polynomial force.
 ///
 /// # Errors
 /// [`Lost`].
-pub fn balance(force: &Force, degree: Option<u32>, harmonics: &[usize], amplitude: f64) -> Result<Balance, Lost> {
+pub fn balance(
+    force: &Force,
+    degree: Option<u32>,
+    harmonics: &[usize],
+    amplitude: f64,
+    known: &Continuation,
+) -> Result<Balance, Lost> {
     /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more, and take long.
     const MOST_CUTS: usize = 600;
     let problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
     if problem.cuts.len() > MOST_CUTS {
         return Err(Lost::Unsettled);
     }
-    let (mut state, rest_ends_at) = problem.followed()?;
+    let (mut state, rest_ends_at) = problem.followed(known)?;
     if degree.is_none() {
         state = problem.refined(state)?;
     }
@@ -126,6 +151,11 @@ impl State {
 
     fn logarithm(&self) -> f64 {
         self.0[self.0.len() - 1]
+    }
+
+    /// That of the release, by `sum_k b_k = +-1`.
+    fn side(&self) -> f64 {
+        self.0.rows(1, self.0.len() - 2).sum().signum()
     }
 }
 
@@ -442,10 +472,21 @@ impl<'a> Problem<'a> {
     }
 
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from rest ends.
-    fn followed(&self) -> Result<(State, Option<f64>), Lost> {
+    fn followed(&self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
+        let mut passed = Vec::new();
+        if let Some(nearest) = known.below(self.amplitude)
+            && let Ok(found) = self.followed_from(nearest, 1.0, &mut passed)
+        {
+            known.0.borrow_mut().append(&mut passed);
+            return Ok((found, None));
+        }
+        passed.clear();
         let lost = match self.at_rest() {
-            Some(rest) => match self.followed_from(rest, 1.0) {
-                Ok(found) => return Ok((found, None)),
+            Some(rest) => match self.followed_from(rest, 1.0, &mut passed) {
+                Ok(found) => {
+                    known.0.borrow_mut().append(&mut passed);
+                    return Ok((found, None));
+                }
                 Err(lost) => lost,
             },
             None => Lost::NoStart,
@@ -458,7 +499,8 @@ impl<'a> Problem<'a> {
             let (low, high) = self.range(found);
             self.is_pulled_back(low, high) || self.runs_over_several_wells()
         };
-        let outer = self.at_large().and_then(|large| self.followed_from(large, -1.0).ok());
+        let outer = self.at_large();
+        let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut passed).ok());
         outer.filter(fits).map(|found| (found, Some(amplitude))).ok_or(lost)
     }
 
@@ -488,8 +530,9 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards.
-    fn followed_from(&self, start: State, way: f64) -> Result<State, Lost> {
+    /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards; what it passes is added to
+    /// `passed`.
+    fn followed_from(&self, start: State, way: f64, passed: &mut Vec<State>) -> Result<State, Lost> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
@@ -526,8 +569,12 @@ impl<'a> Problem<'a> {
             };
             let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * step.abs();
             match found.filter(near) {
-                Some(found) if last => return Ok(found),
+                Some(found) if last => {
+                    passed.push(found.clone());
+                    return Ok(found);
+                }
                 Some(found) => {
+                    passed.push(found.clone());
                     (state, direction) = (found, tangent);
                     length = f64::min(1.7 * length, LONGEST);
                 }

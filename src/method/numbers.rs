@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
+use super::balance::Continuation;
 use super::exact_motion::motion_about;
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
@@ -150,7 +151,7 @@ pub fn evaluate(
         chosen.push((hbar, value));
     }
     if solution.law.is_solved_by_numbers() {
-        let (frequency_squared, motion, remark) = solve(oscillator, solution, &numbers)?;
+        let (frequency_squared, motion, remark) = solve(oscillator, solution, &numbers, &Continuation::default())?;
         return Ok(Numbers {
             frequency_squared,
             rounding: 0.0,
@@ -199,13 +200,26 @@ pub fn frequency_squared_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, NoNumbers> {
+    frequency_squared_along(oscillator, solution, numbers, &Continuation::default())
+}
+
+/// As [`frequency_squared_of`] for one amplitude after the other, all else being the same: a balance goes on from where it was.
+///
+/// # Errors
+/// As [`evaluate`].
+pub(crate) fn frequency_squared_along(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    known: &Continuation,
+) -> Result<f64, NoNumbers> {
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
         let value = best_hbar(oscillator, solution, &numbers, hbar)?;
         numbers.insert(hbar, value);
     }
     match solution.law.is_solved_by_numbers() {
-        true => solve(oscillator, solution, &numbers).map(|found| found.0),
+        true => solve(oscillator, solution, &numbers, known).map(|found| found.0),
         false => frequency_squared(oscillator, solution, &numbers).map(|found| found.0),
     }
 }
@@ -682,6 +696,7 @@ fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
+    known: &Continuation,
 ) -> Result<(f64, FourierSeries<Doubles>, Option<String>), NoNumbers> {
     if oscillator.force.contains(oscillator.velocity()) {
         let found = || {
@@ -709,7 +724,7 @@ fn solve(
         let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
-        let found = balance::balance(&force, degree, &harmonics, amplitude)?;
+        let found = balance::balance(&force, degree, &harmonics, amplitude, known)?;
         let remark = found.rest_ends_at.map(|end| {
             let end = significant(end, 6);
             match found.over_several_wells {

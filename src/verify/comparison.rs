@@ -10,10 +10,12 @@ use super::orbit::TrueMotion;
 use super::reach::reach;
 use super::validity::{self, Reach};
 use super::{
-    Verdict, VerificationError, checked_numbers, formula_frequency, judge, largest_deviation, meant, numbers_or_reason,
+    Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation, meant,
+    numbers_or_reason,
 };
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
+use crate::method::balance::Continuation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::numbers::NoNumbers;
 use crate::method::{Options, Refusal, Unsuited, solve, with_resonance_at};
@@ -459,7 +461,10 @@ pub fn backbones(
         .iter()
         .filter(|row| row.solution.method != Method::Exact)
     {
-        let points = curve(&|amplitude| formula_frequency(oscillator, &row.solution, &truth.numbers_at(amplitude)));
+        let followed = Continuation::default();
+        let points = curve(&|amplitude| {
+            formula_frequency_along(oscillator, &row.solution, &truth.numbers_at(amplitude), &followed)
+        });
         let same = |known: &&mut Backbone| {
             known.points.len() == points.len()
                 && known

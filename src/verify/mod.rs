@@ -45,7 +45,8 @@ use crate::conservative::force::Force;
 use crate::decimal::decimal;
 use crate::exact::Doubles;
 use crate::expr::{EvaluationError, Expr, ExprError};
-use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_of, half_a_period, symbol_values};
+use crate::method::balance::Continuation;
+use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, symbol_values};
 use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -258,11 +259,35 @@ pub fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
+    judge_to(oscillator, solution, at, tolerance, Extent::Range)
+}
+
+/// How much is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// The motion at the values given, and nothing else: where motions are periodic, neither how its error grows nor how far the
+    /// formula is good, which takes most of the time.
+    Motion,
+    /// All of it.
+    Range,
+}
+
+/// As [`judge`], to this extent.
+///
+/// # Errors
+/// As for [`judge`].
+pub(crate) fn judge_to(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+    tolerance: f64,
+    extent: Extent,
+) -> Result<Verification, VerificationError> {
     if let Some(response) = &solution.response {
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
     if let Some(moving) = off_cycle(solution, at) {
-        return judge(oscillator, &moving, at, tolerance);
+        return judge_to(oscillator, &moving, at, tolerance, extent);
     }
     let settled = on_cycle(solution, at);
     if let (Some(slow), None) = (solution.slow(), &settled) {
@@ -289,6 +314,9 @@ pub fn judge(
     let remark = found.as_ref().and_then(|found| found.remark.clone());
     let remark = remark.map(|text| validity::Range { text, outside: false });
     let symbols = symbol_values(oscillator, solution, &numbers, found.as_ref());
+    let ranged = extent == Extent::Range;
+    let far = ranged.then(|| validity::ranges(oscillator, solution, &numbers, tolerance));
+    let far = far.into_iter().flatten();
     Ok(Verification {
         at: at.clone(),
         frequency,
@@ -299,12 +327,12 @@ pub fn judge(
         error_of_omega: series_of_omega(solution, &numbers).map(|omega| omega / truth.frequency - 1.0),
         max_deviation,
         residual: residual.filter(|value| value.is_finite()),
-        slope: slope(oscillator, solution, &numbers),
+        slope: ranged.then(|| slope(oscillator, solution, &numbers)).flatten(),
         ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
             .chain(remark)
-            .chain(validity::ranges(oscillator, solution, &numbers, tolerance))
+            .chain(far)
             .collect(),
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
         values: symbols.values,
@@ -450,7 +478,17 @@ pub fn motions(
 
 /// omega by the formula: the root of omega^2, `None` where that is not positive.
 fn formula_frequency(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    let squared = frequency_squared_of(oscillator, solution, numbers).ok()?;
+    formula_frequency_along(oscillator, solution, numbers, &Continuation::default())
+}
+
+/// As [`formula_frequency`] for one amplitude after the other, all else being the same.
+fn formula_frequency_along(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    known: &Continuation,
+) -> Option<f64> {
+    let squared = frequency_squared_along(oscillator, solution, numbers, known).ok()?;
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
 }
 

@@ -7,10 +7,11 @@
 use std::collections::BTreeMap;
 
 use super::backbone::TrueBackbone;
-use super::formula_frequency;
+use super::formula_frequency_along;
 use crate::conservative::features::Features;
 use crate::decimal::significant;
 use crate::expr::Expr;
+use crate::method::balance::Continuation;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -96,9 +97,10 @@ pub(super) fn reach(
     }
     let mut amplitudes = truth.amplitudes();
     let asked = truth.asked();
+    let known = Continuation::default();
     let error = |size: f64| {
         let true_frequency = truth.frequency(size)?;
-        let frequency = formula_frequency(oscillator, solution, &truth.numbers_at(size));
+        let frequency = formula_frequency_along(oscillator, solution, &truth.numbers_at(size), &known);
         Some(frequency.map_or(f64::INFINITY, |frequency| frequency / true_frequency - 1.0))
     };
     if solution.method == Method::Exact {

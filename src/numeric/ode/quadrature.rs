@@ -90,7 +90,7 @@ pub fn integrate_smooth(
 /// may be little but rounding, is not halved for the sake of its own size. Otherwise as [`integrate_smooth`].
 ///
 /// # Errors
-/// As [`integrate_smooth`], with as many panels more as there are pieces.
+/// As [`integrate_smooth`], with a panel more for every further piece.
 ///
 /// ```
 /// use lindstedt::numeric::ode::quadrature::integrate_piecewise;
@@ -118,7 +118,7 @@ pub fn integrate_piecewise(
         let coarse = gauss(&mut function, from, to)?.0;
         panels.push(Panel::split(&mut function, from, to, coarse)?);
     }
-    let most = MAXIMUM_PANELS + panels.len();
+    let most = MAXIMUM_PANELS + panels.len().saturating_sub(1);
     // The sums as they change panel by panel say when it is worth adding up all of them.
     let total = |panels: &[Panel], of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
     let mut running_error = total(&panels, |panel| panel.error);

@@ -106,6 +106,11 @@ impl Features {
         self.parts.is_empty()
     }
 
+    /// Whether some part of it goes up and down again and again, as a sine does.
+    pub fn waves(&self) -> bool {
+        self.parts.iter().any(|part| part.kind == Kind::Scale { waves: true })
+    }
+
     /// The places between `from` and `to`, and a little beyond, in order.
     pub fn between(&self, from: f64, to: f64) -> Vec<Feature> {
         let (from, to) = (from.min(to), from.max(to));

@@ -151,6 +151,11 @@ impl Force {
         cuts.into_iter().map(|place| place - at).collect()
     }
 
+    /// Whether some part of it goes up and down again and again, so that many waves may lie between two cuts.
+    pub(crate) fn waves(&self) -> bool {
+        self.features().waves()
+    }
+
     /// The polynomial near rest, where rounding of the force itself would show at this amplitude.
     fn near_rest(&self, equilibrium: &Expr, amplitude: f64) -> Option<Near> {
         /// Relative errors below this are no loss.

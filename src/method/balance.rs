@@ -17,7 +17,7 @@
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::PI;
 use std::rc::Rc;
 
@@ -71,13 +71,17 @@ pub enum Lost {
 /// What is known of the branch from rest of one balance, force and harmonics being the same, from the amplitudes that were asked for
 /// before: the next is reached from the nearest below it instead of from rest.
 #[derive(Debug, Default)]
-pub struct Continuation(RefCell<Vec<State>>);
+pub struct Continuation {
+    states: RefCell<Vec<State>>,
+    /// How much finer than usual the sums had to be for the last of them; none yet is 0.
+    fineness: Cell<usize>,
+}
 
 impl Continuation {
     /// The motion of the largest amplitude known that is no larger than this one, which is on this side.
     fn below(&self, amplitude: f64) -> Option<State> {
         let goal = amplitude.abs().ln();
-        let known = self.0.borrow();
+        let known = self.states.borrow();
         let reached = known
             .iter()
             .filter(|state| state.logarithm() <= goal && state.side() == amplitude.signum());
@@ -101,7 +105,8 @@ pub fn balance(
 ) -> Result<Balance, Lost> {
     /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more, and take long.
     const MOST_CUTS: usize = 600;
-    let problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
+    let mut problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
+    problem.fineness = known.fineness.get().max(1);
     if problem.cuts.len() > MOST_CUTS {
         return Err(Lost::Unsettled);
     }
@@ -168,6 +173,8 @@ struct Problem<'a> {
     /// Points of equal steps that are enough for a polynomial, or to begin with.
     points: usize,
     polynomial: bool,
+    /// How much finer the sums are than usual.
+    fineness: usize,
     amplitude: f64,
     /// Where the force turns fast, up to this distance.
     cuts: Vec<f64>,
@@ -202,6 +209,7 @@ impl<'a> Problem<'a> {
             first: harmonics.iter().position(|&k| k == 1)?,
             points: degree.map_or(8 * highest + 32, |degree| (degree as usize + 1) * highest / 2 + 2),
             polynomial: degree.is_some(),
+            fineness: 1,
             equal_steps: OnceCell::new(),
             amplitude: (amplitude.is_finite() && amplitude != 0.0).then_some(amplitude)?,
         })
@@ -232,8 +240,10 @@ impl<'a> Problem<'a> {
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
-    /// The points for sums along this motion, `finer` times as many as usual.
+    /// The points for sums along this motion, `finer` times as many as this problem has them.
     fn nodes(&self, state: &State, finer: usize) -> Rc<Nodes> {
+        let once = finer == 1;
+        let finer = finer * self.fineness;
         let cuts = if self.polynomial {
             vec![]
         } else {
@@ -251,9 +261,9 @@ impl<'a> Problem<'a> {
                 let angles: Vec<f64> = (0..points).map(|i| PI * (i as f64 + 0.5) / points as f64).collect();
                 Rc::new(self.with_cosines(&angles, vec![PI / points as f64; points], vec![None; points]))
             };
-            return match finer {
-                1 => self.equal_steps.get_or_init(equal_steps).clone(),
-                _ => equal_steps(),
+            return match once {
+                true => self.equal_steps.get_or_init(equal_steps).clone(),
+                false => equal_steps(),
             };
         }
         let (angles, weights, jumps) = self.between_crossings(state, &cuts, finer);
@@ -471,37 +481,64 @@ impl<'a> Problem<'a> {
             .filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
-    /// The branch from rest to the amplitude, or that from large amplitudes and where the one from rest ends.
-    fn followed(&self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
-        let mut passed = Vec::new();
-        if let Some(nearest) = known.below(self.amplitude)
-            && let Ok(found) = self.followed_from(nearest, 1.0, &mut passed)
-        {
-            known.0.borrow_mut().append(&mut passed);
-            return Ok((found, None));
-        }
-        passed.clear();
-        let lost = match self.at_rest() {
-            Some(rest) => match self.followed_from(rest, 1.0, &mut passed) {
-                Ok(found) => {
-                    known.0.borrow_mut().append(&mut passed);
-                    return Ok((found, None));
-                }
-                Err(lost) => lost,
-            },
-            None => Lost::NoStart,
+    /// The branch from rest to the amplitude, or that from large amplitudes and where the one from rest ends. Where it is the sums that
+    /// are too coarse to go on, they are made finer.
+    fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
+        const FINER: usize = 4;
+        const FINEST: usize = 64;
+        /// Of ln A: less is no way ahead.
+        const AHEAD: f64 = 0.01;
+        let mut before = f64::NEG_INFINITY;
+        let end = loop {
+            let end = match self.from_rest(known).ok_or(Lost::NoStart)? {
+                Ok(found) => return Ok((found, None)),
+                Err(end) => end,
+            };
+            let ahead = end.logarithm() > before + AHEAD;
+            if self.fineness >= FINEST || !ahead || !self.is_too_coarse(&end) {
+                break end;
+            }
+            before = end.logarithm();
+            self.fineness *= FINER;
+            self.equal_steps.take();
         };
-        let Lost::Ends { amplitude } = lost else {
-            return Err(lost);
-        };
+        let amplitude = end.logarithm().exp() * self.side();
         // A true motion that stays in one of several wells is none about all of them.
         let fits = |found: &State| {
             let (low, high) = self.range(found);
             self.is_pulled_back(low, high) || self.runs_over_several_wells()
         };
         let outer = self.at_large();
-        let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut passed).ok());
-        outer.filter(fits).map(|found| (found, Some(amplitude))).ok_or(lost)
+        let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut Vec::new()).ok());
+        let found = outer.filter(fits).map(|found| (found, Some(amplitude)));
+        found.ok_or(Lost::Ends { amplitude })
+    }
+
+    /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing where there is no motion at rest.
+    fn from_rest(&self, known: &Continuation) -> Option<Result<State, State>> {
+        let mut passed = Vec::new();
+        // By the sums of this problem, which may be finer than those that it was found with.
+        let nearest = known.below(self.amplitude);
+        let nearest = nearest.and_then(|state| self.near(&state, 0.05));
+        let mut found = nearest.and_then(|nearest| self.followed_from(nearest, 1.0, &mut passed).ok());
+        if found.is_none() {
+            passed.clear();
+            match self.followed_from(self.at_rest()?, 1.0, &mut passed) {
+                Ok(reached) => found = Some(reached),
+                Err(end) => return Some(Err(end)),
+            }
+        }
+        known.states.borrow_mut().append(&mut passed);
+        known.fineness.set(self.fineness);
+        found.map(Ok)
+    }
+
+    /// Whether the force waves more often than the sums can follow: finer ones say that this is no solution.
+    fn is_too_coarse(&self, state: &State) -> bool {
+        const FINER: usize = 4;
+        const AGREEING: f64 = 1e-7;
+        let residual = |finer: usize| Some(self.equations(state, &self.nodes(state, finer))?.0.amax());
+        !self.polynomial && self.force.waves() && residual(FINER).is_some_and(|residual| residual > AGREEING)
     }
 
     /// Whether the force pulls back all the way between two distances on either side of the equilibrium: there is no other.
@@ -532,7 +569,10 @@ impl<'a> Problem<'a> {
 
     /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards; what it passes is added to
     /// `passed`.
-    fn followed_from(&self, start: State, way: f64, passed: &mut Vec<State>) -> Result<State, Lost> {
+    ///
+    /// # Errors
+    /// The last motion, where the branch does not reach the amplitude.
+    fn followed_from(&self, start: State, way: f64, passed: &mut Vec<State>) -> Result<State, State> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
@@ -585,9 +625,7 @@ impl<'a> Problem<'a> {
                 break;
             }
         }
-        Err(Lost::Ends {
-            amplitude: state.logarithm().exp() * self.side(),
-        })
+        Err(state)
     }
 
     /// The direction of the branch, forward.

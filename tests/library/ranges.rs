@@ -1,9 +1,13 @@
 //! Where a formula holds, beside what is known in closed form: zeros and poles of laws, wells and what lies beyond them,
 //! radii of convergence, the first amplitude at which a formula fails, and the size of what is left over.
 
+use std::f64::consts::TAU;
+
 use lindstedt::Values;
 use lindstedt::expr::parse_expression;
+use lindstedt::method::numbers::frequency_squared_of;
 use lindstedt::method::{Options, solve};
+use lindstedt::numeric::period::{Force, conservative_period};
 use lindstedt::solution::{Degrees, Method, Note};
 use lindstedt::verify::{Range, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
@@ -24,6 +28,34 @@ fn judged(equation: &str, method: Method, order: Option<u32>, amplitude: &str) -
         ..Options::default()
     };
     judged_by(&Oscillator::parse(equation).unwrap(), &options, &[("A", amplitude)])
+}
+
+/// A sine waves more and more often along a large motion; the balance of two harmonics is followed through all of it.
+#[test]
+fn a_balance_is_followed_through_the_waves_of_its_force() {
+    let oscillator = Oscillator::parse("x'' + x + sin(x) = 0").unwrap();
+    let options = Options {
+        method: Some(Method::HarmonicBalance),
+        order: Some(2),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).unwrap();
+    for amplitude in [20.0, 100.0, 131.0, 179.0, 250.0, 400.0] {
+        let square = frequency_squared_of(&oscillator, &solution, &[("A".into(), amplitude)].into()).unwrap();
+        let force = |x: f64| x + x.sin();
+        let waves = |from: f64, to: f64| {
+            (-400..400)
+                .map(f64::from)
+                .filter(|place| from < *place && *place < to)
+                .collect()
+        };
+        let truth = TAU / conservative_period(&Force::with_cuts(&force, &waves), 0.0, amplitude).unwrap();
+        // What the harmonics left out change: less than the second power of the wave over the amplitude.
+        assert!(
+            (square.sqrt() / truth - 1.0).abs() < 0.1 / amplitude.powi(2),
+            "{amplitude}: {square} {truth}"
+        );
+    }
 }
 
 /// The range whose text has these words.

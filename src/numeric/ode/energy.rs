@@ -14,7 +14,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::IntegrationError;
-use super::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
+use super::quadrature::{QuadratureError, integrate_within, nodes_and_weights};
 use super::root::{RootError, find_root};
 
 /// Relative tolerance of the quadratures.
@@ -289,10 +289,21 @@ const MOST_PANELS: i32 = 64;
 
 /// The integral of a force: panels are doubled until the value settles. Errors below `negligible` do not count.
 fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) -> Result<f64, QuadratureError> {
+    const MOST: usize = 1000;
+    integral_within(function, [from, to], negligible, MOST)
+}
+
+/// As [`integral`], by so many panels at most where they are halved one by one.
+fn integral_within(
+    function: &dyn Fn(f64) -> f64,
+    [from, to]: [f64; 2],
+    negligible: f64,
+    most_panels: usize,
+) -> Result<f64, QuadratureError> {
     if let Some(value) = settled(function, from, to, negligible, MOST_PANELS) {
         return Ok(value);
     }
-    match integrate_smooth(function, from, to, TOLERANCE) {
+    match integrate_within(function, &[from, to], TOLERANCE, most_panels) {
         // Where pull and push cancel, the integral is as good as the forces in it allow.
         Err(QuadratureError::NotConverged {
             value, error_estimate, ..
@@ -349,6 +360,8 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     const FARTHEST: f64 = 1e10;
     /// How often a stretch on which the force has no integral is halved.
     const HALVINGS: u32 = 60;
+    /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
+    const FEW_PANELS: usize = 120;
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
     if force.at(start) * side <= 0.0 || amplitude == 0.0 {
@@ -358,7 +371,8 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
         return Ok(equilibrium - amplitude);
     }
     // Against the largest energy on the way, errors below the last digit are none.
-    let gained = |from: f64, to: f64, largest: f64| integral(force.value, to, from, 0.5 * f64::EPSILON * largest);
+    let below = |largest: f64| 0.5 * f64::EPSILON * largest;
+    let gained = |from: f64, to: f64, largest: f64| integral(force.value, to, from, below(largest));
     // Windows of growing length: to the mirror image of the start, as far again, twice as far, ...
     let (mut x, mut energy, mut largest, mut window) = (start, 0.0, 0.0, 2.0 * amplitude.abs());
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
@@ -372,7 +386,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
             stretches.reverse();
             let mut halvings = 0;
             while let Some((here, next)) = stretches.pop() {
-                let gain = match gained(here, next, largest) {
+                let gain = match integral_within(force.value, [next, here], below(largest), FEW_PANELS) {
                     // Towards a pole, by half of the way at a time.
                     Err(_) if halvings < HALVINGS => {
                         halvings += 1;

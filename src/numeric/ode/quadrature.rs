@@ -99,9 +99,22 @@ pub fn integrate_smooth(
 /// # Ok::<(), lindstedt::numeric::ode::quadrature::QuadratureError>(())
 /// ```
 pub fn integrate_piecewise(
+    function: impl FnMut(f64) -> f64,
+    ends: &[f64],
+    tolerance: f64,
+) -> Result<(f64, f64), QuadratureError> {
+    integrate_within(function, ends, tolerance, MAXIMUM_PANELS)
+}
+
+/// As [`integrate_piecewise`] with as many panels as `most_panels` for the first piece, for who halves the interval otherwise.
+///
+/// # Errors
+/// As [`integrate_piecewise`].
+pub(crate) fn integrate_within(
     mut function: impl FnMut(f64) -> f64,
     ends: &[f64],
     tolerance: f64,
+    most_panels: usize,
 ) -> Result<(f64, f64), QuadratureError> {
     let pieces = || ends.windows(2).map(|pair| (pair[0], pair[1]));
     if let Some((from, to)) =
@@ -118,7 +131,7 @@ pub fn integrate_piecewise(
         let coarse = gauss(&mut function, from, to)?.0;
         panels.push(Panel::split(&mut function, from, to, coarse)?);
     }
-    let most = MAXIMUM_PANELS + panels.len().saturating_sub(1);
+    let most = most_panels + panels.len().saturating_sub(1);
     // The sums as they change panel by panel say when it is worth adding up all of them.
     let total = |panels: &[Panel], of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
     let mut running_error = total(&panels, |panel| panel.error);

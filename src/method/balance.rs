@@ -490,7 +490,7 @@ impl<'a> Problem<'a> {
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {
-            let end = match self.from_rest(known).ok_or(Lost::NoStart)? {
+            let end = match self.up_from_rest(known).ok_or(Lost::NoStart)? {
                 Ok(found) => return Ok((found, None)),
                 Err(end) => end,
             };
@@ -515,7 +515,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing where there is no motion at rest.
-    fn from_rest(&self, known: &Continuation) -> Option<Result<State, State>> {
+    fn up_from_rest(&self, known: &Continuation) -> Option<Result<State, State>> {
         let mut passed = Vec::new();
         // By the sums of this problem, which may be finer than those that it was found with.
         let nearest = known.below(self.amplitude);

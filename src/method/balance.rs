@@ -15,7 +15,8 @@
 //! large that the highest power alone decides. Where there are none either, the balance is refused in words.
 //!
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
-//! between the instants at which the motion crosses a corner, a jump or a narrow place of the force.
+//! between the instants at which the motion crosses a corner, a jump or a narrow place of the force; where a force waves more often
+//! than they follow, finer ones.
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::PI;

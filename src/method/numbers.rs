@@ -232,42 +232,59 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
     if initial == own || numbers.contains_key(&own) || !numbers.contains_key(&initial) {
         return numbers;
     }
-    // Each order is marked by the small parameters, or by the amplitude itself.
-    let order = i32::try_from(solution.order).unwrap_or(i32::MAX);
+    // What the motion has at its start beside the amplitude and the equilibrium, by the power of the amplitude and by the order:
+    // each is marked by the small parameters, or by the amplitude itself.
     let in_amplitude = solution.small_parameter == own;
-    let kept = |polynomial: &Polynomial| {
-        let mut kept = Polynomial::zero();
-        for (monomial, number) in polynomial.terms() {
-            let power = match in_amplitude {
-                true => monomial.exponent(initial) - 1,
-                false => solution.order_of(monomial),
-            };
-            if power <= order {
-                kept.add_term(monomial.clone(), number.clone());
-            }
-        }
-        kept
-    };
-    // What the motion has at its start beside the amplitude and the equilibrium.
-    let mut beside = Polynomial::zero();
     let one: Polynomial = Polynomial::symbol(own);
+    let mut beside: BTreeMap<(i32, i32), Polynomial> = BTreeMap::new();
     for (monomial, number) in solution.displacement.at_zero().constant_term().terms() {
-        if monomial.exponent(own) > 0 && one.coefficient(monomial).is_zero() {
-            beside.add_term(monomial.clone(), -number.clone());
+        let power = monomial.exponent(own);
+        if power > 0 && one.coefficient(monomial).is_zero() {
+            let order = if in_amplitude {
+                power - 1
+            } else {
+                solution.order_of(monomial)
+            };
+            let terms = beside.entry((power, order)).or_insert_with(Polynomial::zero);
+            terms.add_term(monomial.without(own), -number.clone());
         }
     }
-    let mut amplitude = Polynomial::symbol(initial);
-    for _ in 0..solution.order {
-        let Some(correction) = beside.substitute(own, &amplitude) else {
-            return numbers;
-        };
-        amplitude = kept(&(Polynomial::symbol(initial) + correction));
-    }
-    let value = solution.evaluate(&amplitude, &|name| numbers.get(&name).copied());
-    if let Ok(value) = value {
+    let value_of = |polynomial: &Polynomial| solution.evaluate(polynomial, &|name| numbers.get(&name).copied());
+    let beside: Result<Vec<_>, Symbol> = beside
+        .iter()
+        .map(|(&(power, order), terms)| Ok((power, order, value_of(terms)?)))
+        .collect();
+    if let Ok(beside) = beside {
+        let value = inverted(numbers[&initial], &beside, solution.order);
         numbers.insert(own, value);
     }
     numbers
+}
+
+/// `a` of `a = first + sum c d^k a^n`, of which `beside` are the `(n, k, c)`, as a series in `d` up to its power `order`, at `d = 1`.
+/// Every pass gets one more power right.
+fn inverted(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
+    let mut series = vec![first];
+    for pass in 1..=order as usize {
+        let product = |one: &[f64], other: &[f64]| -> Vec<f64> {
+            (0..=pass)
+                .map(|k| (0..=k).filter_map(|j| Some(one.get(j)? * other.get(k - j)?)).sum())
+                .collect()
+        };
+        let highest = beside.iter().map(|term| term.0).max().unwrap_or(0);
+        let mut next = vec![0.0; pass + 1];
+        next[0] = first;
+        let mut raised = vec![1.0];
+        for power in 1..=highest {
+            raised = product(&raised, &series);
+            for &(_, shift, factor) in beside.iter().filter(|term| term.0 == power) {
+                let shifted = next.iter_mut().skip(usize::try_from(shift).unwrap_or(0));
+                shifted.zip(&raised).for_each(|(sum, value)| *sum += factor * value);
+            }
+        }
+        series = next;
+    }
+    series.iter().sum()
 }
 
 /// The symbol of homotopy analysis that is to be chosen, where there is one.

@@ -9,6 +9,7 @@
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use num_traits::Zero;
 
@@ -24,18 +25,26 @@ const DEGREE: u32 = 10;
 
 /// A force as a function of the distance from its equilibrium.
 pub struct Force {
+    of: Rc<AtNumbers>,
+    near: Option<Near>,
+    evaluations: Cell<u64>,
+}
+
+/// What does not depend on the size of the motion.
+struct AtNumbers {
     force: Expr,
     coordinate: Symbol,
     numbers: BTreeMap<Symbol, f64>,
-    equilibrium: f64,
+    /// In symbols, and its place.
+    equilibrium: (Expr, f64),
     value: CompiledFunction,
     slope: Option<CompiledFunction>,
     arguments: RefCell<Vec<f64>>,
-    near: Option<Near>,
+    /// The Taylor coefficients about the equilibrium, where there are any.
+    coefficients: OnceCell<Option<Vec<f64>>>,
     features: OnceCell<Features>,
     /// Whether places of features are poles, each decided once.
     poles: RefCell<BTreeMap<u64, bool>>,
-    evaluations: Cell<u64>,
 }
 
 /// The Taylor polynomial and the distance up to which it is as good as the force.
@@ -56,40 +65,54 @@ impl Force {
         let names: Vec<Symbol> = std::iter::once(coordinate).chain(numbers.keys().copied()).collect();
         let place = equilibrium.evaluate(numbers).ok()?;
         let slope = force.differentiate(coordinate).ok();
-        let mut found = Self {
+        let of = AtNumbers {
             value: CompiledFunction::new(force, &names).ok()?,
             slope: slope.and_then(|slope| CompiledFunction::new(&slope, &names).ok()),
             // One row of arguments for all calls: only its first entry, the position, changes.
             arguments: RefCell::new(std::iter::once(0.0).chain(numbers.values().copied()).collect()),
-            near: None,
-            equilibrium: place,
+            coefficients: OnceCell::new(),
+            equilibrium: (equilibrium.clone(), place),
             force: force.clone(),
             coordinate,
             numbers: numbers.clone(),
             features: OnceCell::new(),
             poles: RefCell::default(),
+        };
+        Some(Self::of_amplitude(Rc::new(of), amplitude))
+    }
+
+    /// The same force for motions of about another amplitude: what was found out about it is not found out again.
+    #[must_use]
+    pub fn with_amplitude(&self, amplitude: f64) -> Self {
+        Self::of_amplitude(Rc::clone(&self.of), amplitude)
+    }
+
+    fn of_amplitude(of: Rc<AtNumbers>, amplitude: f64) -> Self {
+        let mut found = Self {
+            of,
+            near: None,
             evaluations: Cell::new(0),
         };
-        found.near = found.near_rest(equilibrium, amplitude);
-        Some(found)
+        found.near = found.near_rest(amplitude);
+        found
     }
 
     /// The position of the equilibrium.
     pub fn equilibrium(&self) -> f64 {
-        self.equilibrium
+        self.of.equilibrium.1
     }
 
     /// The force at the distance `y` from the equilibrium.
     pub fn at(&self, y: f64) -> f64 {
         match self.near.as_ref().filter(|near| y.abs() <= near.radius) {
             Some(near) => near.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c),
-            None => self.call(&self.value, y),
+            None => self.call(&self.of.value, y),
         }
     }
 
     /// Its derivative there, jumps left out; NaN where it has none.
     pub fn slope(&self, y: f64) -> f64 {
-        match (self.near.as_ref().filter(|near| y.abs() <= near.radius), &self.slope) {
+        match (self.near.as_ref().filter(|near| y.abs() <= near.radius), &self.of.slope) {
             (Some(near), _) => {
                 let terms = near.coefficients.iter().enumerate().skip(1).rev();
                 terms.fold(0.0, |sum, (k, c)| sum * y + k as f64 * c)
@@ -125,44 +148,30 @@ impl Force {
 
     fn call(&self, function: &CompiledFunction, y: f64) -> f64 {
         self.evaluations.set(self.evaluations.get() + 1);
-        let mut arguments = self.arguments.borrow_mut();
-        arguments[0] = self.equilibrium + y;
+        let mut arguments = self.of.arguments.borrow_mut();
+        arguments[0] = self.equilibrium() + y;
         function.call(&arguments)
-    }
-
-    fn features(&self) -> &Features {
-        self.features.get_or_init(|| {
-            // The poles of the tangent are the zeros of the cosine.
-            let quotients = self
-                .force
-                .fold(|expr, children: &[Expr]| match (expr.node(), children) {
-                    (Node::Function(Function::Tan, _), [argument]) => Expr::divide(&argument.sin()?, &argument.cos()?),
-                    _ => expr.with_children(children),
-                });
-            let force = quotients.as_ref().unwrap_or(&self.force);
-            Features::new(force, self.coordinate, &self.numbers)
-        })
     }
 
     /// Where to cut an interval of distances so that the force is smooth on each piece.
     pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
-        let at = self.equilibrium;
-        let cuts = self.features().cuts(at + from, at + to);
+        let at = self.equilibrium();
+        let cuts = self.of.features().cuts(at + from, at + to);
         cuts.into_iter().map(|place| place - at).collect()
     }
 
     /// Whether some part of it goes up and down again and again, so that many waves may lie between two cuts.
     pub(crate) fn waves(&self) -> bool {
-        self.features().waves()
+        self.of.features().waves()
     }
 
     /// The polynomial near rest, where rounding of the force itself would show at this amplitude.
-    fn near_rest(&self, equilibrium: &Expr, amplitude: f64) -> Option<Near> {
+    fn near_rest(&self, amplitude: f64) -> Option<Near> {
         /// Relative errors below this are no loss.
         const HARMLESS: f64 = 2e-14;
         /// How many amplitudes the polynomial may reach: farther than the search for the edge of a well.
         const FARTHEST: f64 = 1e12;
-        let (coordinate, numbers, place) = (self.coordinate, &self.numbers, self.equilibrium);
+        let (coordinate, numbers, place) = (self.of.coordinate, &self.of.numbers, self.equilibrium());
         let cancels = [0.31 * amplitude, -0.7 * amplitude].into_iter().any(|y| {
             let there = |symbol: Symbol| match symbol == coordinate {
                 // The sum of equilibrium and distance is rounded itself.
@@ -170,25 +179,15 @@ impl Force {
                 true => Some((place + y, 0.5 * f64::EPSILON * place.abs())),
                 false => numbers.get(&symbol).map(|&value| (value, 0.0)),
             };
-            let value = self.force.evaluate_rounded(&there);
+            let value = self.of.force.evaluate_rounded(&there);
             value.is_some_and(|(value, error)| error > HARMLESS * value.abs())
         });
         // At a removable singularity the force has no value of its own, and towards it no digits.
-        let at_rest = value_at(&self.force, coordinate, place, numbers);
+        let at_rest = value_at(&self.of.force, coordinate, place, numbers);
         if !cancels && at_rest.is_some() {
             return None;
         }
-        let moved = Expr::from(coordinate) + equilibrium.clone();
-        let about = self.force.substitute(coordinate, &moved).ok()?;
-        let parts = taylor(&about, &[(coordinate, Rational::zero())], DEGREE).ok()?;
-        let mut at_one = numbers.clone();
-        at_one.insert(coordinate, 1.0);
-        let mut coefficients: Vec<f64> = parts
-            .iter()
-            .map(|part| part.evaluate(&at_one).ok())
-            .collect::<Option<_>>()?;
-        // At the equilibrium the force is zero, whatever rounding says.
-        *coefficients.first_mut()? = 0.0;
+        let coefficients = self.of.coefficients.get_or_init(|| self.of.expanded()).as_ref()?;
         let size = |k: usize, radius: f64| coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32));
         let good = |radius: f64| {
             let leading = (1..=3).map(|k| size(k, radius)).fold(0.0, f64::max);
@@ -203,19 +202,23 @@ impl Force {
         };
         let mut radii = radii(FARTHEST * amplitude.abs(), 0.5).take(240);
         let radius = radii.find(|&radius| good(radius) && clear(radius))?;
-        Some(Near { coefficients, radius })
+        Some(Near {
+            coefficients: coefficients.clone(),
+            radius,
+        })
     }
 
     /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and no narrow place within four times the distance: of what
     /// happens there the Taylor coefficients at rest may know nothing.
     fn is_clear(&self, radius: f64, at_rest: f64) -> bool {
         let narrow = self
+            .of
             .features()
-            .between(self.equilibrium - 4.0 * radius, self.equilibrium + 4.0 * radius);
+            .between(self.equilibrium() - 4.0 * radius, self.equilibrium() + 4.0 * radius);
         narrow.into_iter().all(|feature| {
-            let distance = (feature.place - self.equilibrium).abs();
+            let distance = (feature.place - self.equilibrium()).abs();
             let reach = if feature.width == 0.0 { radius } else { 4.0 * radius };
-            let rounding = f64::max(at_rest, 4.0 * f64::EPSILON * self.equilibrium.abs());
+            let rounding = f64::max(at_rest, 4.0 * f64::EPSILON * self.equilibrium().abs());
             distance <= rounding || distance > reach || feature.width > radius / 16.0
         })
     }
@@ -248,24 +251,27 @@ impl Force {
                     outside = middle;
                 }
             }
-            return Some(self.equilibrium + outside);
+            return Some(self.equilibrium() + outside);
         }
-        if self.features().is_empty() {
+        if self.of.features().is_empty() {
             return None;
         }
-        let places = self.features().between(self.equilibrium + from, self.equilibrium + to);
+        let places = self
+            .of
+            .features()
+            .between(self.equilibrium() + from, self.equilibrium() + to);
         places
             .into_iter()
             .map(|feature| feature.place)
-            .filter(|place| (from..=to).contains(&(place - self.equilibrium)))
-            .filter(|place| (place - self.equilibrium).abs() > 8.0 * f64::EPSILON * self.equilibrium.abs())
+            .filter(|place| (from..=to).contains(&(place - self.equilibrium())))
+            .filter(|place| (place - self.equilibrium()).abs() > 8.0 * f64::EPSILON * self.equilibrium().abs())
             .find(|&place| {
                 // At zero alone the answer depends on the size of the motion.
-                let known = self.poles.borrow().get(&place.to_bits()).copied();
+                let known = self.of.poles.borrow().get(&place.to_bits()).copied();
                 let pole = known.filter(|_| place != 0.0);
                 pole.unwrap_or_else(|| {
                     let found = self.is_pole(place, size);
-                    self.poles.borrow_mut().insert(place.to_bits(), found);
+                    self.of.poles.borrow_mut().insert(place.to_bits(), found);
                     found
                 })
             })
@@ -273,11 +279,11 @@ impl Force {
 
     /// What of the force is beyond double precision at the distance `y`, in words, where that is why it has no finite value there.
     pub fn overflow(&self, y: f64) -> Option<String> {
-        let mut there = self.numbers.clone();
-        there.insert(self.coordinate, self.equilibrium + y);
+        let mut there = self.of.numbers.clone();
+        there.insert(self.of.coordinate, self.equilibrium() + y);
         match self.at(y).is_finite() {
             true => None,
-            false => self.force.overflow(&there),
+            false => self.of.force.overflow(&there),
         }
     }
 
@@ -289,11 +295,11 @@ impl Force {
         let scale = if place == 0.0 { size } else { place.abs() };
         let strength = |distance: f64| {
             let sides = [-distance, distance].map(|side| {
-                let there = |symbol: Symbol| match symbol == self.coordinate {
+                let there = |symbol: Symbol| match symbol == self.of.coordinate {
                     true => Some((place + side, 0.0)),
-                    false => self.numbers.get(&symbol).map(|&value| (value, 0.0)),
+                    false => self.of.numbers.get(&symbol).map(|&value| (value, 0.0)),
                 };
-                let found = self.force.evaluate_rounded(&there);
+                let found = self.of.force.evaluate_rounded(&there);
                 found.filter(|(value, error)| value.is_finite() && *error <= 0.1 * value.abs())
             });
             let known = sides.into_iter().flatten().map(|(value, _)| value.abs());
@@ -307,6 +313,38 @@ impl Force {
         pairs
             .next()
             .is_some_and(|(close, far)| close > far * 100.0_f64.powf(FASTER_THAN))
+    }
+}
+
+impl AtNumbers {
+    fn features(&self) -> &Features {
+        self.features.get_or_init(|| {
+            // The poles of the tangent are the zeros of the cosine.
+            let quotients = self
+                .force
+                .fold(|expr, children: &[Expr]| match (expr.node(), children) {
+                    (Node::Function(Function::Tan, _), [argument]) => Expr::divide(&argument.sin()?, &argument.cos()?),
+                    _ => expr.with_children(children),
+                });
+            let force = quotients.as_ref().unwrap_or(&self.force);
+            Features::new(force, self.coordinate, &self.numbers)
+        })
+    }
+
+    /// The Taylor coefficients about the equilibrium; `None` where there are none.
+    fn expanded(&self) -> Option<Vec<f64>> {
+        let moved = Expr::from(self.coordinate) + self.equilibrium.0.clone();
+        let about = self.force.substitute(self.coordinate, &moved).ok()?;
+        let parts = taylor(&about, &[(self.coordinate, Rational::zero())], DEGREE).ok()?;
+        let mut at_one = self.numbers.clone();
+        at_one.insert(self.coordinate, 1.0);
+        let mut coefficients: Vec<f64> = parts
+            .iter()
+            .map(|part| part.evaluate(&at_one).ok())
+            .collect::<Option<_>>()?;
+        // At the equilibrium the force is zero, whatever rounding says.
+        *coefficients.first_mut()? = 0.0;
+        Some(coefficients)
     }
 }
 

@@ -177,10 +177,34 @@ fn exact_root(value: &Rational, degree: u32) -> Option<Rational> {
         return None;
     }
     let root = |integer: &Integer| {
+        if !may_be_power(integer, degree) {
+            return None;
+        }
         let candidate = integer.nth_root(degree);
         (candidate.pow(degree) == *integer).then_some(candidate)
     };
     Some(Rational::new_raw(root(value.numer())?, root(value.denom())?))
+}
+
+/// Whether a number leaves the remainder of a power when divided by a prime `p = k degree + 1`: one in `degree` of all others does
+/// (Euler's criterion), and no root of a long number has to be taken to see that it has none.
+fn may_be_power(value: &Integer, degree: u32) -> bool {
+    const LARGEST: u32 = 64;
+    if !(2..=LARGEST).contains(&degree) {
+        return true;
+    }
+    let degree = u64::from(degree);
+    let is_prime = |number: &u64| {
+        (2..)
+            .take_while(|d| d * d <= *number)
+            .all(|d| !number.is_multiple_of(&d))
+    };
+    let Some(prime) = (1..).map(|k| k * degree + 1).find(is_prime) else {
+        return true;
+    };
+    let remainder = (value.abs() % Integer::from(prime)).to_u64().unwrap_or(0);
+    let power = (0..(prime - 1) / degree).fold(1, |power, _| power * remainder % prime);
+    remainder == 0 || power == 1
 }
 
 /// The factorial of `n`, exactly.
@@ -191,6 +215,22 @@ pub fn factorial(n: u32) -> Integer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn powers_have_their_roots_and_nothing_else_has() {
+        let long = Integer::from(7).pow(60) + Integer::from(11);
+        let numbers = (-40..=40).map(Integer::from).chain([long.clone(), -long]);
+        for number in numbers.filter(|number| !number.is_zero()) {
+            for degree in (2..=70).filter(|degree| !number.is_negative() || degree % 2 == 1) {
+                let raised = Rational::from_integer(number.pow(degree));
+                assert_eq!(exact_root(&raised, degree), Some(number.clone().into()), "{degree}");
+                let beside = &raised + Rational::one();
+                let expected = (number.pow(degree) == Integer::from(-1)).then(Rational::zero);
+                let expected = expected.or((beside.is_one()).then(Rational::one));
+                assert_eq!(exact_root(&beside, degree), expected, "{number}^{degree} + 1");
+            }
+        }
+    }
 
     #[test]
     fn sums_and_products_are_in_lowest_terms() {

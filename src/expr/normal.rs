@@ -395,14 +395,20 @@ fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<E
 
 /// The smallest base: `4^(1/3) = 2^(2/3)`, so that equal roots look equal.
 fn as_perfect_power(base: Integer, exponent: Rational) -> (Integer, Rational) {
-    let largest = base.bits().min(64);
-    for degree in (2..=largest).rev() {
+    /// A power of a larger prime is left as it is.
+    const PRIMES: [u32; 18] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61];
+    let (mut base, mut exponent) = (Rational::from_integer(base), exponent);
+    for degree in PRIMES {
         let fraction = Rational::new(1.into(), degree.into());
-        if let Some(root) = rational::power(&Rational::from_integer(base.clone()), &fraction) {
-            return (root.to_integer(), exponent * Rational::from_integer(degree.into()));
+        while u64::from(degree) <= base.numer().bits() && !base.is_one() {
+            let Some(root) = rational::power(&base, &fraction) else {
+                break;
+            };
+            base = root;
+            exponent *= Rational::from_integer(degree.into());
         }
     }
-    (base, exponent)
+    (base.to_integer(), exponent)
 }
 
 #[cfg(test)]

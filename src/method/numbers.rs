@@ -3,11 +3,11 @@
 //! Polynomials, implicit relations and closed forms are evaluated; a balance of harmonics, a law that is an integral, the
 //! exact motion and the choice of hbar in homotopy analysis are solved for.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
-use super::balance::Continuation;
 use super::exact_motion::motion_about;
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
@@ -53,6 +53,26 @@ pub struct SymbolValues {
     pub values: Vec<(Symbol, f64)>,
     /// theta at `t = 0`: pi where the amplitude stands with its size instead of itself, else 0.
     pub phase: f64,
+}
+
+/// What the amplitudes that were asked for before have left for the next, all else being the same: a balance goes on from where it
+/// was, and what a force is at rest is found once.
+#[derive(Default)]
+pub(crate) struct Known {
+    balance: balance::Continuation,
+    force: OnceCell<Option<Force>>,
+}
+
+impl Known {
+    /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+    fn force(&self, oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
+        let amplitude = amplitude_of(solution, numbers);
+        let known = self.force.get_or_init(|| {
+            let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
+            Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
+        });
+        Some(known.as_ref()?.with_amplitude(amplitude))
+    }
 }
 
 /// Why an answer has no numbers.
@@ -143,15 +163,16 @@ pub fn evaluate(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Numbers, NoNumbers> {
+    let known = &Known::default();
     let mut chosen = Vec::new();
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar)?;
+        let value = best_hbar(oscillator, solution, &numbers, hbar, known)?;
         numbers.insert(hbar, value);
         chosen.push((hbar, value));
     }
     if solution.law.is_solved_by_numbers() {
-        let (frequency_squared, motion, remark) = solve(oscillator, solution, &numbers, &Continuation::default())?;
+        let (frequency_squared, motion, remark) = solve(oscillator, solution, &numbers, known)?;
         return Ok(Numbers {
             frequency_squared,
             rounding: 0.0,
@@ -160,12 +181,14 @@ pub fn evaluate(
             remark,
         });
     }
-    let (squared, rounding) = frequency_squared(oscillator, solution, &numbers)?;
+    let (squared, rounding) = frequency_squared(oscillator, solution, &numbers, known)?;
     if rounding > NO_DIGITS && squared != 0.0 {
         return Err(NoNumbers::Cancels { rounding });
     }
     let motion = match Entry::of(solution.method).motion {
-        Motion::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers).ok().map(|found| found.1),
+        Motion::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers, known)
+            .ok()
+            .map(|found| found.1),
         Motion::Exact => None,
         // The frequency alone.
         Motion::Formula if solution.displacement.is_zero() => None,
@@ -200,7 +223,7 @@ pub fn frequency_squared_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, NoNumbers> {
-    frequency_squared_along(oscillator, solution, numbers, &Continuation::default())
+    frequency_squared_along(oscillator, solution, numbers, &Known::default())
 }
 
 /// As [`frequency_squared_of`] for one amplitude after the other, all else being the same: a balance goes on from where it was.
@@ -211,16 +234,16 @@ pub(crate) fn frequency_squared_along(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Continuation,
+    known: &Known,
 ) -> Result<f64, NoNumbers> {
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar)?;
+        let value = best_hbar(oscillator, solution, &numbers, hbar, known)?;
         numbers.insert(hbar, value);
     }
     match solution.law.is_solved_by_numbers() {
         true => solve(oscillator, solution, &numbers, known).map(|found| found.0),
-        false => frequency_squared(oscillator, solution, &numbers).map(|found| found.0),
+        false => frequency_squared(oscillator, solution, &numbers, known).map(|found| found.0),
     }
 }
 
@@ -355,17 +378,6 @@ fn of_one_term(solution: &Solution) -> bool {
     by_size(solution) && !is_exact(solution) && solution.law.system().is_none()
 }
 
-/// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
-fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
-    Force::new(
-        &oscillator.force,
-        oscillator.coordinate,
-        &solution.equilibrium,
-        numbers,
-        amplitude_of(solution, numbers),
-    )
-}
-
 /// The amplitude; one where the law is free of it and none is given.
 fn amplitude_of(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> f64 {
     numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0)
@@ -376,14 +388,15 @@ fn frequency_squared(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
+    known: &Known,
 ) -> Result<(f64, f64), NoNumbers> {
     let symbol = solution.amplitude.symbol();
     if of_one_term(solution) {
-        stays_defined(oscillator, solution, numbers)?;
+        stays_defined(oscillator, solution, numbers, known)?;
     }
     if is_exact(solution) {
         // The law itself says nothing of whether the motion comes back.
-        let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+        let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
         force.turning_point(amplitude_of(solution, numbers))?;
     }
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
@@ -408,7 +421,7 @@ fn frequency_squared(
             .filter(|found| found.0.is_finite())
             .map(|(value, error)| error / value.abs());
         if error.is_none_or(|error| error.is_nan() || error > LOST_DIGITS)
-            && let Some(better) = by_definition(oscillator, solution, numbers)
+            && let Some(better) = by_definition(oscillator, solution, numbers, known)
         {
             return Ok((better, 0.0));
         }
@@ -420,7 +433,7 @@ fn frequency_squared(
         names.find(|name| *name == missing)
     };
     let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
-        match (undefined(), overflow(oscillator, solution, numbers)) {
+        match (undefined(), overflow(oscillator, solution, numbers, known)) {
             (_, Some(error)) => error,
             (Some(name), _) => NoNumbers::Undefined { name },
             (None, _) => NoNumbers::NoValue,
@@ -449,12 +462,13 @@ fn stays_defined(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
+    known: &Known,
 ) -> Result<(), NoNumbers> {
     if matches!(oscillator.polynomial_degree(), Ok(Some(_))) {
         return Ok(());
     }
     let (Some(force), Some(amplitude)) = (
-        force_of(oscillator, solution, numbers),
+        known.force(oscillator, solution, numbers),
         numbers.get(&solution.amplitude.symbol()),
     ) else {
         return Ok(());
@@ -471,8 +485,13 @@ fn stays_defined(
 }
 
 /// What of the force is beyond double precision along a motion of one term, where something is.
-fn overflow(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<NoNumbers> {
-    let force = force_of(oscillator, solution, numbers)?;
+fn overflow(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    known: &Known,
+) -> Option<NoNumbers> {
+    let force = known.force(oscillator, solution, numbers)?;
     let amplitude = amplitude_of(solution, numbers);
     let found = |place: f64| {
         let term = force.overflow(place)?;
@@ -482,16 +501,23 @@ fn overflow(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Sym
 }
 
 /// A law of one term by what defines it, without the differences of a closed form.
-fn by_definition(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+fn by_definition(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    known: &Known,
+) -> Option<f64> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
     if is_exact(solution) {
-        return exact_motion(oscillator, solution, numbers).ok().map(|found| found.0);
+        return exact_motion(oscillator, solution, numbers, known)
+            .ok()
+            .map(|found| found.0);
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
         Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
     } else {
-        force_of(oscillator, solution, numbers)?
+        known.force(oscillator, solution, numbers)?
     };
     let definition = Entry::of(solution.method).definition?;
     definition(&force, size).filter(|law| law.is_finite())
@@ -508,7 +534,7 @@ pub(crate) fn error_of_integral(
         return None;
     }
     let amplitude = numbers.get(&solution.amplitude.symbol())?.abs();
-    let force = force_of(oscillator, solution, numbers)?;
+    let force = Known::default().force(oscillator, solution, numbers)?;
     let (value, change) = one_term::coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
     Some((change / value).abs().max(1e-15))
 }
@@ -698,7 +724,7 @@ fn lost_projections(
     if kept {
         return None;
     }
-    let force = force_of(oscillator, solution, numbers)?;
+    let force = Known::default().force(oscillator, solution, numbers)?;
     let harmonics = solution.displacement.harmonics().into_iter();
     let projections = harmonics.filter(|entry| entry.0 != 1);
     Some(
@@ -713,7 +739,7 @@ fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Continuation,
+    known: &Known,
 ) -> Result<(f64, FourierSeries<Doubles>, Option<String>), NoNumbers> {
     if oscillator.force.contains(oscillator.velocity()) {
         let found = || {
@@ -728,12 +754,12 @@ fn solve(
         return found().ok_or(NoNumbers::NoValue);
     }
     if is_exact(solution) {
-        return exact_motion(oscillator, solution, numbers).map(|(squared, motion)| (squared, motion, None));
+        return exact_motion(oscillator, solution, numbers, known).map(|(squared, motion)| (squared, motion, None));
     }
     let given = || {
         let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
         let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-        Some((equilibrium, amplitude, force_of(oscillator, solution, numbers)?))
+        Some((equilibrium, amplitude, known.force(oscillator, solution, numbers)?))
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
@@ -741,7 +767,7 @@ fn solve(
         let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
-        let found = balance::balance(&force, degree, &harmonics, amplitude, known)?;
+        let found = balance::balance(&force, degree, &harmonics, amplitude, &known.balance)?;
         let remark = found.rest_ends_at.map(|end| {
             let end = significant(end, 6);
             match found.over_several_wells {
@@ -753,8 +779,8 @@ fn solve(
         });
         return Ok((found.frequency_squared, found.motion.sum(&shift), remark));
     }
-    stays_defined(oscillator, solution, numbers)?;
-    let squared = by_definition(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    stays_defined(oscillator, solution, numbers, known)?;
+    let squared = by_definition(oscillator, solution, numbers, known).ok_or(NoNumbers::NoValue)?;
     let motion = FourierSeries::from_parts(Doubles, vec![0.0, amplitude], vec![]);
     Ok((squared, motion.sum(&shift), None))
 }
@@ -764,8 +790,9 @@ fn exact_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
+    known: &Known,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
-    let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let (period, cosine) = motion_about(&force, amplitude_of(solution, numbers))?;
     let frequency = std::f64::consts::TAU / period;
     Ok((
@@ -780,10 +807,11 @@ fn best_hbar(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     hbar: Symbol,
+    known: &Known,
 ) -> Result<f64, NoNumbers> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
-    let force = force_of(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     // What does not depend on hbar is computed once.
     let mut numbers = numbers.clone();
     let fixed = solution
@@ -811,7 +839,7 @@ fn best_hbar(
     let squared_residual = |value: f64| {
         let mut numbers = numbers.clone();
         numbers.insert(hbar, value);
-        let squared = frequency_squared(oscillator, solution, &numbers).map_or(f64::NAN, |found| found.0);
+        let squared = frequency_squared(oscillator, solution, &numbers, known).map_or(f64::NAN, |found| found.0);
         let Some(motion) = formula_motion(oscillator, solution, &numbers, squared) else {
             return f64::INFINITY;
         };

@@ -15,9 +15,8 @@ use super::{
 };
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
-use crate::method::balance::Continuation;
 use crate::method::homotopy_analysis::convergence_control;
-use crate::method::numbers::NoNumbers;
+use crate::method::numbers::{Known, NoNumbers};
 use crate::method::{Options, Refusal, Unsuited, solve, with_resonance_at};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -461,7 +460,7 @@ pub fn backbones(
         .iter()
         .filter(|row| row.solution.method != Method::Exact)
     {
-        let followed = Continuation::default();
+        let followed = Known::default();
         let points = curve(&|amplitude| {
             formula_frequency_along(oscillator, &row.solution, &truth.numbers_at(amplitude), &followed)
         });

@@ -45,8 +45,9 @@ use crate::conservative::force::Force;
 use crate::decimal::decimal;
 use crate::exact::Doubles;
 use crate::expr::{EvaluationError, Expr, ExprError};
-use crate::method::balance::Continuation;
-use crate::method::numbers::{NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, symbol_values};
+use crate::method::numbers::{
+    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, symbol_values,
+};
 use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -478,7 +479,7 @@ pub fn motions(
 
 /// omega by the formula: the root of omega^2, `None` where that is not positive.
 fn formula_frequency(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    formula_frequency_along(oscillator, solution, numbers, &Continuation::default())
+    formula_frequency_along(oscillator, solution, numbers, &Known::default())
 }
 
 /// As [`formula_frequency`] for one amplitude after the other, all else being the same.
@@ -486,7 +487,7 @@ fn formula_frequency_along(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Continuation,
+    known: &Known,
 ) -> Option<f64> {
     let squared = frequency_squared_along(oscillator, solution, numbers, known).ok()?;
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())

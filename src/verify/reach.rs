@@ -11,7 +11,7 @@ use super::formula_frequency_along;
 use crate::conservative::features::Features;
 use crate::decimal::significant;
 use crate::expr::Expr;
-use crate::method::balance::Continuation;
+use crate::method::numbers::Known;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -97,7 +97,7 @@ pub(super) fn reach(
     }
     let mut amplitudes = truth.amplitudes();
     let asked = truth.asked();
-    let known = Continuation::default();
+    let known = Known::default();
     let error = |size: f64| {
         let true_frequency = truth.frequency(size)?;
         let frequency = formula_frequency_along(oscillator, solution, &truth.numbers_at(size), &known);

@@ -11,6 +11,7 @@
 //! The last integrand is smooth between the corners and narrow places of the force, at which it is cut. `U` near either end is
 //! the mean of the force from there, so nothing cancels.
 
+use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
 use super::IntegrationError;
@@ -362,6 +363,13 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     const HALVINGS: u32 = 60;
     /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
     const FEW_PANELS: usize = 120;
+    /// About a second; a force of a hundred thousand waves takes less.
+    const MOST_EVALUATIONS: u64 = 20_000_000;
+    let evaluations = Cell::new(0_u64);
+    let value = |x: f64| {
+        evaluations.set(evaluations.get() + 1);
+        force.at(x)
+    };
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
     if force.at(start) * side <= 0.0 || amplitude == 0.0 {
@@ -372,7 +380,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     }
     // Against the largest energy on the way, errors below the last digit are none.
     let below = |largest: f64| 0.5 * f64::EPSILON * largest;
-    let gained = |from: f64, to: f64, largest: f64| integral(force.value, to, from, below(largest));
+    let gained = |from: f64, to: f64, largest: f64| integral(&value, to, from, below(largest));
     // Windows of growing length: to the mirror image of the start, as far again, twice as far, ...
     let (mut x, mut energy, mut largest, mut window) = (start, 0.0, 0.0, 2.0 * amplitude.abs());
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
@@ -386,7 +394,10 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
             stretches.reverse();
             let mut halvings = 0;
             while let Some((here, next)) = stretches.pop() {
-                let gain = match integral_within(force.value, [next, here], below(largest), FEW_PANELS) {
+                if evaluations.get() > MOST_EVALUATIONS {
+                    return Err(PeriodError::Waves);
+                }
+                let gain = match integral_within(&value, [next, here], below(largest), FEW_PANELS) {
                     // Towards a pole, by half of the way at a time.
                     Err(_) if halvings < HALVINGS => {
                         halvings += 1;

@@ -194,7 +194,8 @@ impl VerificationError {
         match self {
             Self::Period(error) => matches!(
                 error,
-                PeriodError::NoReturn(_)
+                PeriodError::Waves
+                    | PeriodError::NoReturn(_)
                     | PeriodError::Pole { .. }
                     | PeriodError::Overflow { .. }
                     | PeriodError::Quadrature(_)

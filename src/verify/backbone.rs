@@ -104,12 +104,17 @@ impl<'a> TrueBackbone<'a> {
     /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place. Of the many of a force that
     /// waves all the way some are enough, for between points the error is followed by halving.
     fn reached_places(&self, symmetric: bool) -> Option<Vec<f64>> {
-        const MOST: usize = 64;
+        const MOST_PLACES: usize = 64;
+        /// A root takes about as many turning points.
+        const FOR_A_ROOT: u64 = 8;
         let physics = self.physics.as_ref()?;
+        let at_once = FOR_A_ROOT * physics.rest.evaluations();
+        // These places only say where to look, and leave most of the work to what is found there.
+        let affordable = || physics.rest.evaluations() + at_once < MOST / 4;
         let (side, farthest) = (self.asked().signum(), self.farthest());
         let mut sizes: Vec<f64> = Vec::new();
         let cuts = physics.rest.cuts(-farthest, farthest);
-        for &place in cuts.iter().step_by(cuts.len().div_ceil(MOST).max(1)) {
+        for &place in cuts.iter().step_by(cuts.len().div_ceil(MOST_PLACES).max(1)) {
             let distance = side * place;
             if distance > 0.0 {
                 sizes.push(distance);
@@ -117,12 +122,12 @@ impl<'a> TrueBackbone<'a> {
             }
             // The far turning point: by symmetry, or where the energies are equal.
             sizes.push(-distance);
-            if symmetric {
+            if symmetric || !affordable() {
                 continue;
             }
-            let turns = |size: f64| {
-                let end = physics.rest.turning_point(side * size);
-                end.map_or(f64::NAN, |end| side * (place - end))
+            let turns = |size: f64| match physics.rest.turning_point(side * size) {
+                Ok(end) if affordable() => side * (place - end),
+                _ => f64::NAN,
             };
             sizes.extend(find_root(turns, 1e-3 * farthest, 0.999 * farthest).ok());
         }
@@ -132,7 +137,7 @@ impl<'a> TrueBackbone<'a> {
             sizes
                 .iter()
                 .copied()
-                .step_by(sizes.len().div_ceil(MOST).max(1))
+                .step_by(sizes.len().div_ceil(MOST_PLACES).max(1))
                 .collect(),
         )
     }

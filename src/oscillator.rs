@@ -596,6 +596,8 @@ impl Oscillator {
         // Where a singularity is removable the force at rest is known by its series alone.
         if let (SmallParameter::Amplitude, Some(at_rest)) = (small, parts.first())
             && !at_rest.is_zero()
+            // What is taken off for the equilibrium may be written otherwise.
+            && !at_rest.expand().is_ok_and(|at_rest| at_rest.is_zero())
         {
             let moves = at_rest.contains(position) || at_rest.contains(velocity);
             return Err(match moves {

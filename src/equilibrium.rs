@@ -10,6 +10,7 @@
 //! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
 //! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
 
+mod inverse;
 mod search;
 mod shift;
 
@@ -27,6 +28,7 @@ use crate::series::taylor::taylor;
 use crate::solution::Definition;
 use crate::solution::note::Position;
 use crate::symbol::{Symbol, fresh};
+use inverse::inverted;
 use search::{Zero as SignChange, polynomial_zeros, zeros};
 use shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved, value_at};
 
@@ -150,10 +152,10 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
 /// ```
 /// use lindstedt::{Oscillator, Values, method::with_numbers_where_needed};
 ///
-/// let loaded = Oscillator::parse("x'' + x^3 - g = 0")?;
-/// let (numbers, _) = "g = 8".parse::<Values>()?.split(&["g".into()]);
+/// let loaded = Oscillator::parse("x'' + x + x^5 - g = 0")?;
+/// let (numbers, _) = "g = 2".parse::<Values>()?.split(&["g".into()]);
 /// let at_numbers = with_numbers_where_needed(&loaded, &numbers)?.ok_or("a closed form in g")?;
-/// assert_eq!(at_numbers.equation().to_string(), "x'' - 8 + x^3 = 0");
+/// assert_eq!(at_numbers.equation().to_string(), "x'' - 2 + x + x^5 = 0");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn with_numbers_where_needed(
@@ -357,15 +359,40 @@ impl<'a> Force<'a> {
         form.map_or(Place::Rounded(position), Place::Exact)
     }
 
-    /// The closed form of the stable equilibrium in the parameters, chosen where loads are small.
-    fn stable_closed_form(&self) -> Option<Place> {
+    /// What the equilibria of a force with parameters may be.
+    fn forms(&self) -> Vec<Expr> {
         let forms = closed_forms(self.force, self.coordinate);
-        let nearest = [0.1, 0.01, 1.0, 0.001, 10.0].into_iter().find_map(|scale| {
-            let mut stable = self.stable_at(&forms, scale);
-            stable.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()).then(b.0.total_cmp(&a.0)));
-            stable.into_iter().next()
-        });
-        nearest.map(|(_, form)| Place::Exact(form))
+        match forms.is_empty() {
+            true => inverted(self.force, self.coordinate),
+            false => forms,
+        }
+    }
+
+    /// The closed form of the stable equilibrium in the parameters, chosen where loads are small, and where no pole hides it if that
+    /// can be.
+    fn stable_closed_form(&self) -> Option<Place> {
+        let forms = self.forms();
+        let nearest = |hidden_too: bool| {
+            [0.1, 0.01, 1.0, 0.001, 10.0].into_iter().find_map(|scale| {
+                let mut stable = self.stable_at(&forms, scale);
+                stable.retain(|(position, _)| hidden_too || !self.is_hidden(*position, scale));
+                stable.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()).then(b.0.total_cmp(&a.0)));
+                stable.into_iter().next()
+            })
+        };
+        let (_, form) = nearest(false).or_else(|| nearest(true))?;
+        Some(Place::Exact(form))
+    }
+
+    /// Whether the force has no value somewhere between zero and a position, with parameters about equal to `scale`.
+    fn is_hidden(&self, position: f64, scale: f64) -> bool {
+        let sample = self.sample(scale);
+        let Some(value) = self.at_numbers(&sample) else {
+            return false;
+        };
+        let places = linear_zeros(self.force, self.coordinate);
+        let mut places = places.iter().filter_map(|place| place.evaluate(&sample).ok());
+        places.any(|place| place / position > 0.0 && place / position < 1.0 && !value(place).is_finite())
     }
 
     /// The forms at which the force pulls back with parameters about equal to `scale`, and their values.
@@ -394,8 +421,7 @@ impl<'a> Force<'a> {
     fn stable_equilibria(&self) -> Equilibria {
         const MOST: usize = 4;
         if self.value.is_none() {
-            let forms = closed_forms(self.force, self.coordinate);
-            let stable = self.stable_at(&forms, 1.0).into_iter();
+            let stable = self.stable_at(&self.forms(), 1.0).into_iter();
             return Equilibria {
                 positions: stable.map(|(_, form)| Position::Exact(form)).collect(),
                 others: None,
@@ -716,10 +742,26 @@ mod tests {
         assert_eq!(position("x'' + x - k").unwrap(), "k");
         assert_eq!(position("x'' + k*(x - L) + b*(x - L)^3").unwrap(), "L");
         assert_eq!(position("x'' + x + x^2 - g").unwrap(), "2*g/(1 + sqrt(1 + 4*g))");
+        assert_eq!(position("x'' + sin(x) - T").unwrap(), "asin(T)");
+        assert_eq!(position("x'' - sin(x) - T").unwrap(), "pi + asin(T)");
+        assert_eq!(position("x'' + x^3 - g").unwrap(), "g^(1/3)");
         assert!(matches!(
-            position("x'' + x + x^3 - g"),
+            position("x'' + x - g*exp(-x)"),
             Err(OscillatorError::SymbolicEquilibrium(_))
         ));
+    }
+
+    /// The plates of a condenser have two equilibria before they meet, and one that is none beyond: which of the roots of the cubic
+    /// that are depends on the values.
+    #[test]
+    fn a_root_beyond_a_pole_is_not_chosen() {
+        let values: BTreeMap<Symbol, f64> = [("k".into(), 2.0), ("m".into(), 0.1), ("L".into(), 1.0)].into();
+        let found = centred(&Oscillator::parse("x'' + k*x - m/(L - x)^2").unwrap(), None).unwrap();
+        let place = found.position.evaluate(&values).unwrap();
+        assert!(
+            (2.0 * place - 0.1 / (1.0 - place).powi(2)).abs() < 1e-15 && place < 0.1,
+            "{place}"
+        );
     }
 
     #[test]

@@ -577,7 +577,7 @@ impl Oscillator {
         let (position, velocity) = (self.coordinate, self.velocity());
         let at_rest = at_rest(&self.force, position).and_then(|force| force.expand());
         if let Ok(force) = at_rest
-            && !force.is_zero()
+            && !is_nothing(&force)
         {
             return Err(OscillatorError::NoEquilibrium(force.to_string()));
         }
@@ -595,9 +595,7 @@ impl Oscillator {
         };
         // Where a singularity is removable the force at rest is known by its series alone.
         if let (SmallParameter::Amplitude, Some(at_rest)) = (small, parts.first())
-            && !at_rest.is_zero()
-            // What is taken off for the equilibrium may be written otherwise.
-            && !at_rest.expand().is_ok_and(|at_rest| at_rest.is_zero())
+            && !is_nothing(at_rest)
         {
             let moves = at_rest.contains(position) || at_rest.contains(velocity);
             return Err(match moves {
@@ -661,6 +659,24 @@ fn merged(terms: Vec<Term>) -> Vec<Term> {
         }
     }
     merged
+}
+
+/// Whether a constant is zero however it is written, as `sin(c)/cos(c) - tan(c)` is: where no way to write it out says so, tried with
+/// numbers for its letters.
+fn is_nothing(constant: &Expr) -> bool {
+    if constant.is_zero() || constant.expand().is_ok_and(|constant| constant.is_zero()) {
+        return true;
+    }
+    let symbols = constant.symbols();
+    let tried = [0.137, 0.731, 1.913].map(|scale| {
+        let places = symbols.iter().zip(1_u32..);
+        let numbers: BTreeMap<Symbol, f64> = places.map(|(name, k)| (*name, scale / f64::from(k).sqrt())).collect();
+        constant.evaluate_rounded(&|name| Some((*numbers.get(&name)?, 0.0)))
+    });
+    // One try may be outside of where it has a value.
+    let known = tried.into_iter().flatten().filter(|(value, _)| value.is_finite());
+    let known: Vec<bool> = known.map(|(value, error)| value.abs() <= error).collect();
+    !symbols.is_empty() && known.len() > 1 && known.iter().all(|zero| *zero)
 }
 
 fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {

@@ -214,7 +214,7 @@ pub(super) fn closed_forms(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
 }
 
 /// The force times all that stands below its lines.
-fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
+pub(super) fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
     let mut below: BTreeMap<String, (Expr, i64)> = BTreeMap::new();
     let expanded = force.expand().ok()?;
     for term in expanded.terms() {

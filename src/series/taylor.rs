@@ -423,6 +423,19 @@ impl Expansion<'_> {
         Ok((sines, cosines))
     }
 
+    /// `w' = (1 + w^2) u'`, the tangent, or `w' = (1 - w^2) u'`, the hyperbolic one: in powers of its own first value.
+    fn tangent(&self, start: Expr, of: &Series, sign: i64) -> Result<Series, TaylorError> {
+        let mut series = vec![start];
+        let mut slopes: Series = Vec::new();
+        for k in 1..self.length {
+            let square = convolution(&series, &series, k - 1, |_| integer_sign(sign))?;
+            slopes.push(if k == 1 { Expr::one() + square } else { square });
+            let sum = convolution(&of[1..=k].to_vec(), &slopes, k - 1, |j| integer(j + 1))?;
+            series.push(Expr::divide(&sum, &number(k))?);
+        }
+        Ok(series)
+    }
+
     fn function(&self, function: Function, arguments: &[Series], term: &Expr) -> Result<Series, TaylorError> {
         let of = arguments.first().ok_or_else(|| self.not_analytic(term))?;
         let start = || Expr::function(function, vec![of[0].clone()]);
@@ -431,10 +444,9 @@ impl Expansion<'_> {
             Function::Cos => Ok(self.sine_and_cosine(of, false)?.1),
             Function::Sinh => Ok(self.sine_and_cosine(of, true)?.0),
             Function::Cosh => Ok(self.sine_and_cosine(of, true)?.1),
-            Function::Tan | Function::Tanh => {
-                let (sine, cosine) = self.sine_and_cosine(of, function == Function::Tanh)?;
-                self.product(&sine, &self.regular_power(&cosine, &-Rational::one(), term)?)
-            }
+            Function::Tan if of[0].cos()?.is_zero() => Err(self.not_analytic(term)),
+            Function::Tan => self.tangent(start()?, of, 1),
+            Function::Tanh => self.tangent(start()?, of, -1),
             Function::Exp => self.exponential(of),
             Function::Log => self.logarithm(of, term),
             Function::Asin | Function::Acos | Function::Atan => {

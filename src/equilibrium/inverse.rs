@@ -1,0 +1,283 @@
+//! Zeros of a force with letters that are found by inverting it: the coordinate stands in one place, or in the sine and cosine of one
+//! angle, or the force is a polynomial of third degree.
+//!
+//! References: NIST Digital Library of Mathematical Functions 1.11(iii) (Cardano), 4.43 (Viete), 4.21 and 4.23 (angles).
+//!
+//! ```text
+//! c h(u) = r                      u = h^-1(r/c), and so on to x
+//! c sin u + d cos u = r           u = phi +- acos(r/sqrt(c^2 + d^2)),   tan phi = c/d
+//! x^3 + p x + q = 0               x = -q/(U^2 + p/3 + p^2/(9 U^2)),   U^3 = sqrt(q^2/4 + p^3/27) + q/2    one real root
+//!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
+//! ```
+//!
+//! Which of them is real depends on the values of the letters, and is left to who puts some in. In: a force and its coordinate. Out:
+//! candidates, some of which may be zeros for no values at all.
+
+use num_traits::Signed;
+
+use super::shift::{coefficients, numerator};
+use crate::conservative::linear_in;
+use crate::exact::rational::ratio;
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::symbol::Symbol;
+
+/// The places at which an expression may be zero; empty where it cannot be inverted.
+pub(super) fn inverted(expression: &Expr, coordinate: Symbol) -> Vec<Expr> {
+    zeros(expression, coordinate).unwrap_or_default()
+}
+
+fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+    if expression.as_symbol() == Some(x) {
+        return Ok(vec![Expr::zero()]);
+    }
+    if let Some((slope, constant)) = linear_in(expression, x) {
+        return Ok(vec![Expr::divide(&-constant, &slope)?]);
+    }
+    let (moving, still): (Vec<Expr>, Vec<Expr>) = expression.terms().iter().cloned().partition(|term| term.contains(x));
+    let other_side = -Expr::sum(still);
+    let parts: Option<Vec<(Expr, Expr)>> = moving.iter().map(|term| split(term, x)).collect();
+    if let Some([(factor, function)]) = parts.as_deref() {
+        return before(function, &Expr::divide(&other_side, factor)?, x);
+    }
+    if let Some([one, other]) = parts.as_deref()
+        && let Some((angle, values)) = angles([one, other], &other_side)?
+    {
+        return through(&angle, values, x);
+    }
+    of_polynomial(expression, x)
+}
+
+/// A term as what does not move times the one factor that does.
+fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
+    let (number, factors) = term.factors();
+    let (moving, still): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| factor.contains(x));
+    let [moving] = moving.as_slice() else { return None };
+    let still = still.into_iter().cloned();
+    Some((Expr::product(still.chain([Expr::number(number)])), (*moving).clone()))
+}
+
+/// Where `function` has the value `y`.
+fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+    let both = |value: Expr| vec![value.clone(), -value];
+    let call = |function, argument: Expr| Expr::function(function, vec![argument]);
+    let squared = y.integer_power(2)?;
+    let (inner, values) = match function.node() {
+        Node::Power(base, exponent) if !exponent.contains(x) => {
+            let root = Expr::power(y, &Expr::divide(&Expr::one(), exponent)?)?;
+            let even = exponent.as_number().is_some_and(|exponent| !exponent.numer().is_odd());
+            (base, if even { both(root) } else { vec![root] })
+        }
+        Node::Function(name, arguments) => {
+            let [argument] = arguments.as_slice() else {
+                return Ok(vec![]);
+            };
+            let values = match name {
+                Function::Sin => {
+                    let angle = call(Function::Asin, y.clone())?;
+                    vec![angle.clone(), Expr::pi() - angle]
+                }
+                Function::Cos => both(call(Function::Acos, y.clone())?),
+                Function::Tan => vec![call(Function::Atan, y.clone())?],
+                Function::Asin => vec![y.sin()?],
+                Function::Acos => vec![y.cos()?],
+                Function::Atan => vec![call(Function::Tan, y.clone())?],
+                Function::Exp => vec![call(Function::Log, y.clone())?],
+                Function::Log => vec![call(Function::Exp, y.clone())?],
+                Function::Sinh => vec![call(Function::Log, y + &(squared + Expr::one()).sqrt()?)?],
+                Function::Cosh => both(call(Function::Log, y + &(squared - Expr::one()).sqrt()?)?),
+                Function::Tanh => {
+                    let quotient = Expr::divide(&(Expr::one() + y), &(Expr::one() - y))?;
+                    vec![call(Function::Log, quotient)? * Expr::number(ratio(1, 2))]
+                }
+                Function::Absolute => both(y.clone()),
+                _ => return Ok(vec![]),
+            };
+            (argument, values)
+        }
+        Node::Sum(_) => (function, vec![y.clone()]),
+        _ => return Ok(vec![]),
+    };
+    through(inner, values, x)
+}
+
+/// Where `inner` has one of these values.
+fn through(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+    let found: Result<Vec<Vec<Expr>>, ExprError> = values.iter().map(|value| zeros(&(inner - value), x)).collect();
+    Ok(found?.into_iter().flatten().collect())
+}
+
+/// The angle of `c sin u + d cos u = r`, and what it may be.
+fn angles(terms: [&(Expr, Expr); 2], r: &Expr) -> Result<Option<(Expr, Vec<Expr>)>, ExprError> {
+    let named = |(factor, function): &(Expr, Expr)| match function.node() {
+        Node::Function(name @ (Function::Sin | Function::Cos), arguments) => {
+            Some((*name, arguments.first()?.clone(), factor.clone()))
+        }
+        _ => None,
+    };
+    let [Some(one), Some(other)] = terms.map(named) else {
+        return Ok(None);
+    };
+    let (sine, cosine) = if one.0 == Function::Sin {
+        (one, other)
+    } else {
+        (other, one)
+    };
+    if (sine.0, cosine.0) != (Function::Sin, Function::Cos) || sine.1 != cosine.1 {
+        return Ok(None);
+    }
+    let (c, d) = (sine.2, cosine.2);
+    let call = |function, argument: Expr| Expr::function(function, vec![argument]);
+    let turned = |angle: Expr| [angle.clone(), angle + Expr::pi()];
+    if r.is_zero() {
+        let angle = call(Function::Atan, Expr::divide(&-d, &c)?)?;
+        return Ok(Some((sine.1, turned(angle).to_vec())));
+    }
+    let size = (c.integer_power(2)? + d.integer_power(2)?).sqrt()?;
+    let beside = call(Function::Acos, Expr::divide(r, &size)?)?;
+    let phase = call(Function::Atan, Expr::divide(&c, &d)?)?;
+    let values = turned(phase).into_iter();
+    let values = values.flat_map(|phase| [&phase - &beside, phase + beside.clone()]);
+    Ok(Some((sine.1, values.collect())))
+}
+
+/// The roots of the numerator where that is of third degree.
+fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+    let numerator = numerator(expression, x).and_then(|numerator| coefficients(&numerator, x));
+    match numerator.as_deref() {
+        Some([d, c, b, a]) => cubic_roots(a, b, c, d),
+        Some([d, between @ .., a]) if !between.is_empty() && between.iter().all(Expr::is_zero) => {
+            let degree = Expr::from(between.len() as i64 + 1);
+            before(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
+        }
+        _ => Ok(vec![]),
+    }
+}
+
+/// The roots of `a x^3 + b x^2 + c x + d`, first the one that is the only real one where it has a value.
+fn cubic_roots(a: &Expr, b: &Expr, c: &Expr, d: &Expr) -> Result<Vec<Expr>, ExprError> {
+    let third = |expr: &Expr, power: i64| Ok::<_, ExprError>(Expr::number(ratio(1, power)) * expr);
+    let [b, c, d] = [b, c, d].map(|coefficient| Expr::divide(coefficient, a));
+    let (b, c, d) = (b?, c?, d?);
+    let p = (&c - &third(&b.integer_power(2)?, 3)?).expand()?;
+    let q = (third(&b.integer_power(3)?, 27)? * Expr::from(2) - third(&(&b * &c), 3)? + d).expand()?;
+    let shift = third(&b, 3)?;
+    if p.is_zero() {
+        let root = Expr::power(&-q, &Expr::number(ratio(1, 3)))?;
+        return Ok(vec![root - shift]);
+    }
+    // With q > 0 nothing cancels; the roots for -q are the negative ones.
+    let negative = q.has_leading_minus();
+    let q = if negative { -q } else { q };
+    let half = third(&q, 2)?;
+    let discriminant = (half.integer_power(2)? + third(&p.integer_power(3)?, 27)?).expand()?;
+    let u = Expr::power(&(discriminant.sqrt()? + half), &Expr::number(ratio(1, 3)))?;
+    let squared = u.integer_power(2)?;
+    let below = Expr::sum([
+        squared.clone(),
+        third(&p, 3)?,
+        Expr::divide(&p.integer_power(2)?, &(Expr::from(9) * squared))?,
+    ]);
+    let mut roots = vec![Expr::divide(&-q.clone(), &below)?];
+    if !p.as_number().is_some_and(Signed::is_positive) {
+        let cosine = Expr::divide(&(Expr::from(3) * q), &(Expr::from(2) * p.clone()))?
+            * Expr::divide(&Expr::from(-3), &p)?.sqrt()?;
+        let angle = third(&Expr::function(Function::Acos, vec![cosine])?, 3)?;
+        let size = Expr::from(2) * third(&-p, 3)?.sqrt()?;
+        for turn in [0, 1, 2] {
+            let turned = &angle - &(Expr::pi() * Expr::number(ratio(2 * turn, 3)));
+            roots.push(&size * &turned.cos()?);
+        }
+    }
+    let signed = |root: Expr| if negative { -root } else { root };
+    Ok(roots.into_iter().map(|root| signed(root) - shift.clone()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// What is put in for the letters, and how many places have a value there: each has to be a zero of the force.
+    #[test]
+    fn every_real_candidate_is_a_zero() {
+        let table = [
+            ("sin(x) - T", vec![("T", 0.3)], 2),
+            ("3*cos(2*x - d) - T", vec![("T", 0.3), ("d", -2.0)], 2),
+            ("k*exp(2*x) - c", vec![("k", 2.0), ("c", 0.7)], 1),
+            ("log(1 + x) + k", vec![("k", 2.0)], 1),
+            ("sinh(x) - k", vec![("k", -2.0)], 1),
+            ("cosh(x) - k", vec![("k", 3.0)], 2),
+            ("tanh(b*x) - k", vec![("k", -0.9), ("b", 2.0)], 1),
+            ("abs(x - L) - k", vec![("k", 0.1), ("L", 2.0)], 2),
+            ("tan(x) + k", vec![("k", 7.0)], 1),
+            ("asin(x) - k", vec![("k", 1.2)], 1),
+            ("acos(x) - k", vec![("k", 1.2)], 1),
+            ("atan(x) - k", vec![("k", -1.2)], 1),
+            ("k*(1 + x^2)^(3/2) - g", vec![("k", 1.0), ("g", 5.0)], 2),
+            ("(x + L)^(3/5) - g", vec![("L", 1.0), ("g", -5.0)], 1),
+            ("x^n - g", vec![("n", 2.5), ("g", 5.0)], 1),
+            ("x^5 + g", vec![("g", 5.0)], 1),
+            ("a*sin(x) - b*cos(x)", vec![("a", 1.0), ("b", 5.0)], 2),
+            (
+                "a*sin(3*x) + b*cos(3*x) - c",
+                vec![("a", 1.0), ("b", 5.0), ("c", 2.0)],
+                2,
+            ),
+            ("x - k/x^2", vec![("k", 0.2)], 1),
+            ("x + b*x^3 - k", vec![("k", 0.2), ("b", 3.0)], 1),
+            ("x + b*x^3 - k", vec![("k", -1e-9), ("b", 3.0)], 1),
+            ("x + x^2 + b*x^3 + k", vec![("k", 0.2), ("b", 3.0)], 1),
+            ("x - k/(1 - x)^2", vec![("k", 0.1)], 3),
+            ("x - k/(1 - x)^2", vec![("k", 0.2)], 1),
+            ("b*x^3 - x + k", vec![("k", 0.1), ("b", 0.7)], 3),
+            ("log(k*exp(x^3 + x - c))", vec![("k", 0.1), ("c", 0.7)], 1),
+        ];
+        for (text, numbers, count) in table {
+            let force: Expr = text.parse().unwrap();
+            let numbers: BTreeMap<Symbol, f64> =
+                numbers.into_iter().map(|(name, value)| (name.into(), value)).collect();
+            let mut real: Vec<f64> = Vec::new();
+            for form in inverted(&force, "x".into()) {
+                let Ok(place) = form.evaluate(&numbers) else { continue };
+                let mut there = numbers.clone();
+                there.insert("x".into(), place);
+                let size = 1.0 + numbers.values().map(|value| value.abs()).sum::<f64>();
+                let Ok(value) = force.evaluate(&there) else {
+                    panic!("{text}: no force at {form} = {place}")
+                };
+                // Of the four angles with the same tangent two have the other sign.
+                if value.abs() < 1e-13 * size {
+                    real.push(place);
+                } else {
+                    assert!(text.starts_with("a*sin(3*x)"), "{text} at {form} = {place}: {value}");
+                }
+            }
+            real.sort_by(f64::total_cmp);
+            real.dedup();
+            assert_eq!(real.len(), count, "{text}: {real:?}");
+        }
+    }
+
+    #[test]
+    fn small_loads_lose_no_digits() {
+        let force: Expr = "x + b*x^3 - k".parse().unwrap();
+        let numbers: BTreeMap<Symbol, f64> = [("b".into(), 3.0), ("k".into(), 1e-9)].into();
+        let place = inverted(&force, "x".into())[0].evaluate(&numbers).unwrap();
+        // x = k - b k^3.
+        assert!((place / 1e-9 - 1.0).abs() < 1e-15, "{place}");
+    }
+
+    #[test]
+    fn what_stands_in_two_places_is_not_inverted() {
+        for text in [
+            "x - k*exp(-x)",
+            "x^5 + x - k",
+            "sin(x) + cos(2*x) - k",
+            "x + sgn(x) - k",
+        ] {
+            let force: Expr = text.parse().unwrap();
+            assert_eq!(inverted(&force, "x".into()), vec![], "{text}");
+        }
+    }
+}

@@ -77,6 +77,11 @@ fn single_factor(factor: &Expr, name: &mut dyn FnMut(&Expr) -> Option<Symbol>) -
             (Node::Pi, Some(power)) if power.is_integer() => {
                 Some(Monomial::power_of(Symbol::new("pi"), power.to_integer().to_i32()?))
             }
+            // One name for all powers of a constant.
+            (_, Some(power)) if power.is_integer() => {
+                let power = power.to_integer().to_i32()?;
+                name(base).map(|symbol| Monomial::power_of(symbol, power))
+            }
             _ => name(factor).map(|symbol| Monomial::power_of(symbol, 1)),
         },
         _ => name(factor).map(|symbol| Monomial::power_of(symbol, 1)),

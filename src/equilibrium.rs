@@ -252,7 +252,23 @@ impl<'a> Force<'a> {
         at_zero.unwrap_or_else(|| self.force.clone()).to_string()
     }
 
-    /// Numbers in place of the parameters to choose between closed forms: all about equal to `scale`.
+    /// Numbers in place of the parameters to choose between closed forms: all about equal, small first; and one of them much smaller or
+    /// larger than the others, as the load may be.
+    fn samples(&self) -> Vec<BTreeMap<Symbol, f64>> {
+        let mut samples = [0.1, 0.01, 1.0, 0.001, 10.0].map(|scale| self.sample(scale)).to_vec();
+        let alike = self.sample(1.0);
+        for factor in [0.03, 30.0] {
+            let unlike = |name: &Symbol| {
+                let mut sample = alike.clone();
+                sample.entry(*name).and_modify(|value| *value *= factor);
+                sample
+            };
+            samples.extend(alike.keys().map(unlike));
+        }
+        samples
+    }
+
+    /// Numbers for the parameters, all about equal to `scale`.
     fn sample(&self, scale: f64) -> BTreeMap<Symbol, f64> {
         let parameters = self.force.symbols().into_iter().filter(|name| *name != self.coordinate);
         let values = (1..).map(|k| scale * (1.0 + 0.03 * f64::from(k)));
@@ -372,10 +388,11 @@ impl<'a> Force<'a> {
     /// can be.
     fn stable_closed_form(&self) -> Option<Place> {
         let forms = self.forms();
+        let samples = self.samples();
         let nearest = |hidden_too: bool| {
-            [0.1, 0.01, 1.0, 0.001, 10.0].into_iter().find_map(|scale| {
-                let mut stable = self.stable_at(&forms, scale);
-                stable.retain(|(position, _)| hidden_too || !self.is_hidden(*position, scale));
+            samples.iter().find_map(|sample| {
+                let mut stable = self.stable_at(&forms, sample);
+                stable.retain(|(position, _)| hidden_too || !self.is_hidden(*position, sample));
                 stable.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()).then(b.0.total_cmp(&a.0)));
                 stable.into_iter().next()
             })
@@ -384,25 +401,23 @@ impl<'a> Force<'a> {
         Some(Place::Exact(form))
     }
 
-    /// Whether the force has no value somewhere between zero and a position, with parameters about equal to `scale`.
-    fn is_hidden(&self, position: f64, scale: f64) -> bool {
-        let sample = self.sample(scale);
-        let Some(value) = self.at_numbers(&sample) else {
+    /// Whether the force has no value somewhere between zero and a position, with these numbers for its parameters.
+    fn is_hidden(&self, position: f64, sample: &BTreeMap<Symbol, f64>) -> bool {
+        let Some(value) = self.at_numbers(sample) else {
             return false;
         };
         let places = linear_zeros(self.force, self.coordinate);
-        let mut places = places.iter().filter_map(|place| place.evaluate(&sample).ok());
+        let mut places = places.iter().filter_map(|place| place.evaluate(sample).ok());
         places.any(|place| place / position > 0.0 && place / position < 1.0 && !value(place).is_finite())
     }
 
-    /// The forms at which the force pulls back with parameters about equal to `scale`, and their values.
-    fn stable_at(&self, forms: &[Expr], scale: f64) -> Vec<(f64, Expr)> {
-        let sample = self.sample(scale);
-        let Some(value) = self.at_numbers(&sample) else {
+    /// The forms at which the force pulls back with these numbers for its parameters, and their values.
+    fn stable_at(&self, forms: &[Expr], sample: &BTreeMap<Symbol, f64>) -> Vec<(f64, Expr)> {
+        let Some(value) = self.at_numbers(sample) else {
             return vec![];
         };
         let stable = |form: &Expr| {
-            let position = form.evaluate(&sample).ok()?;
+            let position = form.evaluate(sample).ok()?;
             let step = 1e-6 * position.abs();
             let (left, right) = (value(position - step), value(position + step));
             (left < 0.0 && right > 0.0 && position != 0.0).then(|| (position, form.clone()))
@@ -421,7 +436,7 @@ impl<'a> Force<'a> {
     fn stable_equilibria(&self) -> Equilibria {
         const MOST: usize = 4;
         if self.value.is_none() {
-            let stable = self.stable_at(&self.forms(), 1.0).into_iter();
+            let stable = self.stable_at(&self.forms(), &self.sample(1.0)).into_iter();
             return Equilibria {
                 positions: stable.map(|(_, form)| Position::Exact(form)).collect(),
                 others: None,

@@ -202,6 +202,9 @@ fn static_loads_in_symbols_are_those_in_numbers() {
         ("x'' + sinh(x) - k = 0", &[("k", "1/2")], 0.3),
         ("x'' + tan(x) - k = 0", &[("k", "1/2")], 0.3),
         ("x'' + x^3 - g = 0", &[("g", "8")], 0.3),
+        ("x'' + (x + 1)^3 - g = 0", &[("g", "8")], 0.3),
+        // The orbit of a planet: one letter has to be much smaller than the other.
+        ("x'' + x - m/h^2 - 3*m*x^2 = 0", &[("m", "1/20"), ("h", "1")], 0.1),
         ("x'' + x - k/x^2 = 0", &[("k", "2")], 0.3),
         ("x'' + x + b*x^3 - g = 0", &[("g", "2"), ("b", "1/3")], 0.3),
         ("x'' + x - lambda/(1 - x)^2 = 0", &[("lambda", "1/10")], 0.1),

@@ -93,7 +93,7 @@ pub(super) fn of_equation(
     let beyond = well
         .on_side(amplitude)
         .is_some_and(|end| amplitude.abs() >= end.amplitude.abs());
-    let text = well.in_words(solution.amplitude.symbol().name());
+    let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
     let over_all = beyond && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers).is_ok();
     Some(match over_all {

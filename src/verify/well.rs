@@ -13,6 +13,7 @@ use crate::conservative::force::Force;
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::root::find_root;
+use crate::symbol::Symbol;
 
 /// Where a well ends on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,12 +97,12 @@ impl Well {
     }
 
     /// Where the motion is periodic, in words; `name` is the letter of the amplitude.
-    pub fn in_words(&self, name: &str) -> String {
+    pub fn in_words(&self, name: Symbol, coordinate: Symbol) -> String {
         let because = |rim: Rim| {
             let place = significant(rim.place, 6);
             match rim.separatrix {
-                true => format!("the separatrix passes the unstable equilibrium x = {place}"),
-                false => format!("the force ends at x = {place}"),
+                true => format!("the separatrix passes the unstable equilibrium {coordinate} = {place}"),
+                false => format!("the force ends at {coordinate} = {place}"),
             }
         };
         let number = |end: End| significant(end.amplitude, 6);
@@ -287,7 +288,11 @@ mod tests {
             return (None, None, String::new());
         };
         let amplitude = |end: Option<End>| end.map(|end| end.amplitude);
-        (amplitude(well.low), amplitude(well.high), well.in_words("A"))
+        (
+            amplitude(well.low),
+            amplitude(well.high),
+            well.in_words("A".into(), "x".into()),
+        )
     }
 
     #[test]

@@ -71,6 +71,17 @@ fn number_behind(verification: &Verification, words: &str) -> f64 {
     number.parse().unwrap_or_else(|_| panic!("{}", found.text))
 }
 
+/// The force of a planet's orbit, u_e and the place where its pull ends being the roots of 3 m u^2 - u + m/h^2.
+#[test]
+fn the_end_of_a_well_is_named_by_the_coordinate() {
+    let oscillator = Oscillator::parse("u'' + u - m/h^2 - 3*m*u^2 = 0").unwrap();
+    let at = [("A", "1/100"), ("m", "1/20"), ("h", "1")];
+    let found = judged_by(&oscillator, &Options::default(), &at);
+    let place = number_behind(&found, "the unstable equilibrium u = ");
+    let expected = (1.0 + (1.0_f64 - 12.0 * 0.05 * 0.05).sqrt()) / (6.0 * 0.05);
+    assert!((place - expected).abs() < 1e-5 * expected, "{place}");
+}
+
 /// By halving.
 fn zero(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     assert!(function(low) * function(high) < 0.0);

@@ -201,6 +201,9 @@ fn static_loads_in_symbols_are_those_in_numbers() {
         ("x'' + log(1 + x) - k = 0", &[("k", "1/2")], 0.3),
         ("x'' + sinh(x) - k = 0", &[("k", "1/2")], 0.3),
         ("x'' + tan(x) - k = 0", &[("k", "1/2")], 0.3),
+        // The sign of cos(2*x_e) and of log(x_e)^2 is not that at x_e = 1.
+        ("x'' + sin(2*x) = T", &[("T", "1/3")], 0.3),
+        ("x'' + log(x)^3 - m = 0", &[("m", "1/2")], 0.3),
         ("x'' + x^3 - g = 0", &[("g", "8")], 0.3),
         ("x'' + (x + 1)^3 - g = 0", &[("g", "8")], 0.3),
         // The orbit of a planet: one letter has to be much smaller than the other.

@@ -577,7 +577,7 @@ impl Oscillator {
         let (position, velocity) = (self.coordinate, self.velocity());
         let at_rest = at_rest(&self.force, position).and_then(|force| force.expand());
         if let Ok(force) = at_rest
-            && !is_nothing(&force)
+            && !vanishes_identically(&force)
         {
             return Err(OscillatorError::NoEquilibrium(force.to_string()));
         }
@@ -595,7 +595,7 @@ impl Oscillator {
         };
         // Where a singularity is removable the force at rest is known by its series alone.
         if let (SmallParameter::Amplitude, Some(at_rest)) = (small, parts.first())
-            && !is_nothing(at_rest)
+            && !vanishes_identically(at_rest)
         {
             let moves = at_rest.contains(position) || at_rest.contains(velocity);
             return Err(match moves {
@@ -663,7 +663,7 @@ fn merged(terms: Vec<Term>) -> Vec<Term> {
 
 /// Whether a constant is zero however it is written, as `sin(c)/cos(c) - tan(c)` is: where no way to write it out says so, tried with
 /// numbers for its letters.
-fn is_nothing(constant: &Expr) -> bool {
+fn vanishes_identically(constant: &Expr) -> bool {
     if constant.is_zero() || constant.expand().is_ok_and(|constant| constant.is_zero()) {
         return true;
     }

@@ -278,7 +278,7 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
         .map(|(&(power, order), terms)| Ok((power, order, value_of(terms)?)))
         .collect();
     if let Ok(beside) = beside {
-        let value = inverted(numbers[&initial], &beside, solution.order);
+        let value = solved_as_series(numbers[&initial], &beside, solution.order);
         numbers.insert(own, value);
     }
     numbers
@@ -286,7 +286,7 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
 
 /// `a` of `a = first + sum c d^k a^n`, of which `beside` are the `(n, k, c)`, as a series in `d` up to its power `order`, at `d = 1`.
 /// Every pass gets one more power right.
-fn inverted(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
+fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
     let mut series = vec![first];
     for pass in 1..=order as usize {
         let product = |one: &[f64], other: &[f64]| -> Vec<f64> {

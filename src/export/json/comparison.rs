@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number::finite;
-use super::solution::{numbers, values};
+use super::verification::{numbers, values};
 use super::{Constant, Kind, Map, methods};
 use crate::solution::Degrees;
 use crate::verify::comparison::{Comparison, Refused, Row};

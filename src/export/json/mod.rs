@@ -30,6 +30,7 @@ pub mod simulation;
 pub mod solution;
 pub mod stability;
 pub mod sweep;
+pub mod verification;
 
 use std::io;
 

@@ -1,0 +1,240 @@
+//! What the judge says of a formula, inside the documents of kind `solution`: frequencies and errors at the values given, the steady or
+//! the followed motion, the range, the verdict.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::number::{finite, is_nothing};
+use super::{Constant, Map};
+use crate::exact::Doubles;
+use crate::series::FourierSeries;
+use crate::symbol::Symbol;
+use crate::values::Values;
+use crate::verify;
+
+/// A formula at given values, beside the true motion of the equation as it was typed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Verification {
+    /// The values that were given.
+    pub at: Map<Constant>,
+    /// omega by the formula, in radians per unit of time; null where there is none.
+    pub frequency: Option<f64>,
+    /// Why there is no frequency, in words; null where there is one.
+    pub reason: Option<String>,
+    /// omega of the true motion, in radians per unit of time.
+    pub true_frequency: f64,
+    /// frequency / true_frequency - 1, signed, as a fraction; null where there is no frequency.
+    pub relative_error: Option<f64>,
+    /// What is judged: `omega^2`, of which the frequency is the root, or `omega`; of a driven motion the `amplitude` of the largest
+    /// stable steady state, whose relative error is given.
+    #[schemars(extend("enum" = ["omega^2", "omega", "amplitude"]))]
+    pub judged_on: String,
+    /// The relative error of `frequency` where `frequency_squared` is judged; null where they do not stand side by side.
+    pub error_of_omega: Option<f64>,
+    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
+    pub max_deviation: Option<f64>,
+    /// The root mean square of what the formula leaves of the equation, over that of the force; null where it is not known.
+    pub residual: Option<f64>,
+    /// The exponent with which the error of the frequency vanishes as the small parameter does; of a motion followed from its start
+    /// that of `max_deviation`, over times that grow as the small parameter becomes less, and of a steady driven motion that of
+    /// `max_deviation`. Null where rounding hides it.
+    pub slope: Option<f64>,
+    /// Where the formula holds at these values, in words and numbers.
+    pub ranges: Vec<Range>,
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    pub chosen: Map<f64>,
+    /// The value of every symbol of the formulas: parameters, amplitude (1 where the equation is linear and none was given),
+    /// definitions, what was chosen, `omega` and `pi`. Laws that are written for the size of the amplitude have its size here. A
+    /// symbol that has no real value is left out.
+    #[serde(default)]
+    pub values: Map<f64>,
+    /// theta at t = 0, in radians: theta = omega t + phase. It is pi for a negative amplitude whose size stands in `values`, else 0.
+    #[serde(default)]
+    pub phase: f64,
+    /// The motion in numbers, whatever the method: x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), the
+    /// equilibrium in harmonic 0; harmonics below 1e-14 of the largest are left out. Where phase is pi and the force is not odd,
+    /// only this starts at the amplitude, not `displacement`. Null where the frequency is not real or the motion is not known.
+    #[serde(default)]
+    pub motion: Option<Vec<HarmonicValue>>,
+    /// The steady motions of a driven equation, largest first; empty for any other.
+    #[serde(default)]
+    pub steady_states: Vec<SteadyState>,
+    /// How many steady motions of the truncated slow equations are no motions of the equation: they tend to none of the leading order
+    /// as what is small goes to zero. Left out where there are none.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub spurious: usize,
+    /// What else is known of a motion that is not periodic; null for any other.
+    #[serde(default)]
+    pub followed: Option<Followed>,
+    /// Whether |relative_error| is within the tolerance, 0.01 unless another was given.
+    #[schemars(extend("enum" = [verify::Verdict::Pass.name(), verify::Verdict::Fail.name()]))]
+    pub verdict: String,
+}
+
+/// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those of its crossings of the
+/// equilibrium: pi over the mean time between successive ones; `max_deviation` is over the whole time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Followed {
+    /// How long it was followed, in the time of the equation.
+    pub until: f64,
+    /// Why no longer, in words.
+    pub reason: String,
+    /// How many crossings of the formula and of the true motion were compared.
+    pub crossings: usize,
+    /// The largest error of the turning points, as a fraction of the amplitude at the start; null where it is not known.
+    pub amplitude_error: Option<f64>,
+    /// The exponent with which that error vanishes as the small parameter does, over times that grow as it becomes less; null where
+    /// rounding hides it.
+    #[serde(default)]
+    pub amplitude_slope: Option<f64>,
+    /// When the amplitude is a tenth of that at the start, by the formula; null where it was not seen.
+    pub tenth: Option<f64>,
+    /// The same by the action, which viscous damping drains at one rate whatever the force; null for any other damping.
+    pub tenth_by_action: Option<f64>,
+    /// The same in truth, between turning points on the logarithm; null where it was not seen.
+    pub true_tenth: Option<f64>,
+}
+
+/// A steady motion in numbers, by the slow equations and in truth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct SteadyState {
+    /// The amplitude by the slow equations, in the unit of the coordinate.
+    pub amplitude: f64,
+    /// The phase by the slow equations, from -pi to pi, in radians.
+    pub phase: f64,
+    /// Real and imaginary part of each eigenvalue of the slow equations, per unit of time.
+    pub eigenvalues: [[f64; 2]; 2],
+    /// Whether both real parts are negative.
+    pub stable: bool,
+    /// The amplitude of the true periodic motion near it; null where none was found.
+    pub true_amplitude: Option<f64>,
+    /// Whether the true motion attracts, by its Floquet multipliers; null where none was found.
+    pub true_stable: Option<bool>,
+    /// amplitude / true_amplitude - 1, as a fraction; null for a motion without a part of its own.
+    pub relative_error: Option<f64>,
+    /// The largest |x - x_true| over one period, as a fraction of the largest |x_true|; null where no true motion was found.
+    pub max_deviation: Option<f64>,
+}
+
+/// One harmonic of a motion in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct HarmonicValue {
+    /// The multiple of theta, 0 for the mean.
+    pub harmonic: usize,
+    /// The coefficient of the cosine, in the unit of the coordinate.
+    pub cos: f64,
+    /// The coefficient of the sine, in the unit of the coordinate.
+    pub sin: f64,
+}
+
+/// A place where the formula stops to hold, or another remark on its range.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Range {
+    /// The range in words and numbers.
+    pub text: String,
+    /// Whether the given values lie outside of it.
+    pub outside: bool,
+}
+
+/// The verdict on a formula.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, judge, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let judged = judge(&duffing, &solution, &"A = 1, eps = 1/10".parse()?, 0.01)?;
+/// let document = lindstedt::export::json::verification::verification(&judged);
+/// assert_eq!(document.true_frequency, judged.true_frequency);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn verification(verification: &verify::Verification) -> Verification {
+    let ranges = verification.ranges.iter();
+    Verification {
+        at: values(&verification.at),
+        frequency: finite(verification.frequency),
+        reason: verification.reason.as_ref().map(ToString::to_string),
+        true_frequency: verification.true_frequency,
+        relative_error: finite(verification.relative_error),
+        judged_on: verification.judged_on.to_owned(),
+        error_of_omega: finite(verification.error_of_omega),
+        max_deviation: finite(verification.max_deviation),
+        residual: finite(verification.residual),
+        slope: finite(verification.slope),
+        ranges: ranges
+            .map(|range| Range {
+                text: range.text.clone(),
+                outside: range.outside,
+            })
+            .collect(),
+        chosen: numbers(&verification.chosen),
+        values: numbers(&verification.values),
+        phase: verification.phase,
+        motion: verification.motion.as_ref().and_then(motion),
+        steady_states: verification.steady_states.iter().map(steady_state).collect(),
+        spurious: verification.spurious,
+        followed: verification.followed.as_ref().map(|followed| Followed {
+            until: followed.until,
+            reason: followed.reason.to_owned(),
+            crossings: followed.crossings,
+            amplitude_error: finite(followed.amplitude_error),
+            amplitude_slope: finite(followed.amplitude_slope),
+            tenth: finite(followed.tenth),
+            tenth_by_action: finite(followed.tenth_by_action),
+            true_tenth: finite(followed.true_tenth),
+        }),
+        verdict: verification.verdict.name().to_owned(),
+    }
+}
+
+/// A steady motion in numbers.
+fn steady_state(judged: &verify::JudgedState) -> SteadyState {
+    SteadyState {
+        amplitude: judged.state.amplitude,
+        phase: judged.state.phase,
+        eigenvalues: judged.state.eigenvalues.map(|(real, imaginary)| [real, imaginary]),
+        stable: judged.state.is_stable(),
+        true_amplitude: finite(judged.true_amplitude),
+        true_stable: judged.true_stable,
+        relative_error: finite(judged.relative_error),
+        max_deviation: finite(judged.max_deviation),
+    }
+}
+
+/// The harmonics of a motion in numbers but for rounding noise; nothing where one of them is not finite.
+fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
+    /// Beside the largest swing: what quadrature leaves of harmonics that are not there.
+    const NOISE: f64 = 1e-14;
+    let entry = |harmonic: usize| HarmonicValue {
+        harmonic,
+        cos: motion.cosine(harmonic).mean().0,
+        sin: motion.sine(harmonic).mean().0,
+    };
+    let size = |entry: &HarmonicValue| entry.cos.hypot(entry.sin);
+    let entries: Vec<HarmonicValue> = (0..=motion.highest_harmonic()).map(entry).collect();
+    let largest = entries.iter().skip(1).map(size).fold(0.0, f64::max);
+    entries
+        .into_iter()
+        .filter(|entry| size(entry) > NOISE * largest || !size(entry).is_finite())
+        .map(|entry| size(&entry).is_finite().then_some(entry))
+        .collect()
+}
+
+/// Exact values by their names.
+pub(super) fn values(values: &Values) -> Map<Constant> {
+    values
+        .iter()
+        .map(|(name, value)| (name.to_string(), Constant::of(value)))
+        .collect()
+}
+
+/// Numbers by their names.
+pub(super) fn numbers(numbers: &[(Symbol, f64)]) -> Map<f64> {
+    let numbers = numbers.iter();
+    numbers.map(|(name, value)| (name.to_string(), *value)).collect()
+}

@@ -263,9 +263,10 @@ impl Run<'_> {
                 rising,
             }));
         let order = self.expansion.order;
-        let coefficients: Vec<f64> = (0..self.values.len())
-            .flat_map(|state| self.expansion.state(state).to_vec())
-            .collect();
+        let mut coefficients = Vec::with_capacity(self.values.len() * (order + 1));
+        for state in 0..self.values.len() {
+            coefficients.extend_from_slice(self.expansion.state(state));
+        }
         for (state, series) in self.values.iter_mut().zip(coefficients.chunks(order + 1)) {
             *state = value(series, length);
         }
@@ -444,23 +445,27 @@ impl Expansion {
         // What a side has no value for is not looked at.
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
         let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
+        let mut powers = Powers::new(self.order);
         followed
             .chain(events)
             .chain(corners)
-            .fold(f64::INFINITY, |longest, series| self.of_steps.reach(series, longest))
+            .fold(f64::INFINITY, |longest, series| {
+                self.of_steps.reach(series, longest, &mut powers)
+            })
     }
 
     /// The step, no longer than this, that ends beside the first place that is narrow for it, where there is one.
     fn short_of_narrow(&self, longest: f64) -> f64 {
         let arguments = self.outputs.iter().skip(self.states + self.events);
         let mut length = longest;
+        let mut powers = Powers::new(self.order);
         for (kind, output) in self.narrow.iter().zip(arguments) {
             let series = self.tape.series(*output);
             if end_of_step(*kind, series, length).is_none() {
                 continue;
             }
             // Beyond its own reach the series of the argument says nothing.
-            length = self.of_arguments.reach(series, length);
+            length = self.of_arguments.reach(series, length, &mut powers);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
             }
@@ -594,25 +599,18 @@ impl Allowance {
     }
 
     /// The longest step, no longer than this, on which the last terms of a series of this order are within the tolerance.
-    fn reach(&self, series: &[f64], longest: f64) -> f64 {
+    fn reach(&self, series: &[f64], longest: f64, powers: &mut Powers) -> f64 {
         const SHORTER: f64 = 0.9;
         const TRIALS: usize = 400;
         let order = self.order;
         let Some(lead) = series.iter().position(|c| *c != 0.0) else {
             return longest;
         };
-        let mut table = vec![0.0; order + 1];
-        let mut within = |h: f64| {
-            powers(h, &mut table);
-            let term = |k: usize| series[k].abs() * table[k];
-            let size = (0..=order / 2).map(term).fold(0.0, f64::max);
-            let mut last = (Self::first(order)..=order).zip(self.parts);
-            last.all(|(k, part)| term(k) <= size * part)
-        };
         // The root test; from there shorter until the last terms are small enough.
         let mut h = longest;
+        let of_longest = powers.of(longest);
         for k in Self::first(order).max(lead + 1)..=order {
-            let (size, power) = (series[k].abs(), h.powi((k - lead) as i32));
+            let (size, power) = (series[k].abs(), of_longest[k - lead]);
             // A root is drawn only where it may come out shorter.
             let clearly_longer = power >= f64::MIN_POSITIVE && series[lead].abs() > size * power * (1.0 + 1e-9);
             if size != 0.0 && !clearly_longer {
@@ -620,11 +618,44 @@ impl Allowance {
             }
         }
         for _ in 0..TRIALS {
-            if h.is_infinite() || within(h) {
+            if h.is_infinite() || self.is_within(series, powers.of(h)) {
                 break;
             }
             h *= SHORTER;
         }
         h
+    }
+
+    /// Whether the last terms of a series, at the place with these powers, are within the tolerance.
+    fn is_within(&self, series: &[f64], powers: &[f64]) -> bool {
+        let term = |k: usize| series[k].abs() * powers[k];
+        let size = (0..=self.order / 2).map(term).fold(0.0, f64::max);
+        let mut last = (Self::first(self.order)..=self.order).zip(self.parts);
+        last.all(|(k, part)| term(k) <= size * part)
+    }
+}
+
+/// The powers of one number after the other: most of the series of a step are looked at in the same place.
+struct Powers {
+    of: f64,
+    table: Vec<f64>,
+}
+
+impl Powers {
+    /// Room for this order and those below it.
+    fn new(order: usize) -> Self {
+        Self {
+            of: f64::NAN,
+            table: vec![0.0; order + 1],
+        }
+    }
+
+    /// `h^0, h^1, ...`
+    fn of(&mut self, h: f64) -> &[f64] {
+        if h != self.of {
+            powers(h, &mut self.table);
+            self.of = h;
+        }
+        &self.table
     }
 }

@@ -11,6 +11,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::LazyLock;
 
 use super::super::model::{Friction, STEEPNESS, Side};
 use super::{PrimaryCase, PrimaryError};
@@ -22,53 +23,76 @@ use crate::system::System;
 /// The energies that run beside the states: viscous, friction, contact, dashpot, force.
 pub(super) const ACCOUNTS: usize = 5;
 
-/// The equations of one case.
-pub(super) struct Equations {
-    /// The accelerations x'', y'' with `P` for the torque of a contact and `G` for that of friction.
-    accelerations: [Expr; 2],
+/// What the energies say of every case.
+struct Accelerations {
+    /// x'', y'' with `P` for the torque of a contact and `G` for that of friction.
+    free: [Expr; 2],
     /// y'' of the main mass with the pendulum held.
     held: Expr,
+}
+
+/// Derived once for all cases.
+static DERIVED: LazyLock<Result<Accelerations, MechanicsError>> = LazyLock::new(derive);
+
+/// The equations of one case.
+pub(super) struct Equations {
+    accelerations: &'static Accelerations,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
-    /// The systems of the phases that there were: a motion goes through the same ones again and again.
-    built: RefCell<Vec<(Phase, Rc<System>)>>,
+    /// The phases that there were: a motion goes through the same ones again and again.
+    built: RefCell<Vec<(Phase, Rc<Followed>)>>,
 }
 
 /// A phase with equations of its own: in the barrier of a side or in none, and the direction in which dry friction acts.
 type Phase = (Option<Side>, f64);
+
+/// The system of a phase: its states, and behind them the accounts that change in it.
+pub(super) struct Followed {
+    pub(super) system: System,
+    /// Which accounts those are.
+    pub(super) accounts: Vec<usize>,
+}
 
 /// An expression of this file.
 fn own(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
 
+fn derive() -> Result<Accelerations, MechanicsError> {
+    let mut mechanism = Mechanism::parse(
+        &["x", "y"],
+        "R*y'^2/2 + ((y' + x'*cos(x))^2 + (x'*sin(x))^2)/2",
+        "kappa*y^2/2 + 1 - cos(x)",
+    )?;
+    mechanism.dissipation = own("delta*y'^2/2 + zeta*x'^2");
+    mechanism.forces = [
+        (Symbol::new("x"), own("P + G")),
+        (Symbol::new("y"), own("f*sin(eta*t)")),
+    ]
+    .into();
+    let equations = mechanism.equations()?;
+    let accelerations = equations.accelerations()?;
+    let [x, y] = accelerations.as_slice() else {
+        return Err(MechanicsError::CoordinateCount(accelerations.len()));
+    };
+    // Held, the second equation alone says how the main mass moves.
+    let at_rest: BTreeMap<Symbol, Expr> = [(Symbol::new("x'"), Expr::zero())].into();
+    let (mass, rest) = (
+        &equations.mass[1][1],
+        equations.rest[1]
+            .substitute_all(&at_rest)
+            .map_err(MechanicsError::from)?,
+    );
+    let held = Expr::divide(&-rest, mass).map_err(MechanicsError::from)?;
+    Ok(Accelerations {
+        free: [x.clone(), y.clone()],
+        held,
+    })
+}
+
 impl Equations {
     pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
-        let mut mechanism = Mechanism::parse(
-            &["x", "y"],
-            "R*y'^2/2 + ((y' + x'*cos(x))^2 + (x'*sin(x))^2)/2",
-            "kappa*y^2/2 + 1 - cos(x)",
-        )?;
-        mechanism.dissipation = own("delta*y'^2/2 + zeta*x'^2");
-        mechanism.forces = [
-            (Symbol::new("x"), own("P + G")),
-            (Symbol::new("y"), own("f*sin(eta*t)")),
-        ]
-        .into();
-        let equations = mechanism.equations()?;
-        let accelerations = equations.accelerations()?;
-        let [x, y] = accelerations.as_slice() else {
-            return Err(MechanicsError::CoordinateCount(accelerations.len()).into());
-        };
-        // Held, the second equation alone says how the main mass moves.
-        let at_rest: BTreeMap<Symbol, Expr> = [(Symbol::new("x'"), Expr::zero())].into();
-        let (mass, rest) = (
-            &equations.mass[1][1],
-            equations.rest[1]
-                .substitute_all(&at_rest)
-                .map_err(MechanicsError::from)?,
-        );
-        let held = Expr::divide(&-rest, mass).map_err(MechanicsError::from)?;
+        let accelerations = DERIVED.as_ref().map_err(Clone::clone)?;
         let (primary, model) = (case.primary, case.model);
         let numbers = [
             ("R", primary.mass),
@@ -82,8 +106,7 @@ impl Equations {
             ("mu", model.mu),
         ];
         Ok(Self {
-            accelerations: [x.clone(), y.clone()],
-            held,
+            accelerations,
             numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
             case,
             built: RefCell::default(),
@@ -94,8 +117,8 @@ impl Equations {
     fn once(
         &self,
         phase: Phase,
-        build: impl FnOnce() -> Result<System, PrimaryError>,
-    ) -> Result<Rc<System>, PrimaryError> {
+        build: impl FnOnce() -> Result<Followed, PrimaryError>,
+    ) -> Result<Rc<Followed>, PrimaryError> {
         let known = self
             .built
             .borrow()
@@ -105,9 +128,9 @@ impl Equations {
         if let Some(known) = known {
             return Ok(known);
         }
-        let system = Rc::new(build()?);
-        self.built.borrow_mut().push((phase, system.clone()));
-        Ok(system)
+        let followed = Rc::new(build()?);
+        self.built.borrow_mut().push((phase, followed.clone()));
+        Ok(followed)
     }
 
     /// The torque of dry friction in this direction, and what it takes per time.
@@ -140,17 +163,31 @@ impl Equations {
         Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
     }
 
-    /// The equations of these states and the accounts; `more` are numbers of this phase alone.
-    fn system(
+    /// The equations of these states and the accounts that change; `more` are numbers of this phase alone.
+    fn followed(
         &self,
         states: &[&str],
         time: &str,
         right: &[Expr],
         more: &[(&str, f64)],
-    ) -> Result<System, PrimaryError> {
-        let accounts = (0..ACCOUNTS).map(|index| Symbol::new(&format!("account{index}")));
-        let states: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).chain(accounts).collect();
-        Ok(System::new(&states, Symbol::new(time), right, &self.numbers_and(more))?)
+    ) -> Result<Followed, PrimaryError> {
+        // What is not there costs nothing: no product with zero is followed, and no account that stands still.
+        let absent = self.numbers.iter().filter(|(_, value)| **value == 0.0);
+        let absent: BTreeMap<Symbol, Expr> = absent.map(|(name, _)| (*name, Expr::zero())).collect();
+        let right: Vec<Expr> = right
+            .iter()
+            .map(|rate| rate.substitute_all(&absent).map_err(MechanicsError::from))
+            .collect::<Result<_, _>>()?;
+        let (own_rates, account_rates) = right.split_at(states.len());
+        let accounts: Vec<usize> = (0..account_rates.len())
+            .filter(|account| !account_rates[*account].is_zero())
+            .collect();
+        let names = accounts.iter().map(|account| Symbol::new(&format!("account{account}")));
+        let names: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).chain(names).collect();
+        let rates = accounts.iter().map(|account| account_rates[*account].clone());
+        let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
+        let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
+        Ok(Followed { system, accounts })
     }
 
     /// The numbers of the case, and these beside them.
@@ -162,30 +199,30 @@ impl Equations {
 
     /// The torque on a pendulum at rest, which friction must hold: x'' + y'' cos x + sin x = P + G with x'' = 0.
     fn torque_at_rest(&self) -> Expr {
-        own("P") - own("sin(x)") - own("cos(x)") * self.held.clone()
+        own("P") - own("sin(x)") - own("cos(x)") * self.accelerations.held.clone()
     }
 
     /// Away from the barriers, moving in this direction where dry friction asks for one.
-    pub(super) fn flight(&self, direction: f64) -> Result<Rc<System>, PrimaryError> {
+    pub(super) fn flight(&self, direction: f64) -> Result<Rc<Followed>, PrimaryError> {
         self.once((None, direction), || self.flight_system(direction))
     }
 
-    fn flight_system(&self, direction: f64) -> Result<System, PrimaryError> {
+    fn flight_system(&self, direction: f64) -> Result<Followed, PrimaryError> {
         let [torque, power] = self.friction(direction);
         let mut right = vec![own("x'")];
         let put = |acceleration: &Expr| self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())]);
-        let [x, y] = [put(&self.accelerations[0])?, put(&self.accelerations[1])?];
+        let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
         right.extend([x, own("y'"), y]);
         right.extend(self.accounts(power, Expr::zero()));
-        self.system(&["x", "x'", "y", "y'"], "t", &right, &[])
+        self.followed(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
 
     /// In the barrier of a side, at its place, in s; it pushes as Hertz and Hunt and Crossley say.
-    pub(super) fn contact(&self, side: Side, place: f64, direction: f64) -> Result<Rc<System>, PrimaryError> {
+    pub(super) fn contact(&self, side: Side, place: f64, direction: f64) -> Result<Rc<Followed>, PrimaryError> {
         self.once((Some(side), direction), || self.contact_system(side, place, direction))
     }
 
-    fn contact_system(&self, side: Side, place: f64, direction: f64) -> Result<System, PrimaryError> {
+    fn contact_system(&self, side: Side, place: f64, direction: f64) -> Result<Followed, PrimaryError> {
         let sign = Expr::from(side.sign() as i64);
         let [torque, power] = self.friction(direction);
         let force = own("w^3") * (own("gamma") + &sign * &own("mu*x'"));
@@ -198,29 +235,29 @@ impl Equations {
             )
         };
         let mut right = vec![&sign * &own("x'/2")];
-        right.push(slow(put(&self.accelerations[0])?));
+        right.push(slow(put(&self.accelerations.free[0])?));
         right.push(slow(own("y'")));
-        right.push(slow(put(&self.accelerations[1])?));
+        right.push(slow(put(&self.accelerations.free[1])?));
         right.push(own("w"));
         right.extend(self.accounts(power, own("mu*x'^2*w^3")).into_iter().map(slow));
-        self.system(&["w", "x'", "y", "y'", "t"], "s", &right, &[("place", place)])
+        self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("place", place)])
     }
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction must hold.
-    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(System, Expr), PrimaryError> {
+    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(Followed, Expr), PrimaryError> {
         let still = [("x'", Expr::zero())];
-        let mut right = vec![own("y'"), self.held.clone()];
+        let mut right = vec![own("y'"), self.accelerations.held.clone()];
         for account in self.accounts(Expr::zero(), Expr::zero()) {
             right.push(self.put(&account, &still)?);
         }
-        let system = self.system(&["y", "y'"], "t", &right, &[("x", x), ("P", contact)])?;
-        Ok((system, self.torque_at_rest()))
+        let followed = self.followed(&["y", "y'"], "t", &right, &[("x", x), ("P", contact)])?;
+        Ok((followed, self.torque_at_rest()))
     }
 
     /// x'' away from the barriers, as a number; dry friction acts in this direction.
     pub(super) fn acceleration(&self, t: f64, state: [f64; 4], direction: f64) -> Result<f64, PrimaryError> {
         let [torque, _] = self.friction(direction);
-        let rate = self.put(&self.accelerations[0], &[("P", Expr::zero()), ("G", torque)])?;
+        let rate = self.put(&self.accelerations.free[0], &[("P", Expr::zero()), ("G", torque)])?;
         let [x, velocity, y, speed] = state;
         let values = self.numbers_and(&[("t", t), ("x", x), ("x'", velocity), ("y", y), ("y'", speed)]);
         Ok(rate.evaluate(&values).unwrap_or(f64::NAN))

@@ -6,7 +6,7 @@
 
 use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
-use super::equations::{ACCOUNTS, Equations};
+use super::equations::{ACCOUNTS, Equations, Followed};
 use super::path::{Piece, PrimaryPath, PrimaryState};
 use super::{PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings, PrimaryStop};
 use crate::expr::{Expr, parse_expression};
@@ -194,9 +194,17 @@ impl<'a> Run<'a> {
         self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
     }
 
-    /// The states with their accounts.
-    fn with_accounts(&self, states: &[f64]) -> Vec<f64> {
-        states.iter().chain(&self.accounts).copied().collect()
+    /// The states, and behind them the accounts that change in this phase.
+    fn with_accounts(&self, states: &[f64], followed: &Followed) -> Vec<f64> {
+        let accounts = followed.accounts.iter().map(|account| self.accounts[*account]);
+        states.iter().copied().chain(accounts).collect()
+    }
+
+    /// Takes back what stands behind the states.
+    fn keep_accounts(&mut self, values: &[f64], followed: &Followed) {
+        for (account, value) in followed.accounts.iter().zip(values) {
+            self.accounts[*account] = *value;
+        }
     }
 
     fn fly(&mut self, direction: f64) -> Result<End, PrimaryError> {
@@ -223,10 +231,12 @@ impl<'a> Run<'a> {
 
     /// Away from every force of a barrier until one of these events; the first of them are the turning points of the main mass.
     fn glide(&mut self, direction: f64, events: &[Event]) -> Result<End, PrimaryError> {
-        let system = self.equations.flight(direction)?;
+        let followed = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
-        let start = self.with_accounts(&[x, velocity, y, speed]);
-        let path = system.solve(self.t, &start, self.settings.duration, events, &self.options())?;
+        let start = self.with_accounts(&[x, velocity, y, speed], &followed);
+        let path = followed
+            .system
+            .solve(self.t, &start, self.settings.duration, events, &self.options())?;
         self.turns_of(&path, |state| state[2], |time| time);
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
@@ -236,7 +246,7 @@ impl<'a> Run<'a> {
             y: last[2],
             speed: last[3],
         };
-        self.accounts.copy_from_slice(&last[4..]);
+        self.keep_accounts(&last[4..], &followed);
         self.path.push(self.t, end, Piece::Flight(path));
         self.t = end;
         Ok(reason)
@@ -282,7 +292,7 @@ impl<'a> Run<'a> {
 
     fn touch(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
         let place = self.place(side);
-        let system = self.equations.contact(side, place, direction)?;
+        let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
         // From a touch without speed the variable w would never leave its zero.
         let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
@@ -301,8 +311,10 @@ impl<'a> Run<'a> {
             events.push(Event::stop(own("gamma") + sign * own("mu*x'")));
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
-        let start = self.with_accounts(&[w, velocity, y, speed, self.t]);
-        let path = system.solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
+        let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
+        let path = followed
+            .system
+            .solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let deepest = path.occurrences().iter().filter(|met| met.event == 3);
         let deepest = deepest
@@ -318,7 +330,7 @@ impl<'a> Run<'a> {
             y: last[2],
             speed: last[3],
         };
-        self.accounts.copy_from_slice(&last[5..]);
+        self.keep_accounts(&last[5..], &followed);
         let end = last[4].min(self.settings.duration);
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest).max(w * w);
@@ -371,15 +383,17 @@ impl<'a> Run<'a> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
         let contact = inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
-        let (system, torque) = self.equations.held(x, contact)?;
+        let (followed, torque) = self.equations.held(x, contact)?;
         let alpha = own("alpha");
         let events = [
             Event::record(own("y'")),
             Event::stop(&torque - &alpha),
             Event::stop(&torque + &alpha),
         ];
-        let start = self.with_accounts(&[y, speed]);
-        let path = system.solve(self.t, &start, self.settings.duration, &events, &self.options())?;
+        let start = self.with_accounts(&[y, speed], &followed);
+        let path = followed
+            .system
+            .solve(self.t, &start, self.settings.duration, &events, &self.options())?;
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
@@ -389,7 +403,7 @@ impl<'a> Run<'a> {
             y: last[0],
             speed: last[1],
         };
-        self.accounts.copy_from_slice(&last[2..]);
+        self.keep_accounts(&last[2..], &followed);
         self.path.push(self.t, end, Piece::Held { path, x });
         self.t = end;
         if let End::Event(event) = reason {

@@ -21,6 +21,11 @@ pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
             }
         }
     }
+    merged(constant, parts)
+}
+
+/// The sum of a number and of terms; one piece of code, whatever the terms came from.
+fn merged(constant: Rational, mut parts: Vec<Part>) -> Expr {
     sort_by_hash(&mut parts, |part| &part.rest);
     let mut merged: Vec<Expr> = Vec::with_capacity(parts.len() + 1);
     if !constant.is_zero() {

@@ -23,10 +23,11 @@ use crate::exact::Rational;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
+use crate::oscillator::corner::beside_corners;
 use crate::oscillator::{Equilibria, Oscillator, OscillatorError, Others};
 use crate::series::taylor::taylor;
 use crate::solution::Definition;
-use crate::solution::note::Position;
+use crate::solution::note::{CornerSide, Position};
 use crate::symbol::{Symbol, fresh};
 use inverse::inverted;
 use search::{Zero as SignChange, polynomial_zeros, zeros};
@@ -45,8 +46,8 @@ pub struct Centred {
     pub definition: Option<Definition>,
     /// Whether the coefficients of the force are rounded.
     pub numerical: bool,
-    /// What is taken to be positive: `xc` where a barrier `H(x - xc)` must not act at rest.
-    pub barriers_apart: Vec<Expr>,
+    /// The sides of corners at rest without which there would be a force there: a barrier `H(x - xc)` is away for `xc > 0`.
+    pub sides: Vec<CornerSide>,
 }
 
 impl Centred {
@@ -57,7 +58,7 @@ impl Centred {
             written: Expr::zero(),
             definition: None,
             numerical: false,
-            barriers_apart: vec![],
+            sides: vec![],
         }
     }
 }
@@ -130,13 +131,14 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
             }),
         };
     }
-    if let Ok(at_zero) = &at_zero
-        && let Some(barriers_apart) = untouched(at_zero)?
-    {
+    if let Some(sides) = rests_beside_corners(&still, position)? {
         return Ok(Centred {
-            barriers_apart,
+            sides,
             ..Centred::at_origin(oscillator)
         });
+    }
+    if !still.contains(position) {
+        return Err(OscillatorError::NoEquilibrium(force.at_rest(&at_zero)));
     }
     match force.stable_closed_form() {
         Some(found) => seen_from(oscillator, &found, degree),
@@ -508,21 +510,11 @@ fn is_nothing(coefficient: &Expr) -> bool {
     f64::abs(sum) <= 1e-14 * size
 }
 
-/// Where a force at rest is that of barriers alone that do not act there, what has to be positive for that: every `H(-xc)` is
-/// zero for `xc > 0`.
-fn untouched(at_zero: &Expr) -> Result<Option<Vec<Expr>>, OscillatorError> {
-    let mut edges = Vec::new();
-    let without = at_zero.fold(|expr, children: &[Expr]| match (expr.node(), children) {
-        (Node::Function(Function::Step, _), [edge]) if edge.terms().len() == 1 && edge.has_leading_minus() => {
-            let edge = -edge;
-            if !edges.contains(&edge) {
-                edges.push(edge);
-            }
-            Ok(Expr::zero())
-        }
-        _ => expr.with_children(children),
-    })?;
-    Ok((without.expand()?.is_zero() && !edges.is_empty()).then_some(edges))
+/// The sides of corners on which there is no force at rest, where letters decide them; nothing where there is one all the same.
+fn rests_beside_corners(still: &Expr, coordinate: Symbol) -> Result<Option<Vec<CornerSide>>, OscillatorError> {
+    let (beside, sides) = beside_corners(still, coordinate)?;
+    let rests = !sides.is_empty() && value_at(&beside, coordinate, &Expr::zero()).is_ok_and(|force| force.is_zero());
+    Ok(rests.then_some(sides))
 }
 
 /// The equation in the deviation from a place.

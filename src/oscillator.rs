@@ -11,6 +11,8 @@
 //! and, for perturbation methods, the force as a sum of terms `delta^order * coefficient * x^p x'^q` beside the linear
 //! `omega0^2 x`, where `delta` is a parameter of the equation or the amplitude itself.
 
+pub(crate) mod corner;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -23,6 +25,7 @@ use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::note::Position;
 use crate::solution::{Advice, AmplitudeConvention, Definition, Method, Setting};
 use crate::symbol::{Symbol, fresh, fresh_stem};
+use corner::near_rest;
 
 /// An equation of motion `x'' + force = 0` for one coordinate.
 #[derive(Clone, Debug, PartialEq)]
@@ -314,11 +317,12 @@ impl Oscillator {
             }));
         }
         let rest = residual.substitute(acceleration, &Expr::zero())?;
-        let mass_at_rest = at_rest(&mass, coordinate);
-        if mass_at_rest.is_ok_and(|mass| mass.is_zero()) {
+        let force = Expr::divide(&rest, &mass)?;
+        // Where the force has a pole there no motion comes to rest; elsewhere the mass is another.
+        let vanishes = at_rest(&mass, coordinate).is_ok_and(|mass| mass.is_zero());
+        if vanishes && at_rest(&force, coordinate).is_ok() {
             return Err(OscillatorError::VanishingMass(mass.to_string()));
         }
-        let force = Expr::divide(&rest, &mass)?;
         let own = [
             coordinate,
             coordinate.derivative(),
@@ -575,7 +579,11 @@ impl Oscillator {
         order: u32,
     ) -> Result<PerturbedForce, OscillatorError> {
         let (position, velocity) = (self.coordinate, self.velocity());
-        let at_rest = at_rest(&self.force, position).and_then(|force| force.expand());
+        let force = match small {
+            SmallParameter::Parameter(_) => self.force.clone(),
+            SmallParameter::Amplitude => near_rest(&self.force, position)?.0,
+        };
+        let at_rest = at_rest(&force, position).and_then(|force| force.expand());
         if let Ok(force) = at_rest
             && !vanishes_identically(&force)
         {
@@ -583,10 +591,10 @@ impl Oscillator {
         }
         let zero = Rational::zero();
         let (parts, first) = match small {
-            SmallParameter::Parameter(name) => (taylor(&self.force, &[(name, zero)], order)?, 0),
+            SmallParameter::Parameter(name) => (taylor(&force, &[(name, zero)], order)?, 0),
             SmallParameter::Amplitude => (
                 taylor(
-                    &self.force,
+                    &force,
                     &[(position, zero.clone()), (velocity, zero)],
                     order.saturating_add(1),
                 )?,

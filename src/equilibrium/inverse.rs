@@ -1,11 +1,12 @@
 //! Zeros of a force with letters that are found by inverting it: the coordinate stands in one place, or in the sine and cosine of one
-//! angle, or the force is a polynomial of third degree.
+//! angle, or the force is a polynomial of third degree in it, in a power of it or in an exponential.
 //!
 //! References: NIST Digital Library of Mathematical Functions 1.11(iii) (Cardano), 4.43 (Viete), 4.21 and 4.23 (angles).
 //!
 //! ```text
 //! c h(u) = r                      u = h^-1(r/c), and so on to x
 //! c sin u + d cos u = r           u = phi +- acos(r/sqrt(c^2 + d^2)),   tan phi = c/d
+//! c x^a + d x^b = 0               x^(a - b) = -d/c,   and three or four powers alike where x^s is the root of a polynomial
 //! x^3 + p x + q = 0               x = -q/(U^2 + p/3 + p^2/(9 U^2)),   U^3 = sqrt(q^2/4 + p^3/27) + q/2    one real root
 //!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
 //! ```
@@ -13,10 +14,12 @@
 //! Which of them is real depends on the values of the letters, and is left to who puts some in. In: a force and its coordinate. Out:
 //! candidates, some of which may be zeros for no values at all.
 
-use num_traits::Signed;
+use num_integer::Integer as _;
+use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::shift::{coefficients, numerator};
+use super::shift::{coefficients, numerator, quadratic_roots};
 use crate::conservative::linear_in;
+use crate::exact::Rational;
 use crate::exact::rational::ratio;
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
@@ -35,6 +38,15 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     }
     let (moving, still): (Vec<Expr>, Vec<Expr>) = expression.terms().iter().cloned().partition(|term| term.contains(x));
     let other_side = -Expr::sum(still);
+    if let ([product], true) = (moving.as_slice(), other_side.is_zero()) {
+        let factors = product.factors().1.iter().filter(|factor| factor.contains(x));
+        let factors: Vec<&Expr> = factors.collect();
+        if factors.len() > 1 {
+            // A factor such as 1/x is never zero.
+            let found = factors.into_iter().map(|factor| zeros(factor, x).unwrap_or_default());
+            return Ok(found.flatten().collect());
+        }
+    }
     let parts: Option<Vec<(Expr, Expr)>> = moving.iter().map(|term| split(term, x)).collect();
     if let Some([(factor, function)]) = parts.as_deref() {
         return before(function, &Expr::divide(&other_side, factor)?, x);
@@ -44,7 +56,11 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     {
         return through(&angle, values, x);
     }
-    of_polynomial(expression, x)
+    let roots = of_polynomial(expression, x)?;
+    match parts {
+        Some(parts) if roots.is_empty() => of_powers(&parts, &other_side, x),
+        _ => Ok(roots),
+    }
 }
 
 /// A term as what does not move times the one factor that does.
@@ -153,6 +169,91 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     }
 }
 
+/// Where a sum of powers of one base, or of exponentials, has the value `r`: they are a polynomial in one of them, up to a factor.
+fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+    let powers: Option<Vec<(Option<Expr>, Expr)>> = parts.iter().map(|(_, function)| power(function, x)).collect();
+    let Some([(base, lowest), others @ ..]) = powers.as_deref() else {
+        return Ok(vec![]);
+    };
+    if others.iter().any(|other| other.0 != *base) {
+        return Ok(vec![]);
+    }
+    // Every exponent by how many steps it is away from the first.
+    let constant = (!r.is_zero()).then(|| (Expr::zero(), -r));
+    let terms = others
+        .iter()
+        .zip(&parts[1..])
+        .map(|((_, exponent), (factor, _))| (exponent.clone(), factor.clone()));
+    let terms: Vec<(Expr, Expr)> = terms.chain(constant).collect();
+    let Some((next, _)) = terms.first() else {
+        return Ok(vec![]);
+    };
+    let step = (next - lowest).expand()?;
+    let mut places = vec![(Rational::zero(), parts[0].0.clone())];
+    for (exponent, factor) in &terms {
+        let away = Expr::divide(&(exponent - lowest).expand()?, &step)?.expand()?;
+        match away.as_number() {
+            Some(away) => places.push((away.clone(), factor.clone())),
+            None => return Ok(vec![]),
+        }
+    }
+    let Some((unit, mut polynomial)) = polynomial_of(&places) else {
+        return Ok(vec![]);
+    };
+    let mut exponent = (Expr::number(unit) * step).expand()?;
+    if exponent.has_leading_minus() {
+        exponent = -exponent;
+        polynomial.reverse();
+    }
+    let roots = match polynomial.as_slice() {
+        [c, b] => vec![Expr::divide(&-c, b)?],
+        [c, b, a] => quadratic_roots(a, b, c)?,
+        [d, c, b, a] => cubic_roots(a, b, c, d)?,
+        _ => return Ok(vec![]),
+    };
+    let function = match base {
+        Some(base) => Expr::power(base, &exponent)?,
+        None => Expr::function(Function::Exp, vec![exponent])?,
+    };
+    let found: Result<Vec<Vec<Expr>>, ExprError> = roots.iter().map(|root| before(&function, root, x)).collect();
+    Ok(found?.into_iter().flatten().collect())
+}
+
+/// A power of what moves as its base and exponent; an exponential has an exponent alone.
+fn power(function: &Expr, x: Symbol) -> Option<(Option<Expr>, Expr)> {
+    if let Node::Function(Function::Exp, arguments) = function.node() {
+        return Some((None, arguments.first()?.clone()));
+    }
+    let (base, exponent) = function.base_and_exponent();
+    (!exponent.contains(x)).then_some((Some(base), exponent))
+}
+
+/// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all coefficients from the lowest on; nothing
+/// beyond the third degree.
+fn polynomial_of(places: &[(Rational, Expr)]) -> Option<(Rational, Vec<Expr>)> {
+    const DEGREE: usize = 3;
+    let lowest = places.iter().map(|place| &place.0).min()?;
+    let apart: Vec<Rational> = places.iter().map(|place| &place.0 - lowest).collect();
+    let unit = apart
+        .iter()
+        .filter(|apart| !apart.is_zero())
+        .fold(None, |unit: Option<Rational>, apart| {
+            let Some(unit) = unit else { return Some(apart.clone()) };
+            let over = unit.denom() * apart.denom();
+            let numerator = (unit.numer() * apart.denom()).gcd(&(apart.numer() * unit.denom()));
+            Some(Rational::new(numerator, over))
+        })?;
+    let mut coefficients = vec![Expr::zero(); DEGREE + 1];
+    for (apart, (_, factor)) in apart.iter().zip(places) {
+        let degree = (apart / &unit).to_integer().to_usize()?;
+        let coefficient = coefficients.get_mut(degree)?;
+        *coefficient = &*coefficient + factor;
+    }
+    let length = coefficients.iter().rposition(|coefficient| !coefficient.is_zero())? + 1;
+    coefficients.truncate(length);
+    Some((unit, coefficients))
+}
+
 /// The roots of `a x^3 + b x^2 + c x + d`, first the one that is the only real one where it has a value.
 fn cubic_roots(a: &Expr, b: &Expr, c: &Expr, d: &Expr) -> Result<Vec<Expr>, ExprError> {
     let third = |expr: &Expr, power: i64| Ok::<_, ExprError>(Expr::number(ratio(1, power)) * expr);
@@ -232,6 +333,15 @@ mod tests {
             ("x - k/(1 - x)^2", vec![("k", 0.2)], 1),
             ("b*x^3 - x + k", vec![("k", 0.1), ("b", 0.7)], 3),
             ("log(k*exp(x^3 + x - c))", vec![("k", 0.1), ("c", 0.7)], 1),
+            ("24*e*(s^6/x^7 - 2*s^12/x^13)", vec![("e", 0.1), ("s", 0.7)], 2),
+            ("-p*(x^(-3*k) - 1)/x", vec![("p", 2.0), ("k", 1.4)], 1),
+            ("p*x^(-3*k) - p*x^(-k)", vec![("p", 2.0), ("k", 1.4)], 1),
+            ("b/x^m - c/x^n", vec![("b", 2.0), ("c", 3.0), ("m", 4.0), ("n", 9.0)], 1),
+            ("x^(1/3) + b*x^(2/3) - k", vec![("b", 2.0), ("k", 3.0)], 2),
+            ("exp(x) - k*exp(-x)", vec![("k", 2.0)], 1),
+            ("exp(2*b*x) - k*exp(b*x) + 1", vec![("k", 3.0), ("b", 2.0)], 2),
+            ("x^5 + b*x^3 - k*x", vec![("b", 1.0), ("k", 3.0)], 2),
+            ("(1 + x)^(-6) - k*(1 + x)^(-2)", vec![("k", 3.0)], 2),
         ];
         for (text, numbers, count) in table {
             let force: Expr = text.parse().unwrap();

@@ -112,8 +112,14 @@ impl Walk<'_> {
         // The last two places at which the force has a value other than zero, and the zeros since.
         let (mut before, mut last): (Option<Sample>, Option<Sample>) = (None, None);
         let mut flat = 0;
+        // A pole at zero has no other side to be reached from; beside it a high power is beyond all numbers for a while.
+        let mut in_pole = !value(0.0).is_finite();
         for &x in places {
             let force = value(x);
+            if !force.is_finite() && in_pole {
+                continue;
+            }
+            in_pole = false;
             if !force.is_finite() {
                 (walk.reachable, before, last, flat) = (false, None, None, 0);
                 continue;

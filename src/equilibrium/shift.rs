@@ -247,7 +247,7 @@ fn linear_root(slope: &Expr, constant: &Expr) -> Result<Vec<Expr>, ExprError> {
 }
 
 /// Both roots of `a x^2 + b x + c`, in the form in which nothing cancels for `b > 0`: the first goes to zero with `c`.
-fn quadratic_roots(a: &Expr, b: &Expr, c: &Expr) -> Result<Vec<Expr>, ExprError> {
+pub(super) fn quadratic_roots(a: &Expr, b: &Expr, c: &Expr) -> Result<Vec<Expr>, ExprError> {
     if b.is_zero() {
         let root = Expr::divide(&-c, a)?.sqrt()?;
         return Ok(vec![root.clone(), -root]);

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! time occurs                            multiple scales; averaging where the force has no expansion
-//! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging
+//! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging; multiple scales where that knows no
+//!                                        closed form for the first harmonic
 //! conservative                           Lindstedt-Poincare
 //! conservative, without an expansion     an order asked for: so many harmonics balanced;
 //!                                        exact, where its law is closed; Hamiltonian, where its law is closed and the force odd;
@@ -58,7 +59,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
         return found;
     }
     if is_of_damping(refusal, oscillator) {
-        return averaged(oscillator, options);
+        return averaged(oscillator, options).or_else(|refusal| in_powers(refusal, oscillator, options));
     }
     match without_expansion(refusal, oscillator, options) {
         Some(solution) => Ok(solution),
@@ -120,6 +121,30 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
             Err(refusal) => return Err(refusal),
         };
         given = lower;
+    }
+}
+
+/// Slow equations in powers of the amplitude, where averaging is refused for a force whose first harmonic has no closed form.
+///
+/// # Errors
+/// That refusal, where there is no expansion either.
+fn in_powers(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let Refusal::Unsuited {
+        reason: reason @ Unsuited::NoProjection { .. },
+        ..
+    } = &refusal
+    else {
+        return Err(refusal);
+    };
+    match solve_by(Method::MultipleScales, oscillator, options) {
+        Ok(mut solution) => {
+            solution.validity.push(Note::InsteadOf {
+                usual: Method::Averaging,
+                reason: format!("it {reason}"),
+            });
+            Ok(solution)
+        }
+        Err(_) => Err(refusal),
     }
 }
 

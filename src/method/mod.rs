@@ -63,6 +63,7 @@ use crate::equilibrium::{Centred, centred};
 use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::{Expr, ExprError, Quotation};
 use crate::interrupt::Supervision;
+use crate::oscillator::corner::near_rest;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
@@ -662,10 +663,13 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
     if entry.expands() && !projected && has_corners(&oscillator.force) {
         solution.validity.push(Note::Corners);
     }
-    if !centred.barriers_apart.is_empty() {
-        solution.validity.push(Note::BarriersApart {
-            positive: centred.barriers_apart.clone(),
-        });
+    let mut sides = centred.sides.clone();
+    if entry.expands() && !projected {
+        let (_, taken) = near_rest(&centred.oscillator.force, oscillator.coordinate).map_err(OscillatorError::from)?;
+        sides.extend(taken.into_iter().filter(|side| !centred.sides.contains(side)));
+    }
+    if !sides.is_empty() {
+        solution.validity.push(Note::CornerSides(sides));
     }
     if centred.position.is_zero() {
         // The question is the equation as it was typed, whatever a method made of its force.

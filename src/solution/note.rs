@@ -161,11 +161,8 @@ pub enum Note {
     Positive(Definition),
     /// An expansion of a force with corners.
     Corners,
-    /// Barriers that do not act at rest.
-    BarriersApart {
-        /// What is taken to be positive.
-        positive: Vec<Expr>,
-    },
+    /// The sides of corners at rest that letters decide.
+    CornerSides(Vec<CornerSide>),
     /// The equilibrium about which the motion swings.
     Equilibrium {
         /// The coordinate.
@@ -306,6 +303,17 @@ pub enum ExactBy {
     Quadrature,
 }
 
+/// A corner of a force whose side at rest the sign of a letter decides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CornerSide {
+    /// What is taken to be positive.
+    pub positive: Expr,
+    /// The function with the corner: `max(0, d + x)`.
+    pub corner: Expr,
+    /// What it is near rest.
+    pub taken: Expr,
+}
+
 /// An equilibrium as people read it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Position {
@@ -406,7 +414,7 @@ impl fmt::Display for Note {
                     "a steady motion only where {force} > {least}: dry friction holds it below"
                 )
             }
-            Self::BarriersApart { positive } => barriers_apart(formatter, positive),
+            Self::CornerSides(sides) => corner_sides(formatter, sides),
             Self::Equilibrium { coordinate, position } => {
                 write!(formatter, "swings about the equilibrium {coordinate} = {position}")
             }
@@ -527,9 +535,18 @@ fn agreement(
     )
 }
 
-fn barriers_apart(formatter: &mut fmt::Formatter<'_>, positive: &[Expr]) -> fmt::Result {
-    let conditions: Vec<String> = positive.iter().map(|edge| format!("{edge} > 0")).collect();
-    write!(formatter, "for {}: no barrier acts at rest", conditions.join(", "))
+fn corner_sides(formatter: &mut fmt::Formatter<'_>, sides: &[CornerSide]) -> fmt::Result {
+    let mut conditions: Vec<String> = sides.iter().map(|side| format!("{} > 0", side.positive)).collect();
+    conditions.dedup();
+    write!(formatter, "for {}: ", conditions.join(", "))?;
+    if sides.iter().all(|side| side.taken.is_zero()) {
+        return formatter.write_str("no barrier acts at rest");
+    }
+    let sides: Vec<String> = sides
+        .iter()
+        .map(|side| format!("{} is {}", side.corner, side.taken))
+        .collect();
+    write!(formatter, "near rest {}", sides.join(", "))
 }
 
 impl fmt::Display for Cut {

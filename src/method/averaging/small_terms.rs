@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError};
 use crate::method::{Options, Refusal};
+use crate::oscillator::corner::near_rest;
 use crate::oscillator::{Oscillator, OscillatorError, PerturbedForce, SmallParameter};
 use crate::series::taylor::taylor;
 use crate::symbol::{Symbol, fresh};
@@ -50,7 +51,8 @@ impl SmallTerms {
         let x = oscillator.coordinate;
         let slopes = others.iter().filter(|term| !term.contains(oscillator.velocity()));
         let slopes = slopes.filter_map(|term| {
-            let series = taylor(term, &[(x, Rational::zero())], 1).ok()?;
+            let (beside, _) = near_rest(term, x).ok()?;
+            let series = taylor(&beside, &[(x, Rational::zero())], 1).ok()?;
             series.get(1).cloned()
         });
         let slopes: Vec<Expr> = slopes.collect();

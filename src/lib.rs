@@ -58,6 +58,7 @@
 #![warn(missing_docs)]
 
 mod interrupt;
+mod parallel;
 
 pub mod numeric;
 mod spelling;

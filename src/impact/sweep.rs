@@ -18,8 +18,6 @@
 
 mod axis;
 
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 use thiserror::Error;
 
 pub use axis::{Axis, AxisError, Spacing};
@@ -27,6 +25,7 @@ pub use axis::{Axis, AxisError, Spacing};
 use super::model::{Model, Start};
 use super::simulate::{SimulationError, simulate, simulate_many};
 use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
+use crate::parallel::each;
 
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
@@ -172,19 +171,15 @@ pub fn sweep(
         keep_path: false,
         ..*settings
     };
-    let run = |(chunk, motions): (usize, &[(Model, Start)])| {
+    let run = |(chunk, motions): &(usize, &[(Model, Start)])| {
         let found =
             summaries(motions, integrator, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
         progress(motions.len());
         Ok(found)
     };
-    #[cfg(feature = "parallel")]
-    let chunks = motions.par_chunks(CHUNK);
-    #[cfg(not(feature = "parallel"))]
-    let chunks = motions.chunks(CHUNK);
-    let parts: Vec<Result<Vec<Summary>, (usize, SimulationError)>> = chunks.enumerate().map(run).collect();
+    let chunks: Vec<_> = motions.chunks(CHUNK).enumerate().collect();
     let mut summaries = Vec::with_capacity(motions.len());
-    for part in parts {
+    for part in each(&chunks, run) {
         summaries.extend(part?);
     }
     Ok(summaries)
@@ -234,9 +229,5 @@ pub fn sweep_on(
     settings: &Settings,
     progress: impl Fn(usize) + Sync + Send,
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| sweep(motions, integrator, settings, progress)),
-        // Without threads of its own it runs on those there are.
-        Err(_) => sweep(motions, integrator, settings, progress),
-    }
+    crate::parallel::on_threads(threads, || sweep(motions, integrator, settings, progress))
 }

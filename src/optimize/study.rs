@@ -3,9 +3,6 @@
 //! Run number i has the i-th stream of random numbers of the seed, so what it finds depends on nothing but the question: not on threads,
 //! not on whether it was done before and read from a record.
 
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
-
 use super::decision::Decision;
 use super::design::{Design, Route};
 use super::objective::Objective;
@@ -15,6 +12,7 @@ use crate::genetic::{
     random_search, search, search_front,
 };
 use crate::impact::hertz;
+use crate::parallel::each;
 
 /// A design that a run found, by closed forms.
 #[derive(Debug, Clone, PartialEq)]
@@ -221,15 +219,6 @@ impl Question {
     }
 }
 
-/// Every number of a range, on all cores where there is the feature `parallel`; results in order.
-fn each<T: Send>(numbers: Vec<usize>, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    #[cfg(feature = "parallel")]
-    let numbers = numbers.into_par_iter();
-    #[cfg(not(feature = "parallel"))]
-    let numbers = numbers.into_iter();
-    numbers.map(work).collect()
-}
-
 /// Searches: all runs but those that are known already, on all threads of the current pool.
 ///
 /// # Errors
@@ -242,7 +231,7 @@ pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Res
     (watch.progress)((question.runs - missing.len()) * question.genetic.generations);
     // The first one has its random population at least: there is always something to hand back.
     let first = missing.first().copied();
-    let one = |number| {
+    let one = |&number: &usize| {
         if first != Some(number) && (watch.stop)() {
             return None;
         }
@@ -252,7 +241,7 @@ pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Res
         }
         Some(run)
     };
-    let new = each(missing, one);
+    let new = each(&missing, one);
     let mut runs: Vec<SearchRun> = known.into_iter().filter(|run| run.number < question.runs).collect();
     runs.extend(new.into_iter().flatten());
     runs.sort_by_key(|run| run.number);
@@ -304,11 +293,7 @@ pub fn optimize_on(
     known: Vec<SearchRun>,
     watch: &Watch,
 ) -> Result<Study, OptimizeError> {
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| optimize(question, known, watch)),
-        // Without threads of its own it runs on those there are.
-        Err(_) => optimize(question, known, watch),
-    }
+    crate::parallel::on_threads(threads, || optimize(question, known, watch))
 }
 
 /// Why nothing was found.
@@ -361,8 +346,7 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
     } else {
         found = front(&found, question.genetic.population);
     }
-    let judge = |index: usize| {
-        let (run, found) = found[index];
+    let judge = |&(run, found): &(usize, &Found)| {
         let design = question.follow(&found.point, Route::Integration, true).ok()?;
         let evaluation = question.evaluation(&design);
         Some(Finalist {
@@ -373,7 +357,7 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
             design,
         })
     };
-    let judged = each((0..found.len()).collect(), judge);
+    let judged = each(&found, judge);
     let mut finalists: Vec<Finalist> = judged.into_iter().flatten().collect();
     // Those that keep the constraints first; of a front by the first objective.
     finalists.sort_by(|one, other| {
@@ -442,10 +426,9 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
     let total: usize = runs.iter().map(|run| run.evaluations).sum();
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
     let compete = |name: &'static str, work: &(dyn Fn(usize) -> Run + Sync)| {
-        let numbers = runs.iter().map(|run| run.number).collect();
-        let runs = each(numbers, |number| {
+        let runs = each(runs, |run| {
             // Asked to stop, it is not used.
-            let run = (!(watch.stop)()).then(|| work(number));
+            let run = (!(watch.stop)()).then(|| work(run.number));
             (watch.progress)(generations);
             run
         });

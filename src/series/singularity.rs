@@ -20,13 +20,12 @@ use std::ops::{Add, Mul, Sub};
 
 use num_complex::Complex64;
 use num_traits::Zero as _;
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 
 use super::hermite_pade::{Field, HermitePade};
 use crate::decimal::plain_decimal;
 use crate::exact::big_float::BigFloat;
 use crate::exact::{Rational, Scaled, to_f64};
+use crate::parallel::each;
 
 /// A number that was estimated.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,12 +76,9 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
         .zip(coefficients)
         .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
         .collect();
-    let find = |kind: Kind| Some((kind, followed(kind, &scaled, &growth)?));
+    let find = |kind: &Kind| Some((*kind, followed(*kind, &scaled, &growth)?));
     let kinds = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
-    #[cfg(feature = "parallel")]
-    let found: Vec<(Kind, Followed)> = kinds.into_par_iter().filter_map(find).collect();
-    #[cfg(not(feature = "parallel"))]
-    let found: Vec<(Kind, Followed)> = kinds.into_iter().filter_map(find).collect();
+    let found = each(&kinds, find).into_iter().flatten().collect();
     singularity(found, &growth, bits)
 }
 

@@ -3,10 +3,8 @@
 //! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their order, whatever the number of threads:
 //! with a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
-
 use super::{Course, Crossing, TrajectoryError};
+use crate::parallel::each;
 use crate::symbol::Symbol;
 use crate::system::End;
 
@@ -50,7 +48,7 @@ pub fn sweep(
     grid: &[Vec<f64>],
     progress: impl Fn() + Sync,
 ) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
-    let one = |(number, values): (usize, &Vec<f64>)| {
+    let one = |&(number, values): &(usize, &Vec<f64>)| {
         let mut course = course.clone();
         for (name, value) in names.iter().zip(values) {
             match course.rates.states.iter().position(|state| state == name) {
@@ -72,9 +70,6 @@ pub fn sweep(
             reason: motion.reason(),
         })
     };
-    #[cfg(feature = "parallel")]
-    let all: Vec<_> = grid.par_iter().enumerate().map(one).collect();
-    #[cfg(not(feature = "parallel"))]
-    let all: Vec<_> = grid.iter().enumerate().map(one).collect();
-    all.into_iter().collect()
+    let numbered: Vec<_> = grid.iter().enumerate().collect();
+    each(&numbered, one).into_iter().collect()
 }

@@ -399,13 +399,22 @@ fn hostile_documents_are_refused() {
     assert!(json::read_phases(&duffing).is_err());
 }
 
-/// Numbers that the reader in Python prints for a document, a list for each line.
-fn by_reader(folder: &Path, document: &Value, times: &[f64]) -> Vec<Vec<Value>> {
+/// Where Python is, if it is there at all: what starts it by that name may look for it each time.
+fn python() -> Option<PathBuf> {
+    let asked = Command::new("python3")
+        .args(["-c", "import sys; print(sys.executable)"])
+        .output();
+    let output = asked.ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8(output.stdout).ok()?.trim().into())
+}
+
+/// Numbers that the reader prints for a document, a list for each line. It sees the standard library alone.
+fn by_reader(python: &Path, folder: &Path, document: &Value, times: &[f64]) -> Vec<Vec<Value>> {
     let reader = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/read_json.py");
     let file = folder.join("document.json");
     std::fs::write(&file, document.to_string()).expect("the document is written");
-    let output = Command::new("python3")
-        .arg(reader)
+    let output = Command::new(python)
+        .args(["-I", "-S", reader])
         .arg(&file)
         .args(times.iter().map(f64::to_string))
         .output()
@@ -435,11 +444,10 @@ const READ: [(&str, Given, usize); 7] = [
 fn a_reader_in_python_rebuilds_frequency_and_motion() {
     let lines = include_str!("../../examples/read_json.py").lines().count();
     assert!(lines <= 40, "{lines} lines");
-    let version = Command::new("python3").arg("--version").output();
-    if !version.is_ok_and(|output| output.status.success()) {
+    let Some(python) = python() else {
         eprintln!("python3 is not here: the reader was not run");
         return;
-    }
+    };
     let folder = std::env::temp_dir().join(format!("lindstedt-reader-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let near = |read: &Value, value: f64, size: f64| {
@@ -482,7 +490,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
                 .collect();
             let own = evaluate(&oscillator, &solution, &numbers).expect(&name);
             let (omega, motion) = (own.frequency_squared.sqrt(), own.motion.expect(&name));
-            let [line] = &by_reader(&folder, &written, &times)[..] else {
+            let [line] = &by_reader(&python, &folder, &written, &times)[..] else {
                 panic!("{name}: one line");
             };
             assert!(near(&line[0], omega, omega), "{name}: omega {} and {omega}", line[0]);
@@ -510,7 +518,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         let middles: Vec<f64> = phases()
             .flat_map(|phase| [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start)))
             .collect();
-        let lines = by_reader(&folder, &written, &middles);
+        let lines = by_reader(&python, &folder, &written, &middles);
         assert_eq!(lines.len(), phases().count(), "{}", file.display());
         assert_eq!(derived.len(), 3, "{}", file.display());
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {

@@ -1,10 +1,8 @@
 //! The main mass at many frequencies of its force: how far it swings in the long run, with its damper, with the damper locked and
 //! without.
 
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
-
 use super::{Others, Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, simulate_primary};
+use crate::parallel::each;
 
 /// The part of a run, its last, that counts as the long run.
 const LAST: f64 = 0.25;
@@ -55,11 +53,7 @@ pub fn sweep_primary(
         progress(1);
         row
     };
-    #[cfg(feature = "parallel")]
-    let rows = frequencies.par_iter().map(row).collect();
-    #[cfg(not(feature = "parallel"))]
-    let rows = frequencies.iter().map(row).collect();
-    rows
+    each(frequencies, row).into_iter().collect()
 }
 
 fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, PrimaryError> {

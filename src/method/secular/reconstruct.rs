@@ -14,8 +14,6 @@
 
 use num_integer::Integer as _;
 use num_traits::One;
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 
 use super::denominators::{Factored, Growth};
 use super::modular::{Image, Recursion};
@@ -26,6 +24,7 @@ use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Rational};
 use crate::interrupt::Supervision;
+use crate::parallel::{each, threads};
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
 
@@ -87,7 +86,6 @@ fn slope(force: &[ForceTerm<Integers>], scheme: &Scheme, beginning: &fixed_width
 }
 
 /// Up to this order one thread is done before others have begun.
-#[cfg(feature = "parallel")]
 const ALONE: usize = 40;
 
 /// The order to which long expansions are first derived to see how their denominators grow.
@@ -261,9 +259,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     fn images(&mut self, count: usize, wanted: impl Fn(usize) -> usize + Sync) -> Option<Vec<Image>> {
         /// Eights of a lot use the same memory; after so many lots for each thread all threads meet, so that what is there when the
         /// work is stopped has no gaps.
-        #[cfg(feature = "parallel")]
         const LOT: usize = 8;
-        #[cfg(feature = "parallel")]
         const LOTS: usize = 4;
         let begun = self.first.len();
         let end = begun + count.saturating_sub(begun).next_multiple_of(WIDTH);
@@ -290,15 +286,15 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
             Some(images)
         };
-        #[cfg(feature = "parallel")]
         if this.plan.highest > ALONE {
-            let threads = rayon::current_num_threads();
+            let threads = threads();
             let eights = places.len().div_ceil(WIDTH);
             let length = WIDTH * eights.div_ceil(threads).clamp(1, LOT);
             let mut images = Vec::with_capacity(places.len());
             for block in places.chunks(length * LOTS * threads) {
-                let lots: Option<Vec<Vec<Image>>> = block.par_chunks(length).map(lot).collect();
-                for (own, places) in lots?.into_iter().zip(block.chunks(length)) {
+                let lots: Vec<&[usize]> = block.chunks(length).collect();
+                let found: Option<Vec<Vec<Image>>> = each(&lots, |places| lot(places)).into_iter().collect();
+                for (own, places) in found?.into_iter().zip(lots) {
                     let whole = own.len() == places.len();
                     images.extend(own);
                     if !whole {
@@ -413,15 +409,13 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                 _ => groups.push((count, order..order + 1)),
             }
         }
-        let group = |(count, orders): (usize, std::ops::Range<usize>)| {
-            Lift::new(self.arithmetic, self.plan, &all[..=count]).orders(orders, motion, frequency)
+        let group = |(count, orders): &(usize, std::ops::Range<usize>)| {
+            Lift::new(self.arithmetic, self.plan, &all[..=*count]).orders(orders.clone(), motion, frequency)
         };
-        #[cfg(feature = "parallel")]
-        if self.plan.highest > ALONE {
-            let lifted: Option<Vec<Vec<Order>>> = groups.into_par_iter().map(group).collect();
-            return Some(lifted?.into_iter().flatten().collect());
-        }
-        let lifted: Option<Vec<Vec<Order>>> = groups.into_iter().map(group).collect();
+        let lifted: Option<Vec<Vec<Order>>> = match self.plan.highest > ALONE {
+            true => each(&groups, group).into_iter().collect(),
+            false => groups.iter().map(group).collect(),
+        };
         Some(lifted?.into_iter().flatten().collect())
     }
 }

@@ -20,8 +20,6 @@
 use std::collections::HashMap;
 
 use num_traits::{One, Zero};
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 
 use super::modular::{Field, Recursion};
 use super::plan::{Plan, Term};
@@ -30,13 +28,13 @@ use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
 use crate::interrupt::Supervision;
+use crate::parallel::{each, threads};
 use crate::series::FourierSeries;
 use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
 
 /// Up to so many points times orders one thread is done before others have begun.
-#[cfg(feature = "parallel")]
 const ALONE: usize = 200;
 
 /// The expansion, to the order that it has reached where it is stopped; `None` where the equation has no symmetry to use, no term of
@@ -329,20 +327,15 @@ impl<A: Arithmetic> Search<'_, A> {
     /// The numbers at all points, in their order; where the work is stopped, at as many of the first ones as there are.
     fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
         let points = &self.lower_set.points;
-        #[cfg(feature = "parallel")]
         if points.len() * self.plan.highest > ALONE {
             /// So many lots for each thread let none of them wait for long.
             const LOTS: usize = 4;
-            let length = points
-                .len()
-                .div_ceil(LOTS * rayon::current_num_threads())
-                .next_multiple_of(WIDTH);
-            let lots: Option<Vec<Vec<Vec<u64>>>> = points
-                .par_chunks(length)
-                .map(|points| self.values(modulus, points))
-                .collect();
+            let length = points.len().div_ceil(LOTS * threads()).next_multiple_of(WIDTH);
+            let lots: Vec<_> = points.chunks(length).collect();
+            let found = each(&lots, |points| self.values(modulus, points));
+            let found: Option<Vec<Vec<Vec<u64>>>> = found.into_iter().collect();
             let mut values = Vec::with_capacity(points.len());
-            for (own, points) in lots?.into_iter().zip(points.chunks(length)) {
+            for (own, points) in found?.into_iter().zip(lots) {
                 let whole = own.len() == points.len();
                 values.extend(own);
                 if !whole {

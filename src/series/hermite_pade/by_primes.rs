@@ -6,13 +6,12 @@
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 
 use super::{Field, HermitePade};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Rational};
+use crate::parallel::each;
 
 /// The combination of these series, each with the degree of its factor, that vanishes to the highest order: whole numbers without a
 /// common factor, a list for each series, the lowest power first. `None` where there is none whose first number is not zero, or more
@@ -113,11 +112,7 @@ impl Work for Exact<'_> {
             let mut blind = 0;
             while images.len() <= count {
                 let primes: Vec<u64> = source.by_ref().take(count + 1 - images.len()).collect();
-                let image = |prime: u64| self.image(Modulus::new(prime, A::RADIX));
-                #[cfg(feature = "parallel")]
-                let seen: Vec<Option<Image>> = primes.into_par_iter().map(image).collect();
-                #[cfg(not(feature = "parallel"))]
-                let seen: Vec<Option<Image>> = primes.into_iter().map(image).collect();
+                let seen: Vec<Option<Image>> = each(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
                 blind += seen.iter().filter(|image| image.is_none()).count();
                 if seen.is_empty() || blind > BLIND + images.len() / 100 {
                     return None;

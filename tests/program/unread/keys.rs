@@ -134,7 +134,7 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[limits] max_impacts", "[limits]\nmax_impacts = 12", ""),
     (
         "[limits] max_primary_rest_time",
-        "[primary]\nmass = 0.5\nstiffness = 50\ndamping = 2\ndisplacement = 0.01\n[limits]\nmax_primary_rest_time = 20",
+        "[primary]\nmass = 0.5\nstiffness = 50\ndamping = 2\ndisplacement = 0.01\n[genetic]\npopulation = 4\nelite = 1\ngenerations = 1\n[limits]\nmax_primary_rest_time = 20",
         "",
     ),
     ("[genetic] objective", "[genetic]\nobjective = \"mass\"", ""),

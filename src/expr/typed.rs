@@ -120,12 +120,14 @@ impl Typed {
     }
 
     /// The terms of these numbers, counted from zero, as one text: `0.5*(x')^3`. A single term has the sign that it was typed
-    /// with; of several, those of the right side are brought to the left, and those of different brackets keep their scale.
+    /// with; of several, those of the right side are brought to the left, and those of different brackets keep their scale, as a mere
+    /// number in a bracket does.
     pub fn quote(&self, numbers: &[usize]) -> String {
         /// The longest text that a message quotes in full.
         const LONGEST: usize = 120;
         let terms: Vec<&TypedTerm> = numbers.iter().filter_map(|&number| self.terms.get(number)).collect();
-        let scaled = terms.iter().any(|term| term.around != terms[0].around);
+        let is_number = |term: &&TypedTerm| !self.text[term.span.clone()].contains(char::is_alphabetic);
+        let scaled = terms.iter().any(|term| term.around != terms[0].around) || terms.iter().all(is_number);
         let mut quote = String::new();
         for term in &terms {
             let around = term.around.as_ref().filter(|_| scaled);

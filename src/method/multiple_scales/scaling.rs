@@ -11,7 +11,7 @@ use super::super::lindstedt_poincare::may_balance;
 use super::super::{Options, Refusal, Unsuited, secular};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
-use crate::expr::Expr;
+use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, Definition, Method, Note};
@@ -182,12 +182,7 @@ fn together(
 /// The expansion in the amplitude, a linear damping taken out and put back as its square.
 fn in_amplitude(oscillator: &Oscillator, parts: &Parts, order: u32) -> Result<Scaling, Refusal> {
     let velocity = oscillator.velocity();
-    let constant = |term: &&Expr| {
-        let quotient = Expr::divide(term, &Expr::from(velocity));
-        quotient.is_ok_and(|factor| !factor.contains(velocity) && !factor.contains(oscillator.coordinate))
-    };
-    let linear: Vec<Expr> = parts.damping.terms().iter().filter(constant).cloned().collect();
-    let damping = Expr::sum(linear);
+    let damping = linear_damping(&parts.damping, oscillator)?;
     let mut rest = oscillator.clone();
     rest.force = (&oscillator.force - &damping).expand()?;
     let mut force = rest.expand(SmallParameter::Amplitude, order)?;
@@ -213,6 +208,22 @@ fn in_amplitude(oscillator: &Oscillator, parts: &Parts, order: u32) -> Result<Sc
         damping: (!damping.is_zero()).then_some(damping),
         order,
     })
+}
+
+/// What is linear at rest of the terms that damp in proportion to the velocity: of `4*nu*x'/(1 + x)^2` it is `4*nu*x'`. A steep function
+/// of the velocity, as for dry friction, is no small damping.
+fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprError> {
+    let velocity = Expr::from(oscillator.velocity());
+    let mut linear = Vec::new();
+    for term in damping.terms() {
+        let factor = Expr::divide(term, &velocity)?;
+        let proportional = !factor.contains(oscillator.velocity());
+        // Without a value at rest the expansion refuses it by name.
+        if let (true, Ok(at_rest)) = (proportional, factor.substitute(oscillator.coordinate, &Expr::zero())) {
+            linear.push(at_rest * velocity.clone());
+        }
+    }
+    Expr::sum(linear).expand()
 }
 
 fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusal> {

@@ -325,3 +325,20 @@ fn slopes_of_motions_from_a_start() {
         );
     }
 }
+
+/// A viscous bubble: its damping is another at every radius, and its linear part counts as the square of the amplitude.
+#[test]
+fn damping_that_changes_with_the_place() {
+    let equation = "x*x'' + 3*x'^2/2 + 4*nu*x'/x - p*(x^(-3*k) - 1) = 0";
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    let solution = derive(equation, 4);
+    let deviations = ["nu = 1/25, A = 1/5", "nu = 1/100, A = 1/10", "nu = 1/400, A = 1/20"].map(|at| {
+        let at: Values = format!("{at}, p = 1, k = 7/5").parse().expect("values");
+        let judged = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
+        judged.max_deviation.expect("a deviation")
+    });
+    for pair in deviations.windows(2) {
+        let slope = (pair[0] / pair[1]).log2();
+        assert!((slope - 4.0).abs() < 0.2, "{slope}: {deviations:?}");
+    }
+}

@@ -23,7 +23,7 @@ use crate::exact::Rational;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::oscillator::corner::beside_corners;
+use crate::oscillator::corner::{beside_corners, near_rest};
 use crate::oscillator::{Equilibria, Oscillator, OscillatorError, Others};
 use crate::series::taylor::taylor;
 use crate::solution::Definition;
@@ -181,7 +181,18 @@ pub fn with_numbers_where_needed(
         position.evaluate(&BTreeMap::new()).ok()
     };
     let in_numbers = centred(&numerical, None)?;
-    let same = in_symbols.is_some_and(|in_symbols| {
+    // A corner may be on its other side with these numbers.
+    let beside = |centred: &Centred| {
+        let Ok((_, taken)) = near_rest(&centred.oscillator.force, oscillator.coordinate) else {
+            return false;
+        };
+        centred.sides.iter().chain(&taken).all(|side| {
+            let at_numbers = side.positive.substitute_all(numbers);
+            let value = at_numbers.map(|positive| positive.evaluate(&BTreeMap::new()).unwrap_or(f64::NAN));
+            value.is_ok_and(|value| value > 0.0)
+        })
+    };
+    let same = in_symbols.filter(beside).is_some_and(|in_symbols| {
         let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
         matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
     });

@@ -299,6 +299,11 @@ fn numbers_choose_the_equilibrium() {
         let entry = |(name, value): &(&str, &str)| (Symbol::new(name), value.parse().unwrap());
         entries.iter().map(entry).collect()
     };
+    // The side of a corner at rest, too.
+    let corner = oscillator("x'' + 3*x + x*abs(x + c) = 0");
+    assert_eq!(with_numbers_where_needed(&corner, &values(&[("c", "1")])), Ok(None));
+    let other_side = with_numbers_where_needed(&corner, &values(&[("c", "-1")])).unwrap();
+    assert_eq!(other_side.unwrap().parameters, vec![]);
     let duffing = oscillator("x'' + k*x + x^3 = 0");
     assert_eq!(with_numbers_where_needed(&duffing, &values(&[("k", "2")])), Ok(None));
     let error = with_numbers_where_needed(&duffing, &values(&[("k", "-1")])).unwrap_err();

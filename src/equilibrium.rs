@@ -22,6 +22,7 @@ use crate::decimal::{rounded, rounded_to};
 use crate::exact::Rational;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
+use crate::exact::real_roots::sign_changing_part;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::oscillator::corner::{beside_corners, near_rest};
 use crate::oscillator::{Equilibria, Oscillator, OscillatorError, Others};
@@ -218,6 +219,9 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
             false => Err(none_there()),
         };
     }
+    if let Some(form) = force.stable_form_of(asked) {
+        return seen_from(oscillator, &Place::Exact(form), degree);
+    }
     let Ok(near) = asked.evaluate(&BTreeMap::new()) else {
         return Err(none_there());
     };
@@ -342,8 +346,16 @@ impl<'a> Force<'a> {
 
     /// All changes of sign of a force without parameters.
     fn signs(&self) -> Vec<SignChange> {
+        /// Fractions grow with every division of the exact polynomials.
+        const LONGEST_EXACT: usize = 32;
         let Some(function) = &self.value else { return vec![] };
-        let numbers = coefficients(self.force, self.coordinate).and_then(|coefficients| {
+        let coefficients = coefficients(self.force, self.coordinate);
+        let numbers = coefficients.and_then(|coefficients| {
+            let exact: Option<Vec<Rational>> = coefficients.iter().map(|each| each.as_number().cloned()).collect();
+            // A multiple zero of rounded coefficients would be many zeros near it.
+            if let Some(exact) = exact.filter(|exact| exact.len() <= LONGEST_EXACT) {
+                return Some(sign_changing_part(&exact).iter().map(to_f64).collect());
+            }
             let values = coefficients
                 .iter()
                 .map(|coefficient| coefficient.evaluate(&BTreeMap::new()).ok());
@@ -436,6 +448,28 @@ impl<'a> Force<'a> {
             (left < 0.0 && right > 0.0 && position != 0.0).then(|| (position, form.clone()))
         };
         forms.iter().filter_map(stable).collect()
+    }
+
+    /// The stable equilibrium in the parameters that has the value asked for whatever they are, however that is written.
+    fn stable_form_of(&self, asked: &Expr) -> Option<Expr> {
+        if self.value.is_some() {
+            return None;
+        }
+        let forms = self.forms();
+        let samples = self.samples();
+        let same = |form: &&Expr| {
+            let pairs = samples
+                .iter()
+                .filter_map(|sample| Some((form.evaluate(sample).ok()?, asked.evaluate(sample).ok()?)));
+            let pairs: Vec<(f64, f64)> = pairs.collect();
+            !pairs.is_empty()
+                && pairs
+                    .iter()
+                    .all(|(one, other)| (one - other).abs() <= 1e-12 * one.abs())
+        };
+        let form = forms.iter().find(same)?;
+        let is_stable = |sample| !self.stable_at(std::slice::from_ref(form), sample).is_empty();
+        samples.iter().any(is_stable).then(|| form.clone())
     }
 
     fn unstable(&self) -> OscillatorError {

@@ -6,7 +6,8 @@
 //! ```text
 //! c h(u) = r                      u = h^-1(r/c), and so on to x
 //! c sin u + d cos u = r           u = phi +- acos(r/sqrt(c^2 + d^2)),   tan phi = c/d
-//! c x^a + d x^b = 0               x^(a - b) = -d/c,   and three or four powers alike where x^s is the root of a polynomial
+//! c x^a + d x^b = 0               x^(a - b) = -d/c,   and three or four powers alike where x^s is the root of a polynomial,
+//!                                 or exponentials: 2 sinh u = e^u - e^-u
 //! x^3 + p x + q = 0               x = -q/(U^2 + p/3 + p^2/(9 U^2)),   U^3 = sqrt(q^2/4 + p^3/27) + q/2    one real root
 //!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
 //! ```
@@ -171,27 +172,28 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
 
 /// Where a sum of powers of one base, or of exponentials, has the value `r`: they are a polynomial in one of them, up to a factor.
 fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
-    let powers: Option<Vec<(Option<Expr>, Expr)>> = parts.iter().map(|(_, function)| power(function, x)).collect();
-    let Some([(base, lowest), others @ ..]) = powers.as_deref() else {
+    let powers: Option<Vec<Vec<Power>>> = parts.iter().map(|part| powers(part, x)).collect();
+    let powers = powers.unwrap_or_default().concat();
+    let Some((first, others)) = powers.split_first() else {
         return Ok(vec![]);
     };
-    if others.iter().any(|other| other.0 != *base) {
+    if others.iter().any(|other| other.base != first.base) {
         return Ok(vec![]);
     }
     // Every exponent by how many steps it is away from the first.
     let constant = (!r.is_zero()).then(|| (Expr::zero(), -r));
     let terms = others
         .iter()
-        .zip(&parts[1..])
-        .map(|((_, exponent), (factor, _))| (exponent.clone(), factor.clone()));
+        .map(|power| (power.exponent.clone(), power.factor.clone()));
     let terms: Vec<(Expr, Expr)> = terms.chain(constant).collect();
-    let Some((next, _)) = terms.first() else {
+    let steps = terms.iter().map(|(exponent, _)| (exponent - &first.exponent).expand());
+    let steps = steps.collect::<Result<Vec<Expr>, ExprError>>()?;
+    let Some(step) = steps.iter().find(|step| !step.is_zero()) else {
         return Ok(vec![]);
     };
-    let step = (next - lowest).expand()?;
-    let mut places = vec![(Rational::zero(), parts[0].0.clone())];
-    for (exponent, factor) in &terms {
-        let away = Expr::divide(&(exponent - lowest).expand()?, &step)?.expand()?;
+    let mut places = vec![(Rational::zero(), first.factor.clone())];
+    for (away, (_, factor)) in steps.iter().zip(&terms) {
+        let away = Expr::divide(away, step)?.expand()?;
         match away.as_number() {
             Some(away) => places.push((away.clone(), factor.clone())),
             None => return Ok(vec![]),
@@ -200,7 +202,7 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
     let Some((unit, mut polynomial)) = polynomial_of(&places) else {
         return Ok(vec![]);
     };
-    let mut exponent = (Expr::number(unit) * step).expand()?;
+    let mut exponent = (Expr::number(unit) * step.clone()).expand()?;
     if exponent.has_leading_minus() {
         exponent = -exponent;
         polynomial.reverse();
@@ -211,7 +213,7 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
         [d, c, b, a] => cubic_roots(a, b, c, d)?,
         _ => return Ok(vec![]),
     };
-    let function = match base {
+    let function = match &first.base {
         Some(base) => Expr::power(base, &exponent)?,
         None => Expr::function(Function::Exp, vec![exponent])?,
     };
@@ -219,13 +221,49 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
     Ok(found?.into_iter().flatten().collect())
 }
 
-/// A power of what moves as its base and exponent; an exponential has an exponent alone.
-fn power(function: &Expr, x: Symbol) -> Option<(Option<Expr>, Expr)> {
-    if let Node::Function(Function::Exp, arguments) = function.node() {
-        return Some((None, arguments.first()?.clone()));
-    }
+/// `factor base^exponent`; an exponential has no base.
+#[derive(Clone)]
+struct Power {
+    factor: Expr,
+    base: Option<Expr>,
+    exponent: Expr,
+}
+
+/// What moves, times its factor, as powers: one, or the two exponentials of a hyperbolic function.
+fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
+    let exponential = |factor: Expr, exponent: Expr| Power {
+        factor,
+        base: None,
+        exponent,
+    };
     let (base, exponent) = function.base_and_exponent();
-    (!exponent.contains(x)).then_some((Some(base), exponent))
+    if exponent.contains(x) {
+        return None;
+    }
+    if let Node::Function(name, arguments) = base.node()
+        && let [argument] = arguments.as_slice()
+    {
+        let half = || Expr::number(ratio(1, 2)) * factor.clone();
+        match name {
+            Function::Exp => {
+                let exponent = (&exponent * argument).expand().ok()?;
+                return Some(vec![exponential(factor.clone(), exponent)]);
+            }
+            Function::Sinh | Function::Cosh if exponent.is_one() => {
+                let other = if *name == Function::Sinh { -half() } else { half() };
+                return Some(vec![
+                    exponential(half(), argument.clone()),
+                    exponential(other, -argument),
+                ]);
+            }
+            _ => {}
+        }
+    }
+    Some(vec![Power {
+        factor: factor.clone(),
+        base: Some(base),
+        exponent,
+    }])
 }
 
 /// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all coefficients from the lowest on; nothing
@@ -340,6 +378,14 @@ mod tests {
             ("x^(1/3) + b*x^(2/3) - k", vec![("b", 2.0), ("k", 3.0)], 2),
             ("exp(x) - k*exp(-x)", vec![("k", 2.0)], 1),
             ("exp(2*b*x) - k*exp(b*x) + 1", vec![("k", 3.0), ("b", 2.0)], 2),
+            ("exp(x)^2 - k*exp(-x/3)", vec![("k", 2.0)], 1),
+            ("sinh(x) - k*cosh(x)", vec![("k", -0.7)], 1),
+            (
+                "a*sinh(b*x) + 5*cosh(b*x) - c",
+                vec![("a", 2.0), ("b", 3.0), ("c", 7.0)],
+                2,
+            ),
+            ("sinh(x) + k*exp(x) - 1", vec![("k", 0.7)], 1),
             ("x^5 + b*x^3 - k*x", vec![("b", 1.0), ("k", 3.0)], 2),
             ("(1 + x)^(-6) - k*(1 + x)^(-2)", vec![("k", 3.0)], 2),
         ];

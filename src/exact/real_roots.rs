@@ -58,6 +58,31 @@ pub fn positive_roots(polynomial: &[Rational]) -> Vec<RealRoot> {
     roots
 }
 
+/// A polynomial without multiple roots that has the sign of this one wherever neither is zero: the product of its factors of odd
+/// multiplicity. (D. R. Musser, *J. ACM* 22 (1975) 291: the factors of multiplicity 1, 2, ... one after the other.)
+pub fn sign_changing_part(polynomial: &[Rational]) -> Vec<Rational> {
+    let polynomial = trimmed(polynomial.to_vec());
+    let mut shared = gcd(&polynomial, &derivative(&polynomial));
+    if shared.len() < 2 {
+        return polynomial;
+    }
+    let mut distinct = quotient(&polynomial, &shared);
+    let leading = distinct.last().cloned();
+    let mut part: Vec<Rational> = leading.into_iter().collect();
+    let mut is_odd = true;
+    while distinct.len() > 1 {
+        let more = gcd(&distinct, &shared);
+        if is_odd {
+            let factor = quotient(&distinct, &more);
+            let monic: Vec<Rational> = factor.iter().map(|c| c / &factor[factor.len() - 1]).collect();
+            part = product(&part, &monic);
+        }
+        shared = quotient(&shared, &more);
+        (distinct, is_odd) = (more, !is_odd);
+    }
+    part
+}
+
 /// The derivative of a polynomial.
 pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
     let powers = polynomial.iter().enumerate().skip(1);
@@ -342,6 +367,34 @@ mod tests {
         }
         assert_eq!(roots[0].exact, Some(ratio(1, 3)));
         assert!(roots[1].exact.is_none() && roots[1].factor.len() == 4);
+    }
+
+    /// -3 (z - 2)(z - 5)^2 (3 z - 1)^3 (z^2 + 1)^2: what is left is -3 (z - 2)(z - 1/3).
+    #[test]
+    fn what_changes_its_sign_has_the_factors_of_odd_multiplicity() {
+        let factors: [&[i64]; 8] = [
+            &[-2, 1],
+            &[-5, 1],
+            &[-5, 1],
+            &[-1, 3],
+            &[-1, 3],
+            &[-1, 3],
+            &[1, 0, 1],
+            &[1, 0, 1],
+        ];
+        let all = factors
+            .iter()
+            .fold(polynomial(&[-3]), |all, factor| product(&all, &polynomial(factor)));
+        let part = sign_changing_part(&all);
+        let roots = positive_roots(&part);
+        let values: Vec<f64> = roots.iter().map(|root| root.value).collect();
+        assert_eq!((part.len(), values), (3, vec![1.0 / 3.0, 2.0]));
+        for place in [-7, 0, 1, 3, 4, 6] {
+            let at = |polynomial: &[Rational]| sign_at(&primitive(polynomial), &ratio(place, 1));
+            assert_eq!(at(&part), at(&all), "{place}");
+        }
+        let once = polynomial(&[-6, 5, -1]);
+        assert_eq!(sign_changing_part(&once), once);
     }
 
     #[test]

@@ -394,3 +394,46 @@ fn a_pole_is_no_equilibrium() {
         assert!((frequency - 4.0).abs() < 1e-4, "{:?}: {frequency}", solution.method);
     }
 }
+
+/// A multiple zero of a force multiplied out is one place: the motion is that of the same power about zero.
+#[test]
+fn a_multiple_zero_is_one_place() {
+    for (shifted, about_zero) in [
+        ("x'' + (x - 1)^3 = 0", "x'' + x^3 = 0"),
+        ("x'' + x^3 - 3*x^2 + 3*x - 1 = 0", "x'' + x^3 = 0"),
+        ("x'' + (x + 2)^5 = 0", "x'' + x^5 = 0"),
+        ("x'' + 2*(x - 1/3)^3 + (x - 1/3)^5 = 0", "x'' + 2*x^3 + x^5 = 0"),
+    ] {
+        let laws = [shifted, about_zero].map(|equation| {
+            let oscillator = oscillator(equation);
+            solve(&oscillator, &Options::default()).expect(equation).law
+        });
+        assert_eq!(laws[0], laws[1], "{shifted}");
+    }
+}
+
+/// An equilibrium asked for in letters is the one meant, however its root is written.
+#[test]
+fn an_equilibrium_may_be_written_in_any_way() {
+    for (equation, about) in [
+        ("x'' - alpha*x + beta*x^3 = 0", "sqrt(alpha/beta)"),
+        ("x'' - alpha*x + beta*x^3 = 0", "-sqrt(alpha)/sqrt(beta)"),
+        ("x'' - alpha*x + beta*x^3 = 0", "sqrt(alpha*beta)/beta"),
+    ] {
+        let mut wells = oscillator(equation);
+        wells.about = Some(about.parse().expect(about));
+        let solution = by(&wells, Method::LindstedtPoincare).expect(about);
+        let at: Values = "alpha = 2, beta = 3, A = 1/100".parse().expect("values");
+        let judged = judge(&wells, &solution, &at, 1e-6).expect(about);
+        // omega0^2 = 2 alpha.
+        assert!(
+            (judged.true_frequency - 2.0).abs() < 1e-3,
+            "{about}: {}",
+            judged.true_frequency
+        );
+        assert!(judged.relative_error.is_some_and(|error| error.abs() < 1e-6), "{about}");
+    }
+    let mut unstable = oscillator("x'' - alpha*x + beta*x^3 = 0");
+    unstable.about = Some("2*sqrt(alpha/beta)".parse().expect("a place"));
+    assert!(by(&unstable, Method::LindstedtPoincare).is_err());
+}

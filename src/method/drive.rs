@@ -5,14 +5,15 @@
 //! ```
 //!
 //! Time begins where the first wave does: of the others the phase beside that of the first counts,
-//! `cos(theta + delta) = cos(delta) cos(theta) - sin(delta) sin(theta)`.
+//! `cos(theta + delta) = cos(delta) cos(theta) - sin(delta) sin(theta)`. What the coordinate adds to the phase, as in the wave
+//! `cos(Omega t - k x)` that runs past, is taken apart alike: it is a factor of two waves.
 
 use num_traits::Zero;
 
 use super::{Refusal, Unsuited};
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
-use crate::oscillator::Parts;
+use crate::oscillator::{Oscillator, Parts};
 use crate::series::taylor::taylor;
 use crate::solution::{Definition, Method};
 use crate::symbol::{Symbol, fresh_stem};
@@ -47,6 +48,16 @@ pub(super) enum Quadrature {
     Cosine,
     /// `sin`.
     Sine,
+}
+
+impl Quadrature {
+    /// The wave that a phase beside this one mixes in, and its sign.
+    fn quarter_later(self) -> (Self, Expr) {
+        match self {
+            Self::Cosine => (Self::Sine, -Expr::one()),
+            Self::Sine => (Self::Cosine, Expr::one()),
+        }
+    }
 }
 
 impl Driven {
@@ -85,7 +96,8 @@ impl Drive {
     ///
     /// # Errors
     /// A term that is no wave of it, by name.
-    pub(super) fn of(parts: &Parts, taken: &[Symbol], method: Method) -> Result<Self, Refusal> {
+    pub(super) fn of(parts: &Parts, oscillator: &Oscillator, method: Method) -> Result<Self, Refusal> {
+        let taken = oscillator.names();
         let mut drive = Self {
             frequency: Expr::one(),
             phase: Expr::zero(),
@@ -96,12 +108,14 @@ impl Drive {
             let wave = Wave::of(term, method)?;
             if number == 0 {
                 drive.frequency = wave.rate.clone();
-                drive.phase = wave.phase.clone();
+                drive.phase = wave.still_phase(oscillator.coordinate);
             } else if drive.frequency != wave.rate {
                 let term = term.clone().into();
                 return Err(Unsuited::SecondDrive { term }.to(method));
             }
-            drive.add(wave, term, taken)?;
+            for wave in wave.apart_from(oscillator.coordinate)? {
+                drive.add(wave, term, &taken)?;
+            }
         }
         Ok(drive)
     }
@@ -141,10 +155,7 @@ impl Drive {
             push(wave.factor, wave.quadrature);
             return Ok(());
         }
-        let (other, sign) = match wave.quadrature {
-            Quadrature::Cosine => (Quadrature::Sine, -Expr::one()),
-            Quadrature::Sine => (Quadrature::Cosine, Expr::one()),
-        };
+        let (other, sign) = wave.quadrature.quarter_later();
         let own = named(apart.cos()?, "C", &mut self.definitions, taken);
         let across = named(apart.sin()?, "S", &mut self.definitions, taken);
         push(&wave.factor * &own, wave.quadrature);
@@ -216,5 +227,32 @@ impl Wave {
             phase,
             quadrature,
         })
+    }
+
+    /// The part of the phase that does not move.
+    fn still_phase(&self, coordinate: Symbol) -> Expr {
+        let terms = self.phase.terms().iter().cloned();
+        Expr::sum(terms.filter(|term| !term.contains(coordinate)))
+    }
+
+    /// The wave with what the coordinate adds to its phase as a factor:
+    /// `cos(theta + g) = cos(g) cos(theta) - sin(g) sin(theta)`, `sin(theta + g) = cos(g) sin(theta) + sin(g) cos(theta)`.
+    fn apart_from(self, coordinate: Symbol) -> Result<Vec<Self>, ExprError> {
+        if !self.phase.contains(coordinate) {
+            return Ok(vec![self]);
+        }
+        let phase = self.still_phase(coordinate);
+        let moving = (&self.phase - &phase).expand()?;
+        let (other, sign) = self.quadrature.quarter_later();
+        let with = |factor: Expr, quadrature: Quadrature| Self {
+            factor,
+            rate: self.rate.clone(),
+            phase: phase.clone(),
+            quadrature,
+        };
+        Ok(vec![
+            with(&self.factor * &moving.cos()?, self.quadrature),
+            with(&(&sign * &self.factor) * &moving.sin()?, other),
+        ])
     }
 }

@@ -80,7 +80,7 @@ fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<f64>
     let centred = crate::equilibrium::centred(oscillator, None).ok()?;
     let oscillator = &centred.oscillator;
     let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
-    let drive = Drive::of(&parts, &oscillator.names(), method).ok()?;
+    let drive = Drive::of(&parts, oscillator, method).ok()?;
     let mut numbers = at.numbers();
     if let Some(definition) = &centred.definition {
         numbers.insert(definition.symbol, definition.meaning.evaluate(&numbers).ok()?);

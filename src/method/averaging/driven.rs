@@ -53,7 +53,7 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
     if options.amplitude == Some(AmplitudeConvention::Initial) {
         return refuse(Unsuited::ConventionOfFirstHarmonic);
     }
-    let drive = Drive::of(parts, &oscillator.names(), Method::Averaging)?;
+    let drive = Drive::of(parts, oscillator, Method::Averaging)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
     let averaged = UnderDrive {

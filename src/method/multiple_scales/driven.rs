@@ -56,7 +56,7 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
 
 /// The same with the small parameter that is asked for, or the likeliest.
 fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
-    let drive = Drive::of(parts, &oscillator.names(), Method::MultipleScales)?;
+    let drive = Drive::of(parts, oscillator, Method::MultipleScales)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
     let parts = free.parts()?;

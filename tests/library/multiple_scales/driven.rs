@@ -724,3 +724,32 @@ fn driven_motions_are_compared() {
         "{rows:?}"
     );
 }
+
+/// A wave that runs past drives as the two waves do of which it consists.
+#[test]
+fn a_wave_that_runs_past() {
+    for (past, apart) in [
+        (
+            "x'' + 2*z*x' + x + c*x^3 = F*cos(Omega*t - k*x)",
+            "x'' + 2*z*x' + x + c*x^3 = F*cos(k*x)*cos(Omega*t) + F*sin(k*x)*sin(Omega*t)",
+        ),
+        (
+            "x'' + 2*z*x' + x + c*x^3 = F*sin(k*x + Omega*t)",
+            "x'' + 2*z*x' + x + c*x^3 = F*cos(k*x)*sin(Omega*t) + F*sin(k*x)*cos(Omega*t)",
+        ),
+    ] {
+        let [past, apart] = [past, apart].map(|equation| {
+            let oscillator = Oscillator::parse(equation).expect(equation);
+            let in_amplitude = Options {
+                small: Some("A".to_owned()),
+                ..options(2)
+            };
+            solve(&oscillator, &in_amplitude).expect(equation)
+        });
+        let rates = |solution: Solution| {
+            let slow = solution.modulation.expect("slow equations");
+            [slow.amplitude_rate.expand(), slow.phase_rate.expand()]
+        };
+        assert_eq!(rates(past), rates(apart));
+    }
+}

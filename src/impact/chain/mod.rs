@@ -582,6 +582,7 @@ impl<'a> Chain<'a> {
             end_velocity,
             stop: self.stop.unwrap_or(Stop::Duration),
             steps,
+            fall: None,
         }
     }
 }

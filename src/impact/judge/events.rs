@@ -320,6 +320,7 @@ pub(in crate::impact) fn follow(
         stop: stop_of(trajectory.stop_reason()),
         steps: trajectory.step_count(),
         path: path_of(model, settings, trajectory),
+        fall: None,
     })
 }
 

@@ -351,6 +351,8 @@ pub struct Simulation {
     pub stop: Stop,
     /// Steps taken.
     pub steps: usize,
+    /// Without a path, and where the envelope does not tell the rest: when |x| has fallen to a tenth of the first swing.
+    pub(super) fall: Option<f64>,
 }
 
 /// How far a contact is from the same one of the true motion.

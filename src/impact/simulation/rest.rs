@@ -8,6 +8,10 @@
 //! last crossing: the last time |x| = A_0/10
 //! ```
 //!
+//! Where one swing takes nearly everything, as under damping near the critical, the next turning point comes late and low, and the
+//! line to it falls below the motion itself: there the fall of |x| from the turning point is the rest. A motion that creeps has none
+//! but that.
+//!
 //! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the
 //! swing. On the other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the
 //! parameters wherever the motion is. The last crossing is a staircase: it jumps by half a swing when one more crest
@@ -63,6 +67,15 @@ enum Measure {
     Both,
 }
 
+/// How the turning points tell the rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum ByTurns {
+    /// The envelope goes through the level between these two.
+    Line { above: Turn, below: Turn },
+    /// It creeps from here on.
+    Fall(Turn),
+}
+
 impl Simulation {
     /// When it came to rest.
     pub fn rest(&self) -> Rest {
@@ -76,9 +89,17 @@ impl Simulation {
             };
         }
         let last_crossing = self.last_crossing(level);
-        let time = match self.envelope_crossing(&self.envelope_from(amplitude), amplitude) {
+        let time = match self.rest_by_turns(level) {
             Err(_) if !self.stop.is_complete() => Err(NoRest::BrokeOff),
-            time => time,
+            Err(reason) => Err(reason),
+            Ok(ByTurns::Line { above, below }) => {
+                let time = between(above, below, level);
+                Ok(match is_steep(above, below, level) {
+                    true => self.fall(above, level).map_or(time, |fall| time.max(fall)),
+                    false => time,
+                })
+            }
+            Ok(ByTurns::Fall(from)) => self.fall(from, level).ok_or(NoRest::NotYetSeen),
         };
         Rest {
             amplitude,
@@ -165,21 +186,22 @@ impl Simulation {
         swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY)
     }
 
-    fn envelope_crossing(&self, envelope: &[Turn], amplitude: f64) -> Result<f64, NoRest> {
-        let level = REST_FRACTION * amplitude;
+    /// What the turning points say of the rest.
+    fn rest_by_turns(&self, level: f64) -> Result<ByTurns, NoRest> {
+        let envelope = self.envelope();
         let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
             return Err(NoRest::StaysAbove);
         };
         let above = envelope[index];
-        let Some(below) = envelope.get(index + 1) else {
-            return self.creeping(above, level);
-        };
-        Ok(between(above, *below, level))
+        match envelope.get(index + 1) {
+            Some(below) => Ok(ByTurns::Line { above, below: *below }),
+            None => self.creeping(above, level),
+        }
     }
 
     /// Where no turning point of the envelope follows `above`: a motion that has not turned for a whole period of the
     /// linear swing creeps, and is its own envelope; any other has to be followed further.
-    fn creeping(&self, above: Turn, level: f64) -> Result<f64, NoRest> {
+    fn creeping(&self, above: Turn, level: f64) -> Result<ByTurns, NoRest> {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);
         }
@@ -187,10 +209,36 @@ impl Simulation {
         if self.end_time - last.t <= TAU {
             return Err(NoRest::NotYetSeen);
         }
-        match last.x.abs() > level {
-            true => self.last_crossing(level).ok_or(NoRest::NotYetSeen),
-            false => Ok(between(above, last, level)),
+        Ok(match last.x.abs() > level {
+            true => ByTurns::Fall(last),
+            false => ByTurns::Line { above, below: last },
+        })
+    }
+
+    /// The turning point from which the fall to a tenth has to be known and no path tells it.
+    pub(in crate::impact) fn untold_fall(&self) -> Option<Turn> {
+        let level = REST_FRACTION * self.first_swing();
+        if level == 0.0 || !self.path.pieces().is_empty() || !self.stop.is_complete() {
+            return None;
         }
+        match self.rest_by_turns(level).ok()? {
+            ByTurns::Line { above, below } => is_steep(above, below, level).then_some(above),
+            ByTurns::Fall(from) => Some(from),
+        }
+    }
+
+    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next.
+    pub(in crate::impact) fn fall(&self, from: Turn, level: f64) -> Option<f64> {
+        if self.path.pieces().is_empty() {
+            return self.fall;
+        }
+        let begins = if from.t > 0.0 { from.x } else { self.start.x };
+        let next = self.turns.iter().find(|turn| turn.t > from.t);
+        let until = next.map_or(self.end_time, |turn| turn.t);
+        let edge = level.copysign(begins);
+        let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
+        let falls = begins.abs() > level && excess(until) * begins < 0.0;
+        falls.then(|| crossing_of(excess, from.t, until))
     }
 
     /// Between turning points x only rises or only falls: the last stretch that begins beyond the level holds the
@@ -249,6 +297,13 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
 /// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; nothing where it turns over.
 fn swing_of(energy: f64) -> Option<f64> {
     (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
+}
+
+/// Whether the straight line of log|x| between two turning points may be at the level before the motion is: |x| falls from the first
+/// as a cosine does, T/(2 pi) acos(level/|x|), or sooner, and half as much again is left for damping.
+fn is_steep(above: Turn, below: Turn, level: f64) -> bool {
+    let fraction = (between(above, below, level) - above.t) / (below.t - above.t);
+    fraction < 1.5 / TAU * (level / above.x.abs()).acos()
 }
 
 /// The time at which the straight line of log|x| from one turning point to a later one passes the level between them.

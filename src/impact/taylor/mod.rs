@@ -156,6 +156,30 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
     runner.finish(start)
 }
 
+/// The fall to a tenth of the first swing, where that is the rest and the path was not kept: it is followed again with its path.
+fn fall(simulation: &Simulation) -> Option<f64> {
+    let from = simulation.untold_fall()?;
+    let start = match from.t > 0.0 {
+        true => Start {
+            x: from.x,
+            velocity: 0.0,
+        },
+        false => simulation.start,
+    };
+    let settings = Settings {
+        duration: simulation.end_time - from.t,
+        keep_path: true,
+        ..simulation.settings
+    };
+    if settings.duration <= 0.0 {
+        return None;
+    }
+    let again = alone(simulation.model, start, settings);
+    let level = REST_FRACTION * first_swing(&simulation.model, simulation.start);
+    let fall = again.fall(Turn { t: 0.0, x: start.x }, level)?;
+    Some(from.t + fall)
+}
+
 /// The order of the series that suits a tolerance. Most of the work of a step is not that of its series, so long steps pay, and the
 /// order hardly depends on it.
 fn order_for(tolerance: f64) -> usize {
@@ -233,7 +257,7 @@ impl Runner {
     /// What came of it.
     pub(super) fn finish(self, start: Start) -> Simulation {
         let (end_time, end_x, end_velocity) = self.now();
-        Simulation {
+        let mut simulation = Simulation {
             model: self.model,
             start,
             settings: self.settings,
@@ -246,7 +270,10 @@ impl Runner {
             end_velocity,
             stop: self.stop.unwrap_or(Stop::Duration),
             steps: self.steps,
-        }
+            fall: None,
+        };
+        simulation.fall = fall(&simulation);
+        simulation
     }
 
     /// Time, displacement and velocity now.

@@ -273,3 +273,73 @@ fn the_baseline_is_that_of_the_actions() {
         assert_eq!(lindstedt::impact::baseline(&motion).unwrap(), None);
     }
 }
+
+/// Critical and stronger damping: the only fall there is, x/x_0 = (1 + t) e^-t of the linear swing, and with two rates. With and
+/// without the path.
+#[test]
+fn motions_that_creep_rest_where_they_have_fallen_to_a_tenth() {
+    let small = Start {
+        x: -1e-4,
+        velocity: 0.0,
+    };
+    for zeta in [1.0, 1.3, 2.0] {
+        let root = f64::sqrt(zeta * zeta - 1.0);
+        let fall = |t: f64| {
+            let sum = match root > 0.0 {
+                true => (root * t).cosh() + zeta * (root * t).sinh() / root,
+                false => 1.0 + t,
+            };
+            sum * (-zeta * t).exp() - 0.1
+        };
+        let truth = find_root(fall, 0.1, 100.0).expect("it falls");
+        let model = Model {
+            zeta,
+            ..Model::default()
+        };
+        for keep_path in [true, false] {
+            let settings = Settings {
+                duration: 60.0,
+                keep_path,
+                ..Settings::default()
+            };
+            let rest = simulate(&model, small, Integrator::Taylor, &settings)
+                .expect("a motion")
+                .rest();
+            let time = rest.time.expect("it rests");
+            assert!((time / truth - 1.0).abs() < 1e-8, "zeta = {zeta}: {time} and {truth}");
+        }
+    }
+}
+
+/// Just below critical damping the next turning point is a millionth of the first: no tenth of it is reached before the motion falls to it,
+/// and nothing jumps where the damping becomes critical.
+#[test]
+fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
+    let times: Vec<f64> = [0.75, 0.8, 0.9, 0.99, 0.9999, 1.0, 1.0001]
+        .into_iter()
+        .map(|zeta| {
+            let model = Model {
+                zeta,
+                ..Model::default()
+            };
+            let settings = Settings {
+                keep_path: false,
+                ..Settings::default()
+            };
+            let [told, untold] = [&Settings::default(), &settings].map(|settings| {
+                let motion = simulate(&model, REST, Integrator::Taylor, settings).expect("a motion");
+                motion.rest()
+            });
+            let time = told.time.expect("it rests");
+            assert!(
+                time >= told.last_crossing.expect("it falls") - 1e-9,
+                "zeta = {zeta}: {told:?}"
+            );
+            let same = untold.time.is_ok_and(|untold| (untold / time - 1.0).abs() < 1e-8);
+            assert!(same, "zeta = {zeta}: {told:?} {untold:?}");
+            time
+        })
+        .collect();
+    assert!(times.is_sorted(), "{times:?}");
+    assert!((times[4] / times[6] - 1.0).abs() < 1e-3, "{times:?}");
+}

@@ -354,6 +354,8 @@ fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
 
 /// The verdict, number by number.
 fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbol, tolerance: f64) -> String {
+    /// Of the frequency: no order that there is takes such an error into the last digits at once.
+    const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
     let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
     let mut text = match at.is_empty() {
@@ -399,7 +401,10 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbo
     if let Some(residual) = verification.residual {
         line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
     }
-    let slope = |slope: Option<f64>| slope.map_or("hidden by rounding".to_owned(), |slope| format!("{slope:.2}"));
+    // An error that is large now does not vanish in rounding when the small parameter is halved.
+    let large = verification.relative_error.is_some_and(|error| error.abs() > LARGE);
+    let unknown = if large { "not measured" } else { "hidden by rounding" };
+    let slope = |slope: Option<f64>| slope.map_or(unknown.to_owned(), |slope| format!("{slope:.2}"));
     let slope = match &verification.followed {
         None => slope(verification.slope),
         Some(followed) => match (verification.slope, followed.amplitude_slope) {

@@ -42,6 +42,7 @@ use num_traits::Zero;
 use self::pure_power::PurePower;
 use self::small_terms::SmallTerms;
 use super::limit_cycle::{AmplitudeEquation, Units};
+use super::multiple_scales::scaling::has_quadratic_terms;
 use super::secular::bounded;
 use super::{Options, Refusal, Unsuited, not_polynomial, transient};
 use crate::derivation::Line;
@@ -49,7 +50,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, ExprError};
-use crate::oscillator::{Oscillator, OscillatorError, PerturbedForce};
+use crate::oscillator::{Oscillator, OscillatorError, PerturbedForce, Term};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
 use crate::solution::note::Cut;
@@ -94,7 +95,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mut averaged = match small.expand(order) {
         Ok(mut force) => {
             force.write_with_frequency(&oscillator.names());
-            of_polynomial(oscillator, &small, &force, order)?
+            let mut averaged = of_polynomial(oscillator, &small, &force, order)?;
+            if order == 1 && has_quadratic_terms(oscillator, &parts) {
+                averaged.notes.push(Note::QuadraticTermsLeftOut);
+            }
+            averaged
         }
         // A series in what marks the terms is no polynomial in the coordinate and its velocity; steps at a letter are none either, whose
         // force at rest is known not to act.
@@ -312,7 +317,12 @@ fn of_polynomial(
         phase_rate = phase_rate + second_phase;
     }
     let in_numbers = |rate: &Polynomial| Expr::from(rate);
-    let (steady, mut notes) = steady(force, &omega0, small.delta(), &taken);
+    let mixes = |term: &Term| term.velocity % 2 == 1 && (term.position + term.velocity) == 2;
+    // A quadratic damping acts on the amplitude from the second order on, as strongly as a cubic one: the first is not leading there.
+    let (steady, mut notes) = match order == 2 && force.terms.iter().any(mixes) {
+        true => (vec![], vec![]),
+        false => steady(force, &omega0, small.delta(), &taken),
+    };
     notes.extend(root.into_iter().map(Note::Positive));
     let [first_amplitude, first_phase] = leading;
     Ok(Averaged {

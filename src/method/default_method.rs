@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! time occurs                            multiple scales; averaging where the force has no expansion
-//! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging; multiple scales where that knows no
-//!                                        closed form for the first harmonic
+//! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging; multiple scales in powers of the
+//!                                        amplitude where quadratic terms stand beside a linear damping, or where averaging knows
+//!                                        no closed form for the first harmonic
 //! conservative                           Lindstedt-Poincare
 //! conservative, without an expansion     an order asked for: so many harmonics balanced;
 //!                                        exact, where its law is closed; Hamiltonian, where its law is closed and the force odd;
@@ -12,10 +13,16 @@
 //!
 //! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
 
+use super::multiple_scales::scaling::{has_linear_damping, has_quadratic_damping, has_quadratic_terms};
 use super::{Options, Refusal, Unsuited, solve_by};
-use crate::oscillator::{Oscillator, OscillatorError};
-use crate::solution::{Law, Method, Note, Solution};
+use crate::equilibrium::centred;
+use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter};
+use crate::solution::note::Cut;
+use crate::solution::{AmplitudeConvention, Law, Method, Note, Solution};
 use crate::symbol::Symbol;
+
+/// The order in the amplitude at which the frequency of a free motion changes first.
+const SECOND_ORDER: u32 = 2;
 
 /// The method that suits an equation, where none is asked for: multiple scales where something drives it, else that of Lindstedt
 /// and Poincare. Where that one has no expansion to begin with, [`solve`](super::solve) goes on to one that needs none.
@@ -41,7 +48,16 @@ pub fn default_method(oscillator: &Oscillator) -> Method {
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let usual = default_method(oscillator);
     let found = solve_by(usual, oscillator, options);
-    let Err(refusal) = &found else { return found };
+    let refusal = match &found {
+        Err(refusal) => refusal,
+        Ok(solution) if begins_wrongly(solution, oscillator) => {
+            return match in_small_motions(oscillator, options) {
+                Some(in_amplitude) => Ok(in_amplitude),
+                None => found,
+            };
+        }
+        Ok(_) => return found,
+    };
     if usual == Method::MultipleScales {
         // What has no series in the amplitude is averaged as it is.
         return match refusal {
@@ -59,6 +75,9 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
         return found;
     }
     if is_of_damping(refusal, oscillator) {
+        if let Some(found) = in_small_motions(oscillator, options) {
+            return Ok(found);
+        }
         return averaged(oscillator, options).or_else(|refusal| in_powers(refusal, oscillator, options));
     }
     match without_expansion(refusal, oscillator, options) {
@@ -122,6 +141,49 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
         };
         given = lower;
     }
+}
+
+/// Whether a limit cycle is one of leading terms that are not the leading ones: not letters make everything but the linear terms small, and
+/// quadratic terms that damp act on its amplitude as cubic ones do.
+fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
+    let marked = |note: &Note| matches!(note, Note::Cut(Cut::Truncated { marks: Some(_), .. }));
+    solution.limit_cycle.is_some()
+        && solution.validity.iter().any(marked)
+        && about_equilibrium(oscillator, has_quadratic_damping)
+}
+
+/// What is so of the oscillator about its equilibrium.
+fn about_equilibrium(oscillator: &Oscillator, is_so: impl Fn(&Oscillator, &Parts) -> bool) -> bool {
+    let Ok(centred) = centred(oscillator, None) else {
+        return false;
+    };
+    let parts = centred.oscillator.parts();
+    parts.is_ok_and(|parts| is_so(&centred.oscillator, &parts))
+}
+
+/// Slow equations in powers of the amplitude, where that is asked to be small, or where quadratic terms are left out of the first order of
+/// averaging.
+fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
+    let small = oscillator.small_parameter(options.small.as_deref());
+    let asked = options.small.is_some() && matches!(small, Ok(SmallParameter::Amplitude));
+    let quadratic = |centred: &Oscillator, parts: &Parts| match has_linear_damping(centred, parts) {
+        true => has_quadratic_terms(centred, parts),
+        false => has_quadratic_damping(centred, parts),
+    };
+    let open = || options.cycle.is_none() && !options.say_what_is_small(oscillator);
+    if !asked && !(open() && about_equilibrium(oscillator, quadratic)) {
+        return None;
+    }
+    let in_amplitude = Options {
+        small: Some(AmplitudeConvention::Initial.symbol().to_string()),
+        order: Some(options.order.unwrap_or(SECOND_ORDER)),
+        ..options.clone()
+    };
+    let mut solution = solve_by(Method::MultipleScales, oscillator, &in_amplitude).ok()?;
+    if !asked {
+        solution.validity.push(Note::QuadraticTerms);
+    }
+    Some(solution)
 }
 
 /// Slow equations in powers of the amplitude, where averaging is refused for a force whose first harmonic has no closed form.

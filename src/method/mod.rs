@@ -104,6 +104,13 @@ pub struct Options {
     pub supervision: Supervision,
 }
 
+impl Options {
+    /// Whether it is said what is small, or how far to go in it: by an option, or by a letter that is called `eps`.
+    fn say_what_is_small(&self, oscillator: &Oscillator) -> bool {
+        self.small.is_some() || self.order.is_some() || oscillator.parameters.contains(&Symbol::new("eps"))
+    }
+}
+
 /// Why a method does not answer, and what to do instead.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

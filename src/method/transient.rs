@@ -75,7 +75,8 @@ fn tidy(expression: &Expr) -> Option<Expr> {
     tidied.ok()
 }
 
-/// The positive amplitude at which the two terms of a rate balance, with its stability; nothing for other rates.
+/// The amplitude at which the two terms of a rate balance, where letters or numbers make it positive, with its stability; nothing for
+/// other rates.
 pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     let balance = || {
         let law = PowerLaw::of(rate, a)?;
@@ -86,13 +87,16 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
         let lower_is_first = p.as_number()? < q.as_number()?;
         let (lower, power) = if lower_is_first { (c, q - p) } else { (d, p - q) };
         let other = if lower_is_first { d } else { c };
-        let size = -&Expr::divide(lower, other).ok()?;
-        if size.has_leading_minus() || size.terms().len() > 1 {
+        let size = (-&Expr::divide(lower, other).ok()?).expand().ok()?;
+        // Whether a sum is positive is for the letters in it.
+        let is_sum = size.terms().len() > 1;
+        if size.has_leading_minus() && !is_sum {
             return None;
         }
         let amplitude = Expr::power(&size, &Expr::divide(&Expr::one(), &power).ok()?).ok()?;
         // Where what comes first feeds the motion, what takes over drains it.
-        let (number, factors) = lower.factors();
+        let feeds = if is_sum { -other } else { lower.clone() };
+        let (number, factors) = feeds.factors();
         let sign = Expr::number(number.signum());
         let letters = factors.iter().filter(|factor| !factor.symbols().is_empty()).cloned();
         Some(LeadingCycle {

@@ -152,6 +152,10 @@ pub enum Note {
         /// Why it does not answer.
         reason: String,
     },
+    /// An expansion in the amplitude where letters might have been small, for what quadratic terms do.
+    QuadraticTerms,
+    /// A first order without what quadratic terms do.
+    QuadraticTermsLeftOut,
     /// The expansion was stopped before the order asked for.
     Stopped {
         /// The order asked for.
@@ -386,6 +390,12 @@ impl fmt::Display for Note {
                 formatter,
                 "chosen because {}, which usually answers, does not apply: {reason}",
                 usual.title()
+            ),
+            Self::QuadraticTerms => formatter.write_str(
+                "in powers of the amplitude, because quadratic terms change the frequency as much as cubic ones: in its square",
+            ),
+            Self::QuadraticTermsLeftOut => formatter.write_str(
+                "the effect of quadratic terms on the frequency comes at order 2, as large as that of cubic ones: --order 2 has it",
             ),
             Self::Stopped { asked } => {
                 write!(

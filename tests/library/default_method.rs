@@ -1,7 +1,8 @@
 //! The method that answers where none is asked for, and the force has no expansion about its equilibrium.
 
+use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
-use lindstedt::solution::{Method, Note};
+use lindstedt::solution::{AmplitudeConvention, Method, Note};
 use lindstedt::{Oscillator, Values, Verdict, judge};
 
 fn answered(equation: &str, options: &Options) -> lindstedt::solution::Solution {
@@ -101,4 +102,94 @@ fn a_letter_may_stand_for_an_exponent() {
         let [found, expected] = [&form.value, &expected.value].map(|law| law.evaluate(&numbers).expect("a number"));
         assert!((found / expected - 1.0).abs() < 1e-12, "p = {p}: {found} {expected}");
     }
+}
+
+/// What quadratic terms do to the frequency comes with the square of the amplitude, as what cubic ones do: beside a linear damping, and
+/// at a resonance, it is in the answer. The truth is the expansion of the undamped motion, in its own amplitude.
+#[test]
+fn quadratic_terms_are_not_left_out() {
+    let of_first_harmonic = Options {
+        method: Some(Method::LindstedtPoincare),
+        small: Some("A".to_owned()),
+        order: Some(2),
+        amplitude: Some(AmplitudeConvention::FirstHarmonic),
+        ..Options::default()
+    };
+    for (undamped, damped, driven) in [
+        (
+            "x'' + x + b*x^2 + c*x^3 = 0",
+            "x'' + 2*z*x' + x + b*x^2 + c*x^3 = 0",
+            "x'' + 2*z*x' + x + b*x^2 + c*x^3 = F*cos(Omega*t)",
+        ),
+        (
+            "x'' + 4*x + x^2 = 0",
+            "x'' + x'/50 + 4*x + x^2 = 0",
+            "x'' + z*x' + 4*x + x^2 = F*cos(Omega*t)",
+        ),
+        (
+            "x'' + exp(x) - 1 = 0",
+            "x'' + z*x' + exp(x) - 1 = 0",
+            "x'' + z*x' + exp(x) - 1 = F*cos(Omega*t)",
+        ),
+    ] {
+        let law = answered(undamped, &of_first_harmonic).law;
+        let frequency = Expr::from(law.frequency().expect(undamped));
+        let slow = answered(damped, &Options::default());
+        assert!(slow.validity.contains(&Note::QuadraticTerms), "{damped}");
+        let modulation = slow.modulation.expect(damped);
+        assert_eq!(modulation.phase_rate.expand(), frequency.expand(), "{damped}");
+        let resonance = answered(driven, &Options::default());
+        assert!(resonance.validity.contains(&Note::QuadraticTerms), "{driven}");
+        let branches = resonance.response.expect(driven).branches.expect(driven);
+        let at_rest = frequency.substitute("a".into(), &Expr::zero()).expect("a number");
+        assert_eq!(
+            (at_rest + Expr::from(&branches.centre)).expand(),
+            frequency.expand(),
+            "{driven}"
+        );
+    }
+    // Where it is said what is small, the answer says what it leaves out.
+    for equation in [
+        "x'' + 2*eps*x' + x + eps*x^2 = 0",
+        "x'' + 2*eps*x' + x + eps*x^2 = eps*F*cos(Omega*t)",
+    ] {
+        let solution = answered(equation, &Options::default());
+        assert!(solution.validity.contains(&Note::QuadraticTermsLeftOut), "{equation}");
+    }
+}
+
+/// A quadratic damping and a quadratic force together act as a cubic damping does, whose sign they may turn: the limit cycle in one
+/// of two wells is the unstable one of b < 1. For a small mu it is where the drain along an undamped orbit is zero, b = int x^2 v dx /
+/// int v dx.
+#[test]
+fn a_limit_cycle_in_a_well_is_the_unstable_one() {
+    let mut oscillator = Oscillator::parse("x'' + mu*(x^2 - b)*x' - x + x^3 = 0").expect("an oscillator");
+    oscillator.about = Some(Expr::one());
+    let solution = solve(&oscillator, &Options::default()).expect("slow equations");
+    let [cycle] = solution
+        .modulation
+        .expect("slow equations")
+        .steady
+        .try_into()
+        .expect("one cycle");
+    let stays = |b: f64| {
+        let numbers = [("b".into(), b), ("mu".into(), 0.1)].into();
+        cycle.amplitude.evaluate(&numbers).expect("an amplitude")
+    };
+    let attracts = cycle.attracts_where.expect("a condition");
+    assert!(attracts.evaluate(&[("mu".into(), 0.1)].into()).expect("a number") < 0.0);
+    // x^2 = 1 +- 2 sqrt(e) at the turning points.
+    let root = 1e-3;
+    let [low, high] = [-1.0, 1.0].map(|side| f64::sqrt(1.0 + side * 2.0 * root));
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let (mut drained, mut fed) = (0.0, 0.0);
+    for k in 0..64 {
+        let angle = std::f64::consts::PI * (f64::from(k) + 0.5) / 64.0;
+        let x = middle - half * angle.cos();
+        let speed = (2.0 * root * root - 0.5 * (x * x - 1.0).powi(2)).max(0.0).sqrt();
+        drained += x * x * speed * angle.sin();
+        fed += speed * angle.sin();
+    }
+    let found = stays(drained / fed);
+    assert!((found / half - 1.0).abs() < 1e-2, "{found} and {half}");
 }

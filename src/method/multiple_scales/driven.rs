@@ -17,7 +17,7 @@
 
 use super::derivation::{averaged_lines, derivation};
 use super::names::Names;
-use super::scaling::{Scaling, bounded, scaling};
+use super::scaling::{Scaling, bounded, has_linear_damping, has_quadratic_terms, scaling};
 use super::slow_times::{Complex, DrivenTerm, Expansion, Scaled};
 use super::slow_waves::{Slow, backbone, response};
 use super::undriven;
@@ -41,24 +41,46 @@ const HIGHEST: u32 = 3;
 /// # Errors
 /// A drive that is no single wave, a resonance that the equation does not have, or what stops an expansion.
 pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+    let in_amplitude = || {
+        let options = Options {
+            small: Some(AmplitudeConvention::Initial.symbol().to_string()),
+            ..options.clone()
+        };
+        expanded(oscillator, parts, &options)
+    };
+    if !options.say_what_is_small(oscillator)
+        && bends_at_second_order(oscillator, parts).unwrap_or(false)
+        && let Ok(mut found) = in_amplitude()
+    {
+        found.validity.push(Note::QuadraticTerms);
+        return Ok(found);
+    }
     let found = expanded(oscillator, parts, options);
     let refused = |refusal: &Refusal| matches!(refusal, Refusal::Oscillator(OscillatorError::NotPolynomial(_)));
-    if options.small.is_some() || !found.as_ref().is_err_and(refused) {
-        return found;
-    }
     // What is no polynomial may be one for small motions.
-    let in_amplitude = Options {
-        small: Some(AmplitudeConvention::Initial.symbol().to_string()),
-        ..options.clone()
-    };
-    expanded(oscillator, parts, &in_amplitude).or(found)
+    match options.small.is_none() && found.as_ref().is_err_and(refused) {
+        true => in_amplitude().or(found),
+        false => found,
+    }
+}
+
+/// Whether quadratic terms stand beside a linear damping, once the drive is left out.
+fn bends_at_second_order(oscillator: &Oscillator, parts: &Parts) -> Result<bool, Refusal> {
+    let free = undriven_oscillator(oscillator, parts)?;
+    let parts = free.parts()?;
+    Ok(has_linear_damping(&free, &parts) && has_quadratic_terms(&free, &parts))
+}
+
+fn undriven_oscillator(oscillator: &Oscillator, parts: &Parts) -> Result<Oscillator, Refusal> {
+    let mut free = oscillator.clone();
+    free.force = (&oscillator.force - &parts.forcing).expand()?;
+    Ok(free)
 }
 
 /// The same with the small parameter that is asked for, or the likeliest.
 fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
     let drive = Drive::of(parts, oscillator, Method::MultipleScales)?;
-    let mut free = oscillator.clone();
-    free.force = (&oscillator.force - &parts.forcing).expand()?;
+    let free = undriven_oscillator(oscillator, parts)?;
     let parts = free.parts()?;
     let scaling_of = |order: Option<u32>| -> Result<Scaling, Refusal> {
         let options = Options {
@@ -81,7 +103,13 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
         drive: &drive,
         resonance: options.resonance,
     };
-    let answer = asked.answer(&scaling);
+    let mut answer = asked.answer(&scaling);
+    if let Ok(answer) = &mut answer
+        && (scaling.marker.is_some(), scaling.order) == (true, 1)
+        && has_quadratic_terms(&free, &parts)
+    {
+        answer.validity.push(Note::QuadraticTermsLeftOut);
+    }
     if options.order.is_some() || !answer.as_ref().is_err_and(is_of_resonance) {
         return answer;
     }

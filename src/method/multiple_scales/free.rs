@@ -110,6 +110,11 @@ impl Free<'_> {
     }
 
     fn modulation(&self, [amplitude_rate, phase_rate]: [Expr; 2]) -> Modulation {
+        // In powers of the amplitude nothing else tells where it stays.
+        let steady = match self.scaling.marker {
+            Some(_) => vec![],
+            None => transient::steady(self.names.amplitude, &amplitude_rate),
+        };
         Modulation {
             amplitude: self.names.amplitude,
             phase: self.names.phase,
@@ -119,7 +124,7 @@ impl Free<'_> {
             resonance: None,
             release: None,
             transient: None,
-            steady: vec![],
+            steady,
             motion: None,
         }
     }

@@ -210,6 +210,27 @@ fn in_amplitude(oscillator: &Oscillator, parts: &Parts, order: u32) -> Result<Sc
     })
 }
 
+/// Whether quadratic terms are there about `x = 0`: what they do to the frequency is as large as what cubic ones do, and comes one order
+/// later where both count as equally small.
+pub(in crate::method) fn has_quadratic_terms(oscillator: &Oscillator, parts: &Parts) -> bool {
+    let expanded = in_amplitude(oscillator, parts, 1);
+    expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(|term| term.order == 1))
+}
+
+/// Whether a quadratic term drains or feeds energy about `x = 0`, as `x*x'` does: with other quadratic terms it acts on the amplitude as
+/// a cubic damping does.
+pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator, parts: &Parts) -> bool {
+    let expanded = in_amplitude(oscillator, parts, 1);
+    let drains = |term: &Term| term.order == 1 && term.velocity % 2 == 1;
+    expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(drains))
+}
+
+/// Whether all that damps is proportional to the velocity alone.
+pub(in crate::method) fn has_linear_damping(oscillator: &Oscillator, parts: &Parts) -> bool {
+    let is_all = |linear: Expr| (&linear - &parts.damping).expand().is_ok_and(|rest| rest.is_zero());
+    linear_damping(&parts.damping, oscillator).is_ok_and(is_all)
+}
+
 /// What is linear at rest of the terms that damp in proportion to the velocity: of `4*nu*x'/(1 + x)^2` it is `4*nu*x'`. A steep function
 /// of the velocity, as for dry friction, is no small damping.
 fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprError> {

@@ -69,23 +69,22 @@ struct Line {
     level: Expr,
 }
 
-/// Whether a part of a force jumps where its argument, in which this stands, changes its sign.
-fn jumps(part: &Expr, name: Symbol) -> bool {
-    match part.node() {
-        Node::Function(Function::Sign | Function::Step, arguments) => {
-            arguments.iter().any(|argument| argument.contains(name))
-        }
-        _ => false,
-    }
+/// The argument of a part of a force that is a step where this changes its sign, if a place or a velocity stands in it.
+fn argument_of_step<'a>(part: &'a Expr, oscillator: &Oscillator) -> Option<&'a Expr> {
+    let Node::Function(Function::Sign | Function::Step, arguments) = part.node() else {
+        return None;
+    };
+    let moves = |argument: &&Expr| argument.contains(oscillator.coordinate) || argument.contains(oscillator.velocity());
+    arguments.first().filter(moves)
 }
 
-/// A term with the jumps along some lines on this side.
+/// A force with the steps along some lines on this side.
 fn on_side(
-    term: &Expr,
+    force: &Expr,
     side: &Expr,
     is_meant: &impl Fn(&Expr) -> Result<Option<bool>, ResponseError>,
 ) -> Result<Expr, ResponseError> {
-    term.fold(|part, parts: &[Expr]| match (part.node(), parts) {
+    force.fold(|part, parts: &[Expr]| match (part.node(), parts) {
         (Node::Function(function @ (Function::Sign | Function::Step), arguments), [_]) => {
             let Some(grows) = is_meant(&arguments[0])? else {
                 return Ok(part.with_children(parts)?);
@@ -100,30 +99,66 @@ fn on_side(
     })
 }
 
-/// Whether a term has a jump of its own size at the velocity zero alone, and none there: it is multiplied by a power of the velocity.
-fn is_continuous(term: &Expr, velocity: Symbol) -> Result<bool, ResponseError> {
-    let elsewhere = |part: &Expr| jumps(part, velocity) && part.children().any(|it| it.as_symbol() != Some(velocity));
-    if term.unique_nodes().any(elsewhere) {
-        return Ok(false);
-    }
-    let at_zero = |argument: &Expr| Ok((argument.as_symbol() == Some(velocity)).then_some(true));
-    let on = |side: i64| -> Result<Expr, ResponseError> {
-        Ok(on_side(term, &Expr::from(side), &at_zero)?.substitute(velocity, &Expr::zero())?)
-    };
-    Ok((&on(1)? - &on(-1)?).is_zero())
+/// Whether an argument of a step is zero on this line, and then whether it grows across it.
+fn grows_across(argument: &Expr, line: &Line, oscillator: &Oscillator) -> Result<Option<bool>, ResponseError> {
+    let found = line_of(argument, oscillator)?.filter(|(own, _)| own == line);
+    Ok(found.map(|(_, grows)| grows))
 }
 
-/// Whether a term has no jump of its own size on a line in place: it is multiplied by what vanishes there, as the force of a contact.
-fn is_continuous_on(term: &Expr, line: &Line, oscillator: &Oscillator) -> Result<bool, ResponseError> {
-    let is_line = |argument: &Expr| {
-        Ok(line_of(argument, oscillator)?
-            .filter(|(own, _)| own == line)
-            .map(|(_, grows)| grows))
+/// Whether a force has two values on a line on which steps of it change: their factors together do not vanish there, as those of
+/// friction, where those of a stop `(x - 1)*H(x - 1)` do, however they are written.
+fn jumps_across(force: &Expr, line: &Line, oscillator: &Oscillator, parameter: Symbol) -> Result<bool, ResponseError> {
+    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let [by_position, by_velocity] = &line.normal;
+    let (name, on_line) = match by_velocity.is_zero() {
+        true => (position, line.level.clone()),
+        false => (
+            velocity,
+            &line.level - &(Expr::number(by_position.clone()) * Expr::from(position)),
+        ),
     };
     let on = |side: i64| -> Result<Expr, ResponseError> {
-        Ok(on_side(term, &Expr::from(side), &is_line)?.substitute(oscillator.coordinate, &line.level)?)
+        let is_line = |argument: &Expr| grows_across(argument, line, oscillator);
+        Ok(on_side(force, &Expr::from(side), &is_line)?.substitute(name, &on_line)?)
     };
-    Ok((&on(1)? - &on(-1)?).expand()?.is_zero())
+    let jump = (&on(1)? - &on(-1)?).expand()?;
+    if jump.is_zero() {
+        return Ok(false);
+    }
+    let arguments = [position, velocity, Symbol::new("t"), parameter];
+    let terms: Vec<CompiledFunction> = jump
+        .terms()
+        .iter()
+        .map(|term| CompiledFunction::new(term, &arguments))
+        .collect::<Result<_, _>>()?;
+    Ok(!cancel(&terms))
+}
+
+/// Whether terms that no rule takes together cancel at all places, velocities, times and parameters that are tried.
+fn cancel(terms: &[CompiledFunction]) -> bool {
+    const PLACES: i32 = 24;
+    const ROUNDING: f64 = 1e-12;
+    let mut told = false;
+    for index in 0..PLACES {
+        // No place is special, and none is where another one is.
+        let number = |step: f64, from: f64, width: f64| from + width * (step * f64::from(index)).fract();
+        let at = [
+            number(0.618_034, -4.0, 8.0),
+            number(0.414_214, -4.0, 8.0),
+            number(0.732_051, 0.0, 7.0),
+            number(0.236_068, 0.05, 3.0),
+        ];
+        let values: Vec<f64> = terms.iter().map(|term| term.call(&at)).collect();
+        let size: f64 = values.iter().map(|value| value.abs()).sum();
+        // Other steps, or the force itself, may have nothing here.
+        if size > 0.0 && size.is_finite() {
+            told = true;
+            if values.iter().sum::<f64>().abs() > ROUNDING * size {
+                return false;
+            }
+        }
+    }
+    told
 }
 
 /// The line on which the argument of a jump is zero, and whether it grows across it; nothing where that is no line of places and
@@ -157,44 +192,41 @@ fn line_of(argument: &Expr, oscillator: &Oscillator) -> Result<Option<(Line, boo
 }
 
 /// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it does; the force as it is where nothing
-/// jumps.
-fn with_sides(oscillator: &Oscillator, side: impl Fn(usize) -> Symbol) -> Result<(Expr, Vec<Line>), ResponseError> {
-    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+/// jumps. A step across which the force is continuous may be followed as it stands.
+fn with_sides(
+    oscillator: &Oscillator,
+    parameter: Symbol,
+    side: impl Fn(usize) -> Symbol,
+) -> Result<(Expr, Vec<Line>), ResponseError> {
+    let mut force = oscillator.force.expand()?;
     let mut lines: Vec<Line> = Vec::new();
-    let mut replaced = Vec::new();
-    for term in oscillator.force.expand()?.terms() {
-        let with_velocity = term.unique_nodes().any(|part| jumps(part, velocity));
-        let in_place = term.unique_nodes().any(|part| jumps(part, position));
-        if !in_place && (!with_velocity || is_continuous(term, velocity)?) {
-            replaced.push(term.clone());
-            continue;
-        }
-        replaced.push(term.fold(|part, parts: &[Expr]| {
-            let (Node::Function(Function::Sign | Function::Step, arguments), [argument]) = (part.node(), parts) else {
-                return Ok(part.with_children(parts)?);
-            };
-            let with_velocity = arguments[0].contains(velocity);
-            let found = line_of(argument, oscillator)?.filter(|_| with_velocity || arguments[0].contains(position));
-            let found = match found {
-                // A step in place may be followed as it stands where nothing jumps there.
-                Some((line, _)) if !with_velocity && is_continuous_on(term, &line, oscillator)? => None,
-                None if with_velocity => return Err(ResponseError::Jump(term.to_string())),
-                found => found,
-            };
-            let Some((line, grows)) = found else {
-                return Ok(part.with_children(parts)?);
-            };
-            let index = lines.iter().position(|known| *known == line).unwrap_or(lines.len());
-            if index == lines.len() {
-                lines.push(line);
+    for term in force.terms() {
+        for argument in term
+            .unique_nodes()
+            .filter_map(|part| argument_of_step(part, oscillator))
+        {
+            match line_of(argument, oscillator)? {
+                Some((line, _)) if !lines.contains(&line) => lines.push(line),
+                None if argument.contains(oscillator.velocity()) => return Err(ResponseError::Jump(term.to_string())),
+                _ => {}
             }
-            on_side(part, &Expr::from(side(index)), &|_| Ok(Some(grows)))
-        })?);
+        }
     }
-    Ok(match lines.is_empty() {
-        true => (oscillator.force.clone(), lines),
-        false => (Expr::sum(replaced), lines),
-    })
+    // The terms of a force may jump one by one and together not.
+    let mut jumping = Vec::new();
+    for line in lines {
+        if jumps_across(&force, &line, oscillator, parameter)? {
+            jumping.push(line);
+        }
+    }
+    if jumping.is_empty() {
+        return Ok((oscillator.force.clone(), jumping));
+    }
+    for (index, line) in jumping.iter().enumerate() {
+        let is_line = |argument: &Expr| grows_across(argument, line, oscillator);
+        force = on_side(&force, &Expr::from(side(index)), &is_line)?;
+    }
+    Ok((force, jumping))
 }
 
 impl Driven {
@@ -228,7 +260,7 @@ impl Driven {
         let phase = fresh("theta", &names);
         let stem = fresh_stem("side", &names);
         let side = |index: usize| Symbol::new(&format!("{stem}{index}"));
-        let (force, lines) = with_sides(oscillator, side)?;
+        let (force, lines) = with_sides(oscillator, parameter, side)?;
         let base = Expr::divide(&frequency, &Expr::from(i64::try_from(periods).unwrap_or(1)))?;
         let moment = Expr::divide(&Expr::from(phase), &base)?;
         let force = in_phase(&force, time, &moment)?;
@@ -476,6 +508,30 @@ mod tests {
         ] {
             let refused = frequency(text).unwrap_err();
             assert!(refused.contains(words), "{text}: {refused}");
+        }
+    }
+
+    /// By the value of the factor on the line, in whatever form.
+    #[test]
+    fn a_step_is_a_jump_where_its_factor_is_not_zero() {
+        for (force, jumps) in [
+            ("20*(x - 0.5)*H(x - 0.5)", 0),
+            ("5*(x - 1)*H(x - 1) + 5*(x + 1)*H(-x - 1)", 0),
+            ("(x^2 - p^2)*H(x - p)", 0),
+            ("(exp(x - p) - 1)*H(x - p)", 0),
+            ("(sqrt(x) - sqrt(p))*cos(t)*H(2*x - 2*p)", 0),
+            ("(x' + x/2 - 1/10)*H(x' + x/2 - 1/10)", 0),
+            ("(x' - p)*sgn(x' - p)", 0),
+            ("x*H(x - 0.5)", 1),
+            ("(x - 0.5)*H(x - 0.5) + sgn(x)/1000", 1),
+            ("(x - 0.5)*H(x - 0.51)", 1),
+            ("(x - 0.5)*(H(x - 0.5) + sgn(x'))", 1),
+            ("(exp(x - p) - p)*H(x - p)", 1),
+            ("sgn(x' - p) + sgn(x' + x)*x'^2", 2),
+        ] {
+            let oscillator = Oscillator::parse(&format!("x'' + x'/5 + x + {force} = cos(t)")).unwrap();
+            let driven = Driven::new(&oscillator, "p".into(), 1).unwrap();
+            assert_eq!(driven.jumps(), jumps, "{force}");
         }
     }
 

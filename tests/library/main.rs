@@ -38,5 +38,6 @@ mod simulate;
 mod spurious;
 mod starts;
 mod steps;
+mod stop_response;
 mod system;
 mod units;

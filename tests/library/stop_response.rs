@@ -1,0 +1,133 @@
+//! Steady states of oscillators that meet stops, against the exact motion from piece to piece of a spring in pieces, and shooting with it.
+
+use lindstedt::response::{Point, Question, Response, respond};
+use lindstedt::verify::Verdict;
+
+fn response(equation: &str, range: [f64; 2], values: &str) -> Response {
+    respond(&Question::new(equation, "Omega", range, values).expect(equation)).expect(equation)
+}
+
+/// `x'' + c x' + k x + sum of stiffness (x - at) beyond the stops = F cos(Omega t)`; a stop at a positive place stands on the right, one at
+/// a negative place on the left.
+struct Pieces<'a> {
+    damping: f64,
+    drive: f64,
+    omega: f64,
+    /// Place and stiffness.
+    stops: &'a [[f64; 2]],
+}
+
+impl Pieces<'_> {
+    fn touches(&self, x: f64) -> Vec<bool> {
+        self.stops.iter().map(|[at, _]| x * at.signum() > at.abs()).collect()
+    }
+
+    /// The state some time after another one, as long as these stops are touched: the closed form of a linear oscillator.
+    fn after(&self, touched: &[bool], [x, v]: [f64; 2], from: f64, time: f64) -> [f64; 2] {
+        let active = || self.stops.iter().zip(touched).filter(|(_, touched)| **touched);
+        let stiffness = 1.0 + active().map(|([_, k], _)| k).sum::<f64>();
+        let offset = active().map(|([at, k], _)| k * at).sum::<f64>() / stiffness;
+        let (w, c) = (self.omega, self.damping);
+        let detuning = stiffness - w * w;
+        let size = self.drive / (detuning * detuning + c * c * w * w);
+        let forced = |t: f64| {
+            let (sine, cosine) = (w * t).sin_cos();
+            [
+                offset + size * (detuning * cosine + c * w * sine),
+                size * w * (c * w * cosine - detuning * sine),
+            ]
+        };
+        let [x0, v0] = forced(from);
+        let (decay, own) = (0.5 * c, (stiffness - 0.25 * c * c).sqrt());
+        let (a, b) = (x - x0, (v - v0 + decay * (x - x0)) / own);
+        let (sine, cosine) = (own * time).sin_cos();
+        let factor = (-decay * time).exp();
+        let [x1, v1] = forced(from + time);
+        [
+            x1 + factor * (a * cosine + b * sine),
+            v1 + factor * ((own * b - decay * a) * cosine - (own * a + decay * b) * sine),
+        ]
+    }
+
+    /// The state a period of the drive after a start at phase zero, and half of peak to peak.
+    fn period(&self, start: [f64; 2]) -> ([f64; 2], f64) {
+        const STEPS: u32 = 2000;
+        let step = std::f64::consts::TAU / self.omega / f64::from(STEPS);
+        let mut state = start;
+        let (mut low, mut high) = (start[0], start[0]);
+        for index in 0..STEPS {
+            let (mut time, end) = (step * f64::from(index), step * f64::from(index + 1));
+            loop {
+                // A hair on, so that what stands on a stop is counted where it goes.
+                let touched = self.touches(self.after(&self.touches(state[0]), state, time, 1e-9)[0]);
+                let within = |until: f64| {
+                    let there = self.after(&touched, state, time, until - time);
+                    (there, self.touches(there[0]) == touched)
+                };
+                let (there, same) = within(end);
+                if same || end - time < 1e-9 {
+                    state = there;
+                    break;
+                }
+                let (mut before, mut behind) = (time, end);
+                for _ in 0..60 {
+                    let middle = 0.5 * (before + behind);
+                    match within(middle).1 {
+                        true => before = middle,
+                        false => behind = middle,
+                    }
+                }
+                state = within(behind).0;
+                time = behind;
+            }
+            (low, high) = (low.min(state[0]), high.max(state[0]));
+        }
+        (state, 0.5 * (high - low))
+    }
+
+    /// The point is a motion that comes back, and as large as it says.
+    fn holds(&self, point: &Point) {
+        let (end, peak) = self.period(point.start);
+        let missed = (end[0] - point.start[0]).hypot(end[1] - point.start[1]);
+        let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
+        assert!(missed < 1e-6 * largest.max(1.0), "{} {missed}", point.parameter);
+        assert!((point.peak / peak - 1.0).abs() < 2e-3, "{} {peak}", point.parameter);
+    }
+}
+
+/// A spring that grows stiffer at a stop has no jump, however it is written: one branch of harmonic balance, from end to end of the range.
+#[test]
+fn a_stop_is_no_jump_of_the_force() {
+    let one: &[[f64; 2]] = &[[0.5, 20.0]];
+    let two: &[[f64; 2]] = &[[1.0, 5.0], [-1.0, 5.0]];
+    for (force, drive, stops) in [
+        ("20*(x - 0.5)*H(x - 0.5)", 0.3, one),
+        ("20*max(x - 0.5, 0)", 0.3, one),
+        ("(20*x - 10)*H(2*x - 1)", 0.3, one),
+        ("5*(x - 1)*H(x - 1) + 5*(x + 1)*H(-x - 1)", 0.5, two),
+    ] {
+        let equation = format!("x'' + 0.2*x' + x + {force} = F*cos(Omega*t)");
+        let found = response(&equation, [0.5, 3.0], &format!("F = {drive}"));
+        assert!(!found.by_map && !found.jumps, "{force}");
+        assert_eq!(
+            found.verdict,
+            Verdict::Pass,
+            "{force}: {:?} {}",
+            found.error,
+            found.unjudged
+        );
+        assert_eq!(found.branches.len(), 1, "{force}");
+        let points = &found.branches[0].points;
+        let ends = [points.first(), points.last()].map(|point| point.expect("a point").parameter);
+        assert_eq!(ends, [0.5, 3.0], "{force}");
+        for point in points.iter().filter(|point| point.error.is_some()) {
+            let pieces = Pieces {
+                damping: 0.2,
+                drive,
+                omega: point.parameter,
+                stops,
+            };
+            pieces.holds(point);
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::balance::{Balance, later};
-use super::continuation::{BranchEnd, Node, Path, Walk};
+use super::continuation::{self, BranchEnd, Node, Path, Walk};
 use super::seeds::Seed;
 use super::{Asked, MOST_BRANCHES};
 
@@ -170,10 +170,7 @@ impl Asked<'_> {
     }
 }
 
-/// The size of the largest motion of a branch.
+/// The size of the largest motion of a branch, of an ordinary one where it grows without bound.
 pub(super) fn largest(balance: &Balance, path: &Path) -> f64 {
-    path.nodes
-        .iter()
-        .map(|node| balance.extent(&node.coefficients))
-        .fold(0.0, f64::max)
+    continuation::largest(balance, &path.nodes, path.ends)
 }

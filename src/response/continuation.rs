@@ -168,6 +168,18 @@ fn bordered(linear: &Linearised, row: &DVector<f64>) -> DMatrix<f64> {
     })
 }
 
+/// The size of the largest motion of these, that of one in the middle where they grow without bound: what is measured in an enormous size
+/// passes over a resonance as if it were nothing.
+pub(super) fn largest<const ENDS: usize>(balance: &Balance, nodes: &[Node], ends: [BranchEnd; ENDS]) -> f64 {
+    let mut sizes: Vec<f64> = nodes.iter().map(|node| balance.extent(&node.coefficients)).collect();
+    sizes.sort_by(f64::total_cmp);
+    let place = match ends.contains(&BranchEnd::Unbounded) {
+        true => sizes.len() / 2,
+        false => sizes.len().saturating_sub(1),
+    };
+    sizes.get(place).copied().unwrap_or(0.0)
+}
+
 impl Walk {
     fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
@@ -267,10 +279,7 @@ impl Walk {
                 mirrored: false,
             });
         }
-        let largest = nodes
-            .iter()
-            .map(|node| balance.extent(&node.coefficients))
-            .fold(self.size, f64::max);
+        let largest = largest(balance, &nodes, [end]).max(self.size);
         let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
         let turned = before.into_iter().skip(1).map(|mut node| {
             node.tangent *= -1.0;
@@ -298,7 +307,7 @@ impl Walk {
     fn follow(&self, balance: &Balance, start: Node) -> (Vec<Node>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
-        /// Short enough to tell where the harmonics cease to suffice.
+        /// Short enough to tell where the harmonics cease to suffice, or where an end of the range is near.
         const SHORT: f64 = 1e-4;
         const FEW: usize = 3;
         const MANY: usize = 6;
@@ -348,8 +357,14 @@ impl Walk {
             if outside {
                 if let Some(last) = self.at_bound(balance, here, &node) {
                     nodes.push(last);
+                    return (nodes, BranchEnd::Range);
                 }
-                return (nodes, BranchEnd::Range);
+                // Where the end of the range is a resonance of a harmonic there is no motion, or more than one: near it is near enough.
+                step *= 0.5;
+                if step < SHORT {
+                    return (nodes, BranchEnd::Range);
+                }
+                continue;
             }
             if balance.driven.self_excited && here.coefficients[1] * node.coefficients[1] <= 0.0 {
                 // Beyond rest the same motions come again, begun half a period later.

@@ -423,13 +423,22 @@ fn without_damping_a_linear_resonance_is_unbounded() {
         let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
         assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
     }
-    // With its resonance in the middle, and where twice the frequency is that of the free motion.
-    for range in [[0.5, 1.5], [0.4, 1.6]] {
-        let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", range, "F = 1/10");
+    // With its resonance in the middle, and where twice the frequency is that of the free motion; nothing twice, nothing missing.
+    for (range, drive) in [([0.5, 1.5], 0.1), ([0.4, 1.6], 0.1), ([0.5, 1.5], 0.3)] {
+        let values = format!("F = {drive}");
+        let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", range, &values);
         assert_eq!(found.branches.len(), 2, "{range:?}");
-        for point in found.branches.iter().flat_map(|branch| &branch.points) {
-            let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
-            assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
+        let mut ends: Vec<f64> = Vec::new();
+        for branch in &found.branches {
+            for point in &branch.points {
+                let amplitude = drive / (1.0 - point.parameter.powi(2)).abs();
+                assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
+            }
+            ends.extend([branch.points.first(), branch.points.last()].map(|point| point.expect("a point").parameter));
+        }
+        ends.sort_by(f64::total_cmp);
+        for (end, place) in ends.into_iter().zip([range[0], 1.0, 1.0, range[1]]) {
+            assert!((end - place).abs() < 2e-4, "{range:?}: {end}");
         }
     }
     let refused = respond(&question("x'' + x - F*cos(Omega*t) = 0", "F", [0.1, 1.0], "Omega = 1"));

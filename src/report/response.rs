@@ -9,7 +9,7 @@ use crate::expr::Expr;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::SlowResponse;
-use crate::response::{Branch, Point, Response};
+use crate::response::{Branch, MOST_HARMONICS, Point, Response};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -310,7 +310,7 @@ pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
 
 fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
     let all = &response.bifurcations;
-    if all.is_empty() {
+    if all.is_empty() && response.ripple.is_none() {
         return None;
     }
     let name = response.question.parameter.name();
@@ -331,13 +331,15 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
     if response.self_excited {
         columns.insert(3, "frequency");
     }
-    let mut blocks = vec![
-        Block::Heading("where branches change".to_owned()),
-        Block::Table {
-            head: heads(&columns),
-            rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
-        },
-    ];
+    let mut blocks = vec![Block::Heading("where branches change".to_owned())];
+    if all.is_empty() {
+        blocks.extend(ripple(response));
+        return Some(blocks);
+    }
+    blocks.push(Block::Table {
+        head: heads(&columns),
+        rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
+    });
     if all.len() > MOST_BIFURCATIONS {
         blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
     }
@@ -355,7 +357,25 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
     kinds.dedup();
     let words: Vec<&str> = kinds.into_iter().map(meaning).collect();
     blocks.push(Block::Sentence(words.join(" ")));
+    blocks.extend(ripple(response));
     Some(blocks)
+}
+
+/// Folds that were left out.
+fn ripple(response: &Response) -> Option<Block<'static>> {
+    let ripple = response.ripple?;
+    let name = response.question.parameter.name();
+    let [low, high] = ripple.range.map(decimal);
+    Some(Block::Sentence(format!(
+        "{} folds of the balance from {name} = {low} to {high} are left out: no multiplier of the true motion passes 1 there. They are ripple \
+         of {} harmonics{}.",
+        ripple.folds,
+        response.harmonics,
+        match response.harmonics < MOST_HARMONICS {
+            true => format!(", and fewer where more are kept, {MOST_HARMONICS} at most"),
+            false => String::new(),
+        }
+    )))
 }
 
 fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {

@@ -37,6 +37,7 @@ mod harmonics;
 pub mod hopf;
 mod judgement;
 pub mod jump;
+mod ripple;
 mod seeds;
 mod self_excited;
 pub mod slow;
@@ -56,6 +57,7 @@ use crate::values::Values;
 use crate::verify::Verdict;
 
 pub use error::{ResponseError, Tried};
+pub use ripple::Ripple;
 
 use backbone::{BackbonePoint, backbones};
 use balance::Balance;
@@ -64,6 +66,7 @@ use branches::largest;
 use continuation::{BranchEnd, Node, Path, Walk};
 use driven::Driven;
 use judgement::Judged;
+use ripple::Found;
 use seeds::{Seed, size_of};
 use slow::SlowResponse;
 use stability::Budget;
@@ -208,6 +211,8 @@ pub struct Response {
     pub branches: Vec<Branch>,
     /// Folds and the like, branch by branch.
     pub bifurcations: Vec<Bifurcation>,
+    /// Folds of the balance that are none of the true motion, left out of these.
+    pub ripple: Option<Ripple>,
     /// The free motion without damping, about each place of rest; empty where the frequency does not vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
     /// Simulations that have settled on stable points.
@@ -482,7 +487,7 @@ impl<'a> Asked<'a> {
         let largest_motion = paths.iter().map(|path| largest(&balance, path));
         let size = largest_motion.fold(size_of(seeds), f64::max);
         self.follow_sticking(&balance, seeds, &mut paths, size);
-        let (all_judged, changes) = self.judged_paths(&balance, seeds, &mut paths);
+        let (all_judged, changes, ripple) = self.judged_paths(&balance, seeds, &mut paths);
         // What is small is small beside the largest motion of all.
         let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
         let bifurcations = self.bifurcations(&balance, changes, size);
@@ -530,6 +535,7 @@ impl<'a> Asked<'a> {
             )?,
             branches,
             bifurcations,
+            ripple,
             simulated,
             elsewhere: vec![],
             verdict: Verdict::Fail,
@@ -603,12 +609,15 @@ impl<'a> Asked<'a> {
         balance: &Balance,
         seeds: &[Seed],
         paths: &mut Vec<Path>,
-    ) -> (Vec<Vec<Judged>>, Vec<Change>) {
+    ) -> (Vec<Vec<Judged>>, Vec<Change>, Option<Ripple>) {
         let size = paths.iter().map(|path| largest(balance, path));
         let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
-        let floquet = |node: &Node| self.judged(balance, node).0;
+        // Of a motion that is none the multipliers say nothing.
+        let of_true_motion = |judged: Judged| judged.1.map(|truth| truth.floquet);
+        let floquet = |node: &Node| of_true_motion(self.judged(balance, node));
         let mut all_judged: Vec<Vec<Judged>> = Vec::new();
         let mut changes = Vec::new();
+        let mut ripple = None;
         while let Some(path) = paths.get(all_judged.len()).cloned() {
             let branch = all_judged.len();
             let points: usize = paths.iter().map(|path| path.nodes.len()).sum();
@@ -620,7 +629,8 @@ impl<'a> Asked<'a> {
                 .inspect(|_| self.question.progress.advance())
                 .map(|node| self.judged_in_time(balance, node))
                 .collect();
-            for (pair, known) in path.nodes.windows(2).zip(judged.windows(2)) {
+            let mut own: Vec<Found> = Vec::new();
+            for (index, (pair, known)) in path.nodes.windows(2).zip(judged.windows(2)).enumerate() {
                 let ([from, to], [before, after]) = (pair, known) else {
                     continue;
                 };
@@ -631,21 +641,25 @@ impl<'a> Asked<'a> {
                     Some(_) => self.stuck_between(balance, from, to, part),
                     None => walk.between(balance, from, to, part),
                 };
-                let found = bifurcation::between(balance, [(from, before.0), (to, after.0)], &between, &floquet);
+                let known = [(from, of_true_motion(*before)), (to, of_true_motion(*after))];
+                let found = bifurcation::between(balance, known, &between, &floquet);
                 for (mut kind, node) in found {
                     let crossed = kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES;
                     if crossed && self.follow_crossing(balance, &walk, &node, paths) {
                         kind = BifurcationKind::Centre;
                     }
-                    changes.push((kind, branch, node));
+                    own.push((index, kind, node));
                 }
             }
+            let (own, left_out) = ripple::without_ripple(own, &path.nodes, &judged);
+            ripple = Ripple::with(ripple, &left_out);
+            changes.extend(own.into_iter().map(|(_, kind, node)| (kind, branch, node)));
             let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
             let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
             changes.extend(born.filter_map(|(_, node)| Some((BifurcationKind::Hopf, branch, node?.clone()))));
             all_judged.push(judged);
         }
-        (all_judged, changes)
+        (all_judged, changes, ripple)
     }
 
     /// The places where branches change, each once.

@@ -1,5 +1,6 @@
 //! Steady states of oscillators that meet stops, against the exact motion from piece to piece of a spring in pieces, and shooting with it.
 
+use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::{Point, Question, Response, respond};
 use lindstedt::verify::Verdict;
 
@@ -130,4 +131,66 @@ fn a_stop_is_no_jump_of_the_force() {
             pieces.holds(point);
         }
     }
+}
+
+/// A mass that meets a hard stop, by Hertz's law.
+const CONTACT: &str = "x'' + 0.2*x' + x + 1e4*(x - 0.5)^(3/2)*H(x - 0.5) = F*cos(Omega*t)";
+
+/// State and half of peak to peak of the same under F = 0.3 after so many periods, by the classical method of Runge and Kutta.
+fn in_contact(omega: f64, start: [f64; 2], periods: u32) -> ([f64; 2], f64) {
+    const STEPS: u32 = 4000;
+    let step = std::f64::consts::TAU / omega / f64::from(STEPS);
+    let rates = |t: f64, [x, v]: [f64; 2]| {
+        let force = 1e4 * (x - 0.5).max(0.0).powf(1.5);
+        [v, 0.3 * (omega * t).cos() - 0.2 * v - x - force]
+    };
+    let moved = |[x, v]: [f64; 2], by: f64, [x_rate, v_rate]: [f64; 2]| [x + by * x_rate, v + by * v_rate];
+    let mut state = start;
+    let mut extent = [0.0; 2];
+    for _ in 0..periods {
+        extent = [state[0]; 2];
+        for index in 0..STEPS {
+            let t = step * f64::from(index);
+            let first = rates(t, state);
+            let second = rates(t + 0.5 * step, moved(state, 0.5 * step, first));
+            let third = rates(t + 0.5 * step, moved(state, 0.5 * step, second));
+            let fourth = rates(t + step, moved(state, step, third));
+            for (rate, weight) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
+                state = moved(state, weight * step / 6.0, rate);
+            }
+            extent = [extent[0].min(state[0]), extent[1].max(state[0])];
+        }
+    }
+    (state, 0.5 * (extent[1] - extent[0]))
+}
+
+/// The motion in contact jumps down at one frequency, and has one fold there however the truncated balance waves about it.
+#[test]
+fn ripple_of_the_balance_is_no_fold() {
+    let question = Question::new(CONTACT, "Omega", [1.4, 1.7], "F = 3/10").expect("a question");
+    let found = respond(&Question {
+        harmonics: Some(32),
+        ..question
+    })
+    .expect("a response");
+    let folds = found
+        .bifurcations
+        .iter()
+        .filter(|found| found.kind == BifurcationKind::Fold);
+    let folds: Vec<f64> = folds.map(|fold| fold.parameter).collect();
+    // A simulation that is led up the branch stays on it at the first of these, and falls from it at the second.
+    let (mut state, mut peaks) = ([-0.6, 0.8], vec![]);
+    for (omega, periods) in [(1.4, 150), (1.5, 100), (1.55, 100), (1.5605, 150), (1.5625, 400)] {
+        let peak;
+        (state, peak) = in_contact(omega, state, periods);
+        peaks.push(peak);
+    }
+    assert!(peaks[..4].iter().all(|peak| *peak > 0.7) && peaks[4] < 0.3, "{peaks:?}");
+    assert!(folds.len() == 1 && (1.5605..1.5625).contains(&folds[0]), "{folds:?}");
+    // The branch waves, and says so.
+    assert!(
+        found
+            .ripple
+            .is_some_and(|ripple| ripple.folds > 4 && ripple.range[1] < folds[0])
+    );
 }

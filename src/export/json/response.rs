@@ -46,6 +46,9 @@ pub struct ResponseDocument {
     pub stuck: Vec<Vec<f64>>,
     /// Where branches change.
     pub bifurcations: Vec<ResponseBifurcation>,
+    /// Folds of the balance that are none of the true motion and not among those places. Left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ripple: Option<RippleDocument>,
     /// The free motion without damping, a list of points for each stable place of rest; empty where the frequency of the drive does not
     /// vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
@@ -219,6 +222,16 @@ pub struct SimulatedPoint {
     pub error: f64,
 }
 
+/// Folds of the balance alone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields, rename = "ResponseRipple")]
+pub struct RippleDocument {
+    /// How many they are.
+    pub folds: usize,
+    /// The lowest and the highest value of the parameter at which they are.
+    pub range: [f64; 2],
+}
+
 /// A simulation that has settled elsewhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -317,6 +330,10 @@ pub fn response(response: &Response) -> ResponseDocument {
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
         stuck: response.branches.iter().map(stuck).collect(),
         bifurcations: response.bifurcations.iter().map(bifurcation).collect(),
+        ripple: response.ripple.map(|ripple| RippleDocument {
+            folds: ripple.folds,
+            range: ripple.range,
+        }),
         backbone: response
             .backbone
             .iter()

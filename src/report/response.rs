@@ -523,6 +523,15 @@ fn judgement(response: &Response) -> Vec<Block<'static>> {
         places.dedup();
         let places = places.join(", ");
         blocks.push(Block::Sentence(match count {
+            Some(1) => format!(
+                "At {name} = {places} a simulation settles on a motion that lies on none of these branches: {} has not come to it. {} may \
+                 find its branch.",
+                method(response),
+                match response.by_map || response.harmonics >= MOST_HARMONICS {
+                    true => "Another range".to_owned(),
+                    false => format!("More harmonics, {MOST_HARMONICS} at most, or another range"),
+                }
+            ),
             Some(count) => format!(
                 "At {name} = {places} a simulation settles on a motion of {} periods of the drive, which is not among these branches.",
                 count * response.question.periods

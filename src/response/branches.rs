@@ -136,7 +136,7 @@ impl Asked<'_> {
     }
 
     /// Whether the force is the same this far away.
-    fn repeats_after(&self, distance: f64, parameter: f64) -> bool {
+    pub(super) fn repeats_after(&self, distance: f64, parameter: f64) -> bool {
         (0..8).all(|index| {
             let (x, v) = (0.37 * f64::from(index) - 1.1, 0.9 - 0.23 * f64::from(index));
             let force = |x: f64| self.driven.force(&[x, v, f64::from(index), parameter]);

@@ -43,6 +43,7 @@ mod self_excited;
 pub mod slow;
 pub mod stability;
 mod sticking;
+mod unfollowed;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -181,13 +182,20 @@ pub struct Simulated {
     pub error: f64,
 }
 
-/// A simulation that does not repeat itself after a period of the motion.
+/// A simulation that does not repeat itself after a period of the motion, or does so on no branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elsewhere {
     /// The parameter.
     pub parameter: f64,
-    /// The periods after which it does; nothing where it does not within eight.
+    /// The periods after which it does, one for a motion that could not be followed; nothing where it does not within eight.
     pub periods: Option<usize>,
+}
+
+impl Elsewhere {
+    fn in_order(one: &Self, other: &Self) -> std::cmp::Ordering {
+        let parameters = one.parameter.total_cmp(&other.parameter);
+        parameters.then(one.periods.cmp(&other.periods))
+    }
 }
 
 /// What was found.
@@ -217,13 +225,13 @@ pub struct Response {
     pub backbone: Vec<Vec<BackbonePoint>>,
     /// Simulations that have settled on stable points.
     pub simulated: Vec<Simulated>,
-    /// Simulations that have settled on something else.
+    /// Simulations that have settled on something else, or on a motion of this period that lies on no branch.
     pub elsewhere: Vec<Elsewhere>,
     /// The largest error of all points and simulations.
     pub error: Option<f64>,
     /// Points beside which shooting found no true motion.
     pub unjudged: usize,
-    /// Whether the error is within the tolerance, on the whole of what was found.
+    /// Whether the error is within the tolerance, on the whole of what was found, and every motion was followed.
     pub verdict: Verdict,
     /// The steady motions by slow equations, where they were asked for.
     pub slow: Option<SlowResponse>,
@@ -298,15 +306,19 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
         let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
         let judged = 100 * response.unjudged <= points;
         let resolved = !response.ends_with(BranchEnd::Harmonics);
-        let good = resolved && judged && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
+        let followed = response.elsewhere.is_empty();
+        let good =
+            resolved && judged && followed && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
         // What more harmonics do not better is not theirs, such as a jump of the force.
         let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
-        let stalled = resolved && now.0 >= 0.7 * before.0 && now.1 >= before.1;
-        before = now;
+        let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
+        // What has no branch yet has no error either.
+        before = if followed { now } else { (f64::INFINITY, usize::MAX) };
         let fixed = question.harmonics.is_some() || !response.complete;
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
         if last {
-            response.elsewhere = elsewhere;
+            response.elsewhere.extend(elsewhere);
+            response.elsewhere.sort_by(Elsewhere::in_order);
             return match response.self_excited {
                 true => asked.without_tails(response),
                 false => Ok(response),
@@ -335,7 +347,8 @@ impl Response {
             (all + 1, none + usize::from(point.error.is_none()))
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
-        self.verdict = Verdict::of(small && 20 * unjudged <= all);
+        let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
+        self.verdict = Verdict::of(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self
     }
@@ -515,6 +528,7 @@ impl<'a> Asked<'a> {
             });
         }
         let simulated = self.simulated(&branches);
+        let elsewhere = self.unfollowed(&balance, &paths, seeds, size);
         let points = || branches.iter().flat_map(|branch| &branch.points);
         let complete = !question.interrupt.is_requested();
         let amplitude = points().map(|point| point.amplitude).fold(0.0, f64::max);
@@ -537,7 +551,7 @@ impl<'a> Asked<'a> {
             bifurcations,
             ripple,
             simulated,
-            elsewhere: vec![],
+            elsewhere,
             verdict: Verdict::Fail,
             error: None,
             unjudged: 0,

@@ -89,10 +89,7 @@ impl Asked<'_> {
                 }
             }
         }
-        elsewhere.sort_by(|one: &Elsewhere, other| {
-            let parameters = one.parameter.total_cmp(&other.parameter);
-            parameters.then(one.periods.cmp(&other.periods))
-        });
+        elsewhere.sort_by(Elsewhere::in_order);
         elsewhere.dedup();
         if seeds.is_empty() {
             return Err(self.nothing());

@@ -194,3 +194,38 @@ fn ripple_of_the_balance_is_no_fold() {
             .is_some_and(|ripple| ripple.folds > 4 && ripple.range[1] < folds[0])
     );
 }
+
+/// A motion on which simulations settle is followed by as many harmonics as it takes; by fewer it is said to be missing, and nothing passes.
+#[test]
+fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
+    let found = response(CONTACT, [1.3, 1.5], "F = 3/10");
+    let (_, peak) = in_contact(1.3, [-0.6, 0.8], 150);
+    assert!(peak > 0.6, "{peak}");
+    let is_it = |point: &Point| point.parameter == 1.3 && (point.peak / peak - 1.0).abs() < 5e-3;
+    let points = || found.branches.iter().flat_map(|branch| &branch.points);
+    assert!(points().any(|point| is_it(point) && point.stable == Some(true)));
+    assert!(
+        found.elsewhere.is_empty() && found.verdict == Verdict::Pass,
+        "{:?}",
+        found.elsewhere
+    );
+    let by_few = respond(&Question {
+        harmonics: Some(8),
+        ..found.question.clone()
+    })
+    .expect("a response");
+    assert!(
+        by_few
+            .branches
+            .iter()
+            .flat_map(|branch| &branch.points)
+            .all(|point| !is_it(point))
+    );
+    assert!(
+        by_few
+            .elsewhere
+            .iter()
+            .any(|elsewhere| elsewhere.parameter == 1.3 && elsewhere.periods == Some(1))
+    );
+    assert_eq!(by_few.verdict, Verdict::Fail);
+}

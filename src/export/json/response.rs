@@ -238,7 +238,8 @@ pub struct RippleDocument {
 pub struct ElsewherePoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
-    /// After how many periods of the motion it repeats itself; null where it does not within eight.
+    /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not come to it; null where it does not within
+    /// eight.
     pub periods: Option<usize>,
 }
 

@@ -1,0 +1,107 @@
+//! Motions on which simulations have settled and that lie on no branch.
+//!
+//! In: the branches, and the motions to begin with. Out: those of them whose true motion, by shooting, is none that shooting finds from
+//! the branches: harmonic balance has not come to it, or has come to another one.
+
+use super::balance::Balance;
+use super::continuation::{Node, Path};
+use super::jump::{Until, follow};
+use super::seeds::Seed;
+use super::stability::{TOLERANCE, half_of_peak_to_peak, options, periodic_motion};
+use super::{Asked, Elsewhere, LONGEST_STEP};
+
+/// A motion at a value of the parameter, by its start and those of its images: begun a period of the drive later, or mirrored.
+struct Motion {
+    parameter: f64,
+    starts: Vec<[f64; 2]>,
+    size: f64,
+}
+
+impl Asked<'_> {
+    /// Where simulations have settled on motions that lie on none of these branches, each motion once.
+    pub(super) fn unfollowed(&self, balance: &Balance, paths: &[Path], seeds: &[Seed], size: f64) -> Vec<Elsewhere> {
+        /// Of the largest motion: what moves less rests.
+        const NOTHING: f64 = 1e-6;
+        let mut known: Vec<Motion> = Vec::new();
+        let mut found = Vec::new();
+        for seed in seeds {
+            let Some(start) = seed.start.filter(|_| !self.driven.self_excited) else {
+                continue;
+            };
+            if self.question.interrupt.is_requested() {
+                return found;
+            }
+            let (parameter, extent) = (seed.parameter, half_of_peak_to_peak(&seed.positions));
+            // A simulation ends before it has settled for good.
+            let truth = periodic_motion(&self.driven, start, parameter, extent).filter(|_| extent > NOTHING * size);
+            let Some(start) = truth.map(|truth| truth.start) else {
+                continue;
+            };
+            let is_known = |motion: &Motion| motion.parameter == parameter && self.is_one(motion, start);
+            if known.iter().any(is_known) {
+                continue;
+            }
+            let motion = Motion {
+                parameter,
+                starts: self.images(start, parameter, extent),
+                size: extent,
+            };
+            if !paths.iter().any(|path| self.passes(balance, path, &motion)) {
+                found.push(Elsewhere {
+                    parameter,
+                    periods: Some(1),
+                });
+            }
+            known.push(motion);
+        }
+        found
+    }
+
+    /// The start of a motion, those a period of the drive later each, and those of its mirror images.
+    fn images(&self, start: [f64; 2], parameter: f64, size: f64) -> Vec<[f64; 2]> {
+        let period = std::f64::consts::TAU / self.driven.frequency_at(parameter) / self.question.periods as f64;
+        let settings = options(size, TOLERANCE);
+        let after = |halves: usize| {
+            let time = Until::Time(0.5 * halves as f64 * period);
+            let [x, v, ..] = follow(&self.driven, start, parameter, time, &settings)?.end;
+            Some(if halves % 2 == 1 { [-x, -v] } else { [x, v] })
+        };
+        let later = (1..2 * self.question.periods).filter_map(after);
+        std::iter::once(start).chain(later).collect()
+    }
+
+    /// Whether a motion begins as this one or as an image of it, or where the force is the same.
+    fn is_one(&self, motion: &Motion, [x, v]: [f64; 2]) -> bool {
+        /// Of its size.
+        const SAME: f64 = 1e-3;
+        let omega = self.driven.frequency_at(motion.parameter);
+        motion.starts.iter().any(|start| {
+            let same_place = (x - start[0]).abs() <= SAME * motion.size;
+            let same_speed = (v - start[1]).abs() <= SAME * motion.size * omega;
+            same_speed && (same_place || self.repeats_after(x - start[0], motion.parameter))
+        })
+    }
+
+    /// Whether a branch passes a motion, by the true motions that shooting finds from it at the same value of the parameter.
+    fn passes(&self, balance: &Balance, path: &Path, motion: &Motion) -> bool {
+        let [low, high] = self.question.range;
+        let parameter = motion.parameter;
+        let is_it = |guess: [f64; 2]| {
+            let truth = periodic_motion(&self.driven, guess, parameter, motion.size);
+            // What shooting does not come to is taken as it is.
+            self.is_one(motion, truth.map_or(guess, |truth| truth.start))
+        };
+        // A branch may end a little before an end of the range.
+        let ends = [path.nodes.first(), path.nodes.last()].into_iter().flatten();
+        let mut beside = ends.filter(|node| (node.parameter - parameter).abs() <= LONGEST_STEP * (high - low));
+        let between = |pair: &[Node]| {
+            let [one, other] = pair else { return false };
+            let Some(part) = one.part_of_way(other, parameter) else {
+                return false;
+            };
+            let [from, to] = [one, other].map(|node| node.begins(balance));
+            is_it([0, 1].map(|index| from[index] + part * (to[index] - from[index])))
+        };
+        path.nodes.windows(2).any(between) || beside.any(|node| is_it(node.begins(balance)))
+    }
+}

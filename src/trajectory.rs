@@ -13,17 +13,15 @@
 mod energy;
 mod hold;
 mod pulse;
+mod root;
 mod section;
 mod sweep;
 
 use std::collections::BTreeMap;
 
-use num_traits::Zero;
 use thiserror::Error;
 
-use crate::exact::Rational;
-use crate::exact::rational::{Integer, ratio};
-use crate::expr::{Expr, ExprError, Function, Node};
+use crate::expr::{Expr, ExprError};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
@@ -34,6 +32,7 @@ pub use section::{Crossing, MOST_CROSSINGS, Section};
 pub use sweep::{SweptMotion, sweep};
 
 use hold::Hold;
+use root::roots_across_corners;
 use section::OnSection;
 
 /// What is followed, from where, and how long.
@@ -303,7 +302,7 @@ impl Course {
             .rates
             .right
             .iter()
-            .map(|right| gated_roots(right, &self.values))
+            .map(|right| roots_across_corners(right, &self.values))
             .collect::<Result<_, _>>()?;
         let mut start = self.start.clone();
         let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
@@ -311,7 +310,7 @@ impl Course {
             let work = fresh("work", &taken);
             taken.push(work);
             states.push(work);
-            right.push(gated_roots(power, &self.values)?);
+            right.push(roots_across_corners(power, &self.values)?);
             start.push(0.0);
         }
         let values: BTreeMap<Symbol, f64> = needed
@@ -412,73 +411,6 @@ impl Piece {
 
 /// So often may a motion be held.
 const MOST_PIECES: usize = 20_000;
-
-/// `u^(p/q) H(v)`, q even, as `(u^2)^(p/2q) H(v)` where u is zero with v: the force of a contact begins with such a root, and a step may
-/// look a little way across its touch before it is found. Where the gate is open nothing changes; a root without its own gate is left alone,
-/// for where u is negative it has no value.
-fn gated_roots(expression: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Expr, ExprError> {
-    let half = Expr::number(ratio(1, 2));
-    let even = |exponent: &Rational| (exponent.denom() % Integer::from(2)).is_zero();
-    expression.fold(|expr, children: &[Expr]| {
-        let gates: Vec<&Expr> = children
-            .iter()
-            .filter_map(|child| match child.node() {
-                Node::Function(Function::Step, arguments) => arguments.first(),
-                _ => None,
-            })
-            .collect();
-        if !matches!(expr.node(), Node::Product(..)) || gates.is_empty() {
-            return expr.with_children(children);
-        }
-        let open = |factor: &Expr| {
-            factor.fold(|expr, children: &[Expr]| {
-                let (Node::Power(_, exponent), [base, _]) = (expr.node(), children) else {
-                    return expr.with_children(children);
-                };
-                let mut gated = false;
-                for gate in gates.iter().filter(|_| exponent.as_number().is_some_and(even)) {
-                    gated = gated || is_open_with(base, gate, values)?;
-                }
-                match gated {
-                    true => Expr::power(&base.integer_power(2)?, &(exponent * &half)),
-                    false => expr.with_children(children),
-                }
-            })
-        };
-        let factors: Result<Vec<Expr>, ExprError> = children.iter().map(open).collect();
-        expr.with_children(&factors?)
-    })
-}
-
-/// Whether a base is a positive number times the argument of a gate, or times its sine: zero where the gate opens, and positive behind it.
-fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<bool, ExprError> {
-    let is_number = |expr: &Expr| expr.symbols().iter().all(|name| values.contains_key(name));
-    let positive = |expr: &Expr| expr.evaluate(values).is_ok_and(|value| value > 0.0);
-    let in_proportion = |one: &Expr, other: &Expr| -> Result<bool, ExprError> {
-        let Some(name) = other.symbols().into_iter().find(|name| !values.contains_key(name)) else {
-            return Ok(false);
-        };
-        let (above, below) = (one.differentiate(name)?, other.differentiate(name)?);
-        if below.is_zero() || !is_number(&above) || !is_number(&below) {
-            return Ok(false);
-        }
-        let ratio = Expr::divide(&above, &below)?;
-        Ok(positive(&ratio) && (one - &(&ratio * other)).expand()?.is_zero())
-    };
-    if in_proportion(base, gate)? {
-        return Ok(true);
-    }
-    let (number, factors) = base.factors();
-    let (numbers, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| is_number(factor));
-    let before = Expr::product([Expr::number(number)].into_iter().chain(numbers.into_iter().cloned()));
-    match rest.as_slice() {
-        [wave] => match wave.node() {
-            Node::Function(Function::Sin, arguments) => Ok(positive(&before) && in_proportion(&arguments[0], gate)?),
-            _ => Ok(false),
-        },
-        _ => Ok(false),
-    }
-}
 
 impl Trajectory {
     /// The account of the energy.

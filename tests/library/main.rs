@@ -3,6 +3,7 @@
 mod averaging;
 mod conformance;
 mod contact;
+mod corner_roots;
 mod default_method;
 mod equilibria;
 mod exact_numbers;

@@ -7,7 +7,7 @@ use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TrajectoryReport};
 use lindstedt::system::{End, Integrator};
-use lindstedt::trajectory::{Course, Section, Trajectory, TrajectoryError, in_words, sweep};
+use lindstedt::trajectory::{Course, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
 
@@ -260,20 +260,36 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
         Format::Json => json_text(&json::motion_sweep(&report))?,
         Format::Text | Format::Latex => text::document(&report::motion_sweep(&report), width(common.output.as_deref())),
     };
-    let broken = motions.iter().position(|motion| motion.reason != End::Reached);
+    let note = stopped_early(&motions, total);
     Ok(Outcome {
         result: whole(text),
         picture: common.plot.as_ref().map(|path| (path.clone(), sweep_picture(&report))),
-        note: broken.map(|number| {
-            format!(
-                "warning: motion {} stopped early, what there is is kept: {}",
-                number + 1,
-                in_words(motions[number].reason)
-            )
-        }),
+        partial: note.is_some(),
+        note,
         verdict: None,
-        partial: broken.is_some(),
     })
+}
+
+/// What is missing of so many motions, where anything is.
+fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
+    let kept = "stopped early, what there is is kept";
+    let interrupted = motions
+        .iter()
+        .filter(|motion| motion.reason == End::Interrupted)
+        .count();
+    if motions.len() < all || interrupted > 0 {
+        let cut = match interrupted {
+            0 => String::new(),
+            some => format!(", {some} of them not to the end"),
+        };
+        return Some(format!("warning: {kept}: {} of {all} motions{cut}", motions.len()));
+    }
+    let number = motions.iter().position(|motion| motion.reason != End::Reached)?;
+    Some(format!(
+        "warning: motion {} {kept}: {}",
+        number + 1,
+        in_words(motions[number].reason)
+    ))
 }
 
 #[cfg(not(feature = "plot"))]

@@ -1,7 +1,7 @@
 //! Many motions of one equation: a parameter, or a start, takes value after value, and each motion leaves its section behind.
 //!
-//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their order, whatever the number of threads:
-//! with a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
+//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their order, whatever the number of threads; where
+//! somebody asks to stop, those that were begun. With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
 use super::{Course, Crossing, TrajectoryError};
 use crate::parallel::each;
@@ -27,7 +27,8 @@ pub struct SweptMotion {
     pub reason: End,
 }
 
-/// Follows the course at every one of the values; `progress` hears of each motion that is done. Costs a motion each, on all cores.
+/// Follows the course at every one of the values; `progress` hears of each motion that is done. Costs a motion each, on all cores. Once the
+/// interrupt of the course asks for it, no other motion is begun; those that had come past the time `after` are handed back.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot begin, and why.
@@ -49,6 +50,9 @@ pub fn sweep(
     progress: impl Fn() + Sync,
 ) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
     let one = |&(number, values): &(usize, &Vec<f64>)| {
+        if course.interrupt.is_requested() {
+            return Ok(None);
+        }
         let mut course = course.clone();
         for (name, value) in names.iter().zip(values) {
             match course.rates.states.iter().position(|state| state == name) {
@@ -58,9 +62,14 @@ pub fn sweep(
                 }
             }
         }
+        let after = course.after;
         let motion = course.follow().map_err(|error| (number, error))?;
         progress();
-        Ok(SweptMotion {
+        // One that was cut off before it counts has nothing to show.
+        if motion.reason() == End::Interrupted && motion.end() < after {
+            return Ok(None);
+        }
+        Ok(Some(SweptMotion {
             values: values.clone(),
             end: motion.end(),
             state: motion.at(motion.end()).unwrap_or_default(),
@@ -68,8 +77,9 @@ pub fn sweep(
             crossings: motion.crossings().to_vec(),
             touches: motion.touches().to_vec(),
             reason: motion.reason(),
-        })
+        }))
     };
     let numbered: Vec<_> = grid.iter().enumerate().collect();
-    each(&numbered, one).into_iter().collect()
+    let motions: Result<Vec<Option<SweptMotion>>, _> = each(&numbered, one).into_iter().collect();
+    Ok(motions?.into_iter().flatten().collect())
 }

@@ -1,11 +1,12 @@
 //! Sections and sweeps of any equation: closed forms, the known cascade of Duffing's two wells, and each motion of a sweep by itself.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use lindstedt::expr::parse_expression;
-use lindstedt::system::Integrator;
+use lindstedt::system::{End, Integrator};
 use lindstedt::trajectory::{Course, Section, TrajectoryError, sweep};
-use lindstedt::{Oscillator, Symbol};
+use lindstedt::{Interrupt, Oscillator, Symbol};
 
 fn course(equation: &str, start: &[(&str, f64)], duration: f64) -> Course {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
@@ -225,4 +226,41 @@ fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
             "{name}: {work}, expected {expected}"
         );
     }
+}
+
+/// Once somebody asks to stop, no motion of a sweep is begun: those that were begun before are what they are, and no others come.
+#[test]
+fn a_sweep_that_is_interrupted_begins_no_other_motion() {
+    static STOP: AtomicBool = AtomicBool::new(false);
+    static DONE: AtomicUsize = AtomicUsize::new(0);
+    const MOTIONS: usize = 2000;
+    const ENOUGH: usize = 5;
+    let mut course = course("x'' + k*x = 0", &[("x'", 1.0)], 10.0);
+    course.interrupt = Interrupt::by(&STOP);
+    let grid: Vec<Vec<f64>> = (0..MOTIONS).map(|index| vec![1.0 + index as f64 / 100.0]).collect();
+    let count = || {
+        if DONE.fetch_add(1, Ordering::Relaxed) + 1 >= ENOUGH {
+            STOP.store(true, Ordering::Relaxed);
+        }
+    };
+    let motions = sweep(&course, &["k".into()], &grid, count).expect("motions");
+    // Each thread may be at one when it is asked for.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    assert!(
+        (ENOUGH..=ENOUGH + threads).contains(&motions.len()),
+        "{}",
+        motions.len()
+    );
+    for motion in motions.iter().filter(|motion| motion.reason == End::Reached) {
+        let frequency = motion.values[0].sqrt();
+        assert!((motion.extremes[0][1] - 1.0 / frequency).abs() < 1e-10, "{motion:?}");
+        assert!(
+            (motion.state[0] - (frequency * 10.0).sin() / frequency).abs() < 1e-10,
+            "{motion:?}"
+        );
+    }
+    assert!(motions.windows(2).all(|pair| pair[0].values < pair[1].values));
+    // One that has not come to the time from which it counts is none.
+    course.after = 5.0;
+    assert!(sweep(&course, &["k".into()], &grid, || ()).expect("motions").is_empty());
 }

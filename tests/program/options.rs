@@ -464,6 +464,48 @@ fn an_expansion_that_is_stopped_keeps_its_orders() {
     assert_eq!(shorter["frequency"], document["frequency"]);
 }
 
+/// A sweep of one's own equation ends at the time limit, and prints the motions that there are.
+#[test]
+fn a_sweep_that_is_stopped_keeps_its_motions() {
+    let sweep = [
+        "simulate",
+        "x'' + 0.3*x' - x + x^3 = F*cos(1.2*t)",
+        "--sweep",
+        "F=0.2:0.4:20001",
+        "--from",
+        "x=1",
+        "--until",
+        "400",
+        "--every",
+        "2*pi/1.2",
+        "--format",
+        "json",
+    ];
+    let output = run(&[&sweep[..], &["--timeout", "1"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(
+        message.contains("stopped early") && message.contains("of 20001 motions"),
+        "{message}"
+    );
+    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    let motions = document["motions"].as_array().expect("motions");
+    assert!((1..20001).contains(&motions.len()), "{}", motions.len());
+    // They are those that are followed alone.
+    let force = motions[0]["values"]["F"].to_string();
+    assert_eq!(force, "0.2");
+    let alone = json(
+        &[
+            &sweep[..2],
+            &[
+                "--at", "F=0.2", "--from", "x=1", "--until", "400", "--every", "2*pi/1.2",
+            ],
+        ]
+        .concat(),
+    );
+    assert_eq!(motions[0]["final_state"], alone["final_state"]);
+}
+
 /// The same where letters stay.
 #[test]
 fn an_expansion_with_letters_that_is_stopped_keeps_its_orders() {

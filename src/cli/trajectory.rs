@@ -1,12 +1,12 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::export::{json, significant, text, trajectory};
+use lindstedt::export::{decimal, json, significant, text, trajectory};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TrajectoryReport};
-use lindstedt::system::{End, Integrator};
+use lindstedt::system::{End, Integrator, SystemError};
 use lindstedt::trajectory::{Course, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
@@ -64,7 +64,10 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     let (motion, judge) = match asked.integrators {
         [] => (course.clone().follow().map_err(refused)?, None),
         [only] => (by(*only)?, None),
-        [first, second, ..] => (by(*first)?, Some(by(*second)?)),
+        [..] => {
+            let [motion, judge] = by_both(&course)?;
+            (motion, Some(judge))
+        }
     };
     let report = TrajectoryReport {
         motion: &motion,
@@ -106,6 +109,43 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         verdict: Some(verdict(&motion, judge.as_ref(), allowed)),
         partial: broken.is_some(),
     })
+}
+
+/// The motion by power series, and by Runge-Kutta beside it.
+///
+/// # Errors
+/// Where the series come to an end that Runge-Kutta passes: there is nothing to compare it with.
+fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
+    let by = |integrator: Integrator| course.clone().follow_by(integrator);
+    let end = match by(Integrator::Taylor) {
+        Ok(motion) if motion.reason() != End::Singular => {
+            return Ok([motion, by(Integrator::RungeKutta).map_err(refused)?]);
+        }
+        Err(error @ TrajectoryError::System(SystemError::Start(_))) => Err(error),
+        other => Ok(other.map_err(refused)?),
+    };
+    let judge = by(Integrator::RungeKutta);
+    let passed = match (&end, &judge) {
+        (Ok(series), Ok(judge)) => judge.is_complete() || judge.end() > series.end() * (1.0 + TOLERANCE),
+        (Err(_), Ok(judge)) => judge.end() > 0.0,
+        (_, Err(_)) => false,
+    };
+    match end {
+        Ok(series) if !passed => Ok([series, judge.map_err(refused)?]),
+        Err(error) if !passed => Err(refused(error)),
+        end => {
+            let end = end.map_or(0.0, |series| series.end());
+            let judged = match course.energy {
+                Some(_) => ", and its energy is accounted for",
+                None => "",
+            };
+            Err(Failure::Refused(format!(
+                "no second integrator: the power series end at t = {}, where the rates have none in time, as where a contact in d^(3/2) \
+                 is touched, and Runge-Kutta goes on alone\n  help: leave out --integrator: the motion is followed by Runge-Kutta{judged}",
+                decimal(end)
+            )))
+        }
+    }
 }
 
 fn refused(error: TrajectoryError) -> Failure {

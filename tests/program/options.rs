@@ -506,6 +506,49 @@ fn a_sweep_that_is_stopped_keeps_its_motions() {
     assert_eq!(motions[0]["final_state"], alone["final_state"]);
 }
 
+/// Power series end at the touch of a contact: with both integrators that is said, and the motion is followed without.
+#[test]
+fn a_contact_has_no_second_integrator_and_is_told_so() {
+    let forms = ["(x - 0.5)^(3/2)*H(x - 0.5)", "max(x - 0.5, 0)^(3/2)"];
+    for (form, start) in [(forms[0], "x=-1"), (forms[1], "x=-1"), (forms[1], "x=0.5")] {
+        let equation = format!("x'' + x + 1e4*{form} = 0");
+        let asked = ["simulate", &equation, "--from", start, "--until", "20"];
+        let output = run(&[&asked[..], &["--integrator", "both"]].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(output.stdout.is_empty());
+        assert!(
+            message.contains("no second integrator") && message.contains("help: leave out --integrator"),
+            "{message}"
+        );
+        assert_eq!(json(&asked)["complete"], true);
+    }
+    // Where it is not touched there are two.
+    let apart = json(&[
+        "simulate",
+        "x'' + x + 1e4*max(x - 0.5, 0)^(3/2) = 0",
+        "--from",
+        "x=0.4",
+        "--until",
+        "20",
+        "--integrator",
+        "both",
+    ]);
+    assert!(apart["difference"].as_f64().expect("a difference") < 1e-10, "{apart}");
+    // Both come to the pole of x'' = x^2 and stop there.
+    let output = run(&[
+        "simulate",
+        "x'' = x^2",
+        "--from",
+        "x=1",
+        "--until",
+        "20",
+        "--integrator",
+        "both",
+    ]);
+    assert_eq!(output.status.code(), Some(4));
+}
+
 /// The same where letters stay.
 #[test]
 fn an_expansion_with_letters_that_is_stopped_keeps_its_orders() {

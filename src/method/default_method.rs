@@ -7,8 +7,9 @@
 //!                                        no closed form for the first harmonic
 //! conservative                           Lindstedt-Poincare
 //! conservative, without an expansion     an order asked for: so many harmonics balanced;
-//!                                        exact, where its law is closed; Hamiltonian, where its law is closed and the force odd;
-//!                                        else exact, by quadrature
+//!                                        exact, where its law is closed; Lindstedt-Poincare in the amplitude, where a letter alone
+//!                                        stood in the way; Hamiltonian, where its law is closed and the force odd; else exact, by
+//!                                        quadrature
 //! ```
 //!
 //! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
@@ -210,6 +211,17 @@ fn in_powers(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Re
     }
 }
 
+/// The expansion in the amplitude of a force that is no polynomial beside a letter that might have been small.
+fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
+    let small = oscillator.small_parameter(None);
+    matches!(small, Ok(SmallParameter::Parameter(_))).then_some(())?;
+    let options = Options {
+        small: Some(AmplitudeConvention::Initial.symbol().to_string()),
+        ..options.clone()
+    };
+    solve_by(Method::LindstedtPoincare, oscillator, &options).ok()
+}
+
 /// A conservative motion about an equilibrium at which the force has no expansion, by a method that takes the force as it is; `None`
 /// where it is not that, where an expansion was asked for, and where no such method answers.
 fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Options) -> Option<Solution> {
@@ -238,7 +250,10 @@ fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Optio
             let hamiltonian = || by(Method::Hamiltonian).filter(|found| closed(found) && !leaves_drift(found));
             match exact {
                 Some(exact) if closed(&exact) => exact,
-                exact => hamiltonian().or(exact)?,
+                exact => match series_in_amplitude(oscillator, options) {
+                    Some(series) => return Some(series),
+                    None => hamiltonian().or(exact)?,
+                },
             }
         }
     };

@@ -603,8 +603,17 @@ impl fmt::Display for Cut {
 
 fn truncated(formatter: &mut fmt::Formatter<'_>, small: &[Symbol], order: u32, marks: Option<&Expr>) -> fmt::Result {
     let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
+    let (first, others) = match names.split_first() {
+        Some((first, others)) => (*first, others.join(" and ")),
+        None => ("", String::new()),
+    };
     let names = names.join(" and ");
     match (marks, small.len()) {
+        (Some(value), 2..) => write!(
+            formatter,
+            "truncated after order {order} in {names} together; {first} marks the terms without {others}, which are taken to be small beside \
+             the linear one too, and is {value} in this equation"
+        ),
         (Some(value), _) => write!(
             formatter,
             "truncated after {names}^{order}; {names} marks all terms but the linear one, which are taken to be small, and is {value} in this equation"

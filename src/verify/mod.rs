@@ -138,7 +138,7 @@ pub enum VerificationError {
     #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
     Missing(Vec<Symbol>),
     /// A value for a symbol that does not occur.
-    #[error("`{name}` does not occur in the formula; it has: {}", .known.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
+    #[error("`{name}` does not occur in the formula{}", letters_of(known))]
     Unknown {
         /// The name.
         name: Symbol,
@@ -205,6 +205,15 @@ impl VerificationError {
             Self::LimitCycle(_) => true,
             _ => false,
         }
+    }
+}
+
+/// The letters that there are, after "does not occur in the formula".
+fn letters_of(known: &[Symbol]) -> String {
+    let names: Vec<&str> = known.iter().map(|name| name.name()).collect();
+    match names.is_empty() {
+        true => ", which has no letters: it is judged without values, by `--tolerance 0.01` say".to_owned(),
+        false => format!("; it has: {}", names.join(", ")),
     }
 }
 

@@ -188,7 +188,8 @@ pub struct Displacement {
     #[schemars(extend("const" = "theta"))]
     pub variable: String,
     /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the equilibrium in harmonic 0;
-    /// empty where only `verification.motion` has the motion.
+    /// empty where only `verification.motion` has the motion. Of a driven answer the part with the first harmonic: `response.motion` has
+    /// the whole.
     pub harmonics: Vec<Harmonic>,
 }
 

@@ -97,6 +97,9 @@ pub enum SystemError {
     /// An event has no finite value at the start.
     #[error("event {0}, counted from 0, has no finite value or no series at the start")]
     Event(usize),
+    /// A state that begins where numbers end.
+    #[error("`{0}` begins at {1:e}, but no state is followed beyond 1e300: count it in a larger unit")]
+    Large(Symbol, f64),
     /// A start, an end or a tolerance that is no finite number, or an end before the start.
     #[error("start and end must be finite, the end after the start, the tolerance between 1e-16 and 0.1")]
     Bounds,
@@ -184,10 +187,54 @@ pub enum End {
     StepLimit,
     /// The steps vanish, or a state or an event has no value any more: a pole, or a root at zero.
     Singular,
+    /// A state leaves the range of numbers: it is larger than 1e300, or so large that its rates are.
+    Overflow,
     /// It stays on a corner: the rates on both sides lead back to it.
     Sticks,
     /// Somebody asked for it.
     Interrupted,
+}
+
+/// No state is followed farther: doubles end at 1.8e308, and sums and products within a step need room.
+const LARGEST: f64 = 1e300;
+
+/// A state from which on rates without a value are too large rather than undefined: fourth powers are beyond [`LARGEST`].
+const LARGE: f64 = 1e75;
+
+/// Whether all of these are numbers that are followed.
+fn within_range(mut states: impl Iterator<Item = f64>) -> bool {
+    states.all(|state| state.abs() <= LARGEST)
+}
+
+/// Why a run ends in these states where its rates have no value, or no next step is possible, behind a step from one time to another.
+fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> End {
+    match states.any(|state| state.abs() > LARGE) && !is_vanishing(step) {
+        true => End::Overflow,
+        false => End::Singular,
+    }
+}
+
+/// Whether a step from one time to another, both since the start, is so short that it stands before a pole: what its states have become
+/// there means nothing.
+fn is_vanishing([from, to]: [f64; 2]) -> bool {
+    to - from <= 1e-10 * to
+}
+
+/// The last place up to this one at which all states are within the range of numbers, where they leave it before.
+fn end_of_range(length: f64, is_within: impl Fn(f64) -> bool) -> Option<f64> {
+    const HALVINGS: u32 = 60;
+    if is_within(length) {
+        return None;
+    }
+    let (mut within, mut beyond) = (0.0, length);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (within + beyond);
+        match is_within(middle) {
+            true => within = middle,
+            false => beyond = middle,
+        }
+    }
+    Some(within)
 }
 
 /// The states from the start to the end.
@@ -335,6 +382,10 @@ impl System {
         let finite = start.is_finite() && end.is_finite() && values.iter().all(|value| value.is_finite());
         if !finite || end < start || !(1e-16..=0.1).contains(&options.tolerance) {
             return Err(SystemError::Bounds);
+        }
+        let large = self.state.iter().zip(values).find(|(_, value)| value.abs() > LARGEST);
+        if let Some((state, value)) = large {
+            return Err(SystemError::Large(*state, *value));
         }
         match options.integrator {
             Integrator::Taylor => taylor::follow(self, [start, end], values, events, options),

@@ -507,6 +507,7 @@ pub fn in_words(end: End) -> &'static str {
         End::Event(_) => "at an event",
         End::StepLimit => "after as many steps as were allowed",
         End::Singular => "where a state or its rate has no value, or no next step",
+        End::Overflow => "where a state leaves the range of numbers, 1e300",
         End::Sticks => "on a corner that the rates on both sides lead back to, where it is not followed",
         End::Interrupted => "interrupted",
     }

@@ -12,7 +12,10 @@
 use std::cell::RefCell;
 
 use super::narrow::{Argument, COARSE, Kind, arguments, end_by_values};
-use super::{End, Event, Occurrence, Options, Path, System, SystemError, taylor};
+use super::{
+    End, Event, LARGEST, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing, taylor,
+    within_range, without_value,
+};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
 use crate::numeric::ode::{self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through};
 use crate::symbol::{Symbol, fresh_stem};
@@ -35,13 +38,43 @@ impl Motion {
     pub(super) fn at(&self, time: f64) -> Option<Vec<f64>> {
         let scaled = self.units.count(time).min(self.trajectory.end().t);
         let point = self.trajectory.state_at(scaled)?;
-        // Sides and what goes with them stand behind the states.
-        let states = point.y.iter().zip(&self.units.sizes);
-        Some(states.map(|(value, size)| value * size).collect())
+        Some(self.states(&point).collect())
     }
 
     pub(super) fn step_count(&self) -> usize {
         self.trajectory.step_count()
+    }
+
+    /// The states of a point of the run.
+    fn states<'a>(&'a self, point: &'a Point<Vec<f64>>) -> impl Iterator<Item = f64> + 'a {
+        // Sides and what goes with them stand behind the states.
+        point.y.iter().zip(&self.units.sizes).map(|(value, size)| value * size)
+    }
+
+    /// The last step.
+    fn last_step(&self) -> [f64; 2] {
+        let end = self.trajectory.end().t;
+        let starts = self.trajectory.knots().map(|knot| knot.t);
+        [starts.filter(|time| *time < end).last().unwrap_or(end), end]
+    }
+
+    /// The time up to which all states are within the range of numbers, where they leave it, and why it ends there.
+    fn end_of_range(&self) -> Option<(f64, End)> {
+        let mut before = self.trajectory.start().t;
+        for knot in self.trajectory.knots() {
+            if !within_range(self.states(&knot)) {
+                let is_within = |length: f64| {
+                    let point = self.trajectory.state_at((before + length).min(knot.t));
+                    point.is_some_and(|point| within_range(self.states(&point)))
+                };
+                return Some(match is_vanishing([before, knot.t]) {
+                    true => (before, End::Singular),
+                    false => (before + end_of_range(knot.t - before, is_within)?, End::Overflow),
+                });
+            }
+            before = knot.t;
+        }
+        None
     }
 }
 
@@ -71,6 +104,7 @@ impl Units {
             .iter_mut()
             .filter(|size| **size == 0.0)
             .for_each(|size| *size = other);
+        sizes.iter_mut().for_each(|size| *size = size.min(LARGEST));
         let time = reach.min(end - start);
         let time = if time > 0.0 { time } else { 1.0 };
         Self { sizes, start, time }
@@ -130,15 +164,27 @@ pub(super) fn follow(
         _ => SystemError::Bounds,
     })?;
     drop(watched);
-    let reason = reason(trajectory.stop_reason());
+    let mut occurrences = occurrences(trajectory.occurrences(), &units, events.len());
+    let motion = Motion { trajectory, units };
+    let last = motion.trajectory.end();
+    let (end, reason) = match (motion.end_of_range(), reason(motion.trajectory.stop_reason())) {
+        (Some((time, reason)), _) => {
+            let time = motion.units.time(time);
+            occurrences.retain(|occurrence| occurrence.time <= time);
+            (time, reason)
+        }
+        (None, End::Reached) => (end, End::Reached),
+        (None, End::Singular) => (
+            motion.units.time(last.t),
+            without_value(motion.states(&last), motion.last_step()),
+        ),
+        (None, reason) => (motion.units.time(last.t), reason),
+    };
     Ok(Path {
-        end: match reason {
-            End::Reached => end,
-            _ => units.time(trajectory.end().t),
-        },
+        end,
         reason,
-        occurrences: occurrences(trajectory.occurrences(), &units, events.len()),
-        motion: super::Motion::RungeKutta(Motion { trajectory, units }),
+        occurrences,
+        motion: super::Motion::RungeKutta(motion),
     })
 }
 

@@ -13,7 +13,10 @@
 
 use super::narrow::{Kind, end_of_step};
 use super::polynomial::{first_root, powers, sign_at_start, value};
-use super::{End, Event, Motion, Occurrence, Options, Path, System, SystemError};
+use super::{
+    End, Event, Motion, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing, within_range,
+    without_value,
+};
 use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
 use crate::symbol::Symbol;
@@ -211,7 +214,7 @@ impl Run<'_> {
         match defined {
             Err(_) if over => return Ok(Some(End::Reached)),
             Err(error) if self.steps.is_empty() => return Err(error),
-            Err(_) => return Ok(Some(End::Singular)),
+            Err(_) => return Ok(Some(self.without_value())),
             Ok(()) => {}
         }
         if over {
@@ -228,6 +231,12 @@ impl Run<'_> {
         Ok(self.go(reach))
     }
 
+    /// Why it ends here, where there is no series.
+    fn without_value(&self) -> End {
+        let before = self.steps.last().map_or(self.time, |step| step.start);
+        without_value(self.values.iter().copied(), [before, self.time])
+    }
+
     /// How far the series reach from here, and nothing is stepped over.
     fn reach(&self, now: f64) -> f64 {
         let reach = self.expansion.step().min(self.duration - self.time);
@@ -240,8 +249,15 @@ impl Run<'_> {
     /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if it does.
     fn go(&mut self, reach: f64) -> Option<End> {
         // A corner within the step ends it, and so does an event that stops.
-        let corner = self.expansion.first_corner(reach);
+        let mut corner = self.expansion.first_corner(reach);
         let mut length = corner.map_or(reach, |(_, place)| place);
+        let (expansion, count) = (&self.expansion, self.values.len());
+        let range = end_of_range(length, |place| {
+            within_range((0..count).map(|state| value(expansion.state(state), place)))
+        });
+        if let Some(end) = range {
+            (corner, length) = (None, end);
+        }
         let last = Last {
             length,
             signs: self.signs.clone(),
@@ -275,12 +291,18 @@ impl Run<'_> {
             order,
             coefficients,
         });
-        let whole = corner.is_none() && stop.is_none();
+        let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.last = whole.then_some(last);
         let at_end = time + length >= self.duration && whole;
         self.time = if at_end { self.duration } else { time + length };
         if let Some(event) = stop {
             return Some(End::Event(event));
+        }
+        if range.is_some() {
+            return Some(match is_vanishing([time, time + length]) {
+                true => End::Singular,
+                false => End::Overflow,
+            });
         }
         let (corner, _) = corner?;
         self.halvings = 0;

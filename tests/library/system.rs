@@ -399,3 +399,47 @@ fn what_cannot_be_followed_is_said() {
     let path = pole.solve(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
     assert_eq!((path.reason(), path.step_count()), (End::StepLimit, 3));
 }
+
+/// `x'' = x` from rest at one: x = cosh(t), which is 1e300 at ln(2e300). There either integrator ends, with numbers; a pole is no such end.
+#[test]
+fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
+    let growing = system(&["x", "v"], &["v", "x"], &[]).unwrap();
+    let expected = 300.0 * std::f64::consts::LN_10 + std::f64::consts::LN_2;
+    let events = [Event::record(expression("x - 1e10"))];
+    for path in by_both(&growing, &[1.0, 0.0], 1000.0, &events) {
+        assert_eq!(path.reason(), End::Overflow);
+        assert!((path.end() - expected).abs() < 1e-7, "{} {expected}", path.end());
+        let last = path.at(path.end()).expect("a state");
+        assert!(last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6), "{last:?}");
+        assert_eq!(path.occurrences().len(), 1);
+    }
+    // In time to be followed to its end.
+    for path in by_both(&growing, &[1.0, 0.0], 600.0, &events) {
+        assert_eq!((path.reason(), path.end()), (End::Reached, 600.0));
+    }
+    // A rate is too large before its state is: v^4 of v = 2 exp(t), and x grows likewise.
+    let steep = system(&["v", "w"], &["v", "v^4"], &[]).unwrap();
+    for path in by_both(&steep, &[2.0, 0.0], 1000.0, &[]) {
+        assert_eq!(path.reason(), End::Overflow);
+        // w = 4 exp(4 t) reaches 1e300.
+        assert!(
+            (path.end() - 0.25 * (300.0 * std::f64::consts::LN_10 - 4.0_f64.ln())).abs() < 1e-6,
+            "{}",
+            path.end()
+        );
+    }
+    let pole = system(&["x"], &["x^2"], &[]).unwrap();
+    for path in by_both(&pole, &[1.0], 2.0, &[]) {
+        assert_eq!(path.reason(), End::Singular);
+    }
+    for start in [1.1e300, -1e308] {
+        for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
+            let options = Options {
+                integrator,
+                ..Options::default()
+            };
+            let refused = growing.solve(0.0, &[start, 0.0], 1.0, &[], &options).unwrap_err();
+            assert_eq!(refused, SystemError::Large("x".into(), start));
+        }
+    }
+}

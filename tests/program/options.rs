@@ -549,6 +549,27 @@ fn a_contact_has_no_second_integrator_and_is_told_so() {
     assert_eq!(output.status.code(), Some(4));
 }
 
+/// What grows beyond all numbers ends where it does, with numbers in every format; the schema has no others.
+#[test]
+fn a_motion_that_leaves_the_range_of_numbers_ends_there() {
+    let growing = ["simulate", "x'' - x = 0", "--until", "1000", "--from"];
+    for integrator in [&[][..], &["--integrator", "runge-kutta"]] {
+        let output = run(&[&growing[..], &["x=1", "--format", "json"], integrator].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(4), "{message}");
+        assert!(message.contains("leaves the range of numbers"), "{message}");
+        let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+        let last = document["final_state"]["state"]["x"].as_f64().expect("a number");
+        assert!((last / 1e300 - 1.0).abs() < 1e-6, "{last}");
+        let samples = document["samples"].as_array().expect("samples");
+        assert!(samples.iter().all(|sample| sample["state"]["x'"].is_f64()));
+    }
+    let output = run(&[&growing[..], &["x=1e308"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("`x` begins at 1e308"), "{message}");
+}
+
 /// The same where letters stay.
 #[test]
 fn an_expansion_with_letters_that_is_stopped_keeps_its_orders() {

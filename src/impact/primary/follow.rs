@@ -60,7 +60,7 @@ pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result
         match reason {
             End::Interrupted => break PrimaryStop::Interrupted,
             End::Reached | End::Event(_) => {}
-            End::StepLimit | End::Singular | End::Sticks => break PrimaryStop::Singular,
+            End::StepLimit | End::Singular | End::Overflow | End::Sticks => break PrimaryStop::Singular,
         }
         // Phases without length lead nowhere.
         run.idle = if run.t > before { 0 } else { run.idle + 1 };

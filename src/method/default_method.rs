@@ -171,8 +171,8 @@ fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         true => has_quadratic_terms(centred, parts),
         false => has_quadratic_damping(centred, parts),
     };
-    let open = || options.cycle.is_none() && !options.say_what_is_small(oscillator);
-    if !asked && !(open() && about_equilibrium(oscillator, quadratic)) {
+    let told = || options.cycle.is_some() || options.say_what_is_small(oscillator);
+    if !asked && (told() || !about_equilibrium(oscillator, quadratic)) {
         return None;
     }
     let in_amplitude = Options {

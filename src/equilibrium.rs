@@ -236,6 +236,18 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
     seen_from(oscillator, &force.exact_or_rounded(found.position), degree)
 }
 
+/// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put in for these decide. `None` where there
+/// are none.
+pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
+    let still = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
+    if still.contains(Symbol::new("t")) {
+        return None;
+    }
+    let force = Force::new(&still, oscillator.coordinate);
+    let found = force.stable_equilibria();
+    (force.value.is_none() && !found.positions.is_empty()).then(|| force.unstable())
+}
+
 /// Where an equilibrium is.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {

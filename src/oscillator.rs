@@ -249,9 +249,6 @@ impl OscillatorError {
                 "methods that need no linear part: `",
                 [Method::ParameterExpansion, Method::HarmonicBalance],
             ),
-            Self::NoRestoringForce(force) if force.has_leading_minus() => Advice::words(
-                "where the letters are positive it pushes away: `--about` names a stable equilibrium, such as x=sqrt(alpha/beta)",
-            ),
             Self::SymbolicEquilibrium(_) => {
                 Advice::words("give numbers for the parameters, or measure x from the equilibrium")
             }

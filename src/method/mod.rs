@@ -59,7 +59,7 @@ use std::fmt;
 use num_traits::Zero;
 use table::{Choice, Entry, that_take};
 
-use crate::equilibrium::{Centred, centred};
+use crate::equilibrium::{Centred, centred, stable_elsewhere};
 use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::{Expr, ExprError, Quotation};
 use crate::interrupt::Supervision;
@@ -579,11 +579,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solve_as_asked(oscillator, options).map_err(|refusal| without_linear_force(refusal, oscillator, options))
 }
 
-/// Methods that need no linear force take no damping and no drive: where there is one the way leads on to numbers.
+/// Where `x = 0` pushes away the stable equilibria are named. Methods that need no linear force take no damping and no drive: where there is one the way leads on to numbers.
 fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Refusal {
     let Refusal::Oscillator(OscillatorError::NoRestoringForce(force)) = &refusal else {
         return refusal;
     };
+    // Two wells, say: with positive letters it pushes away here, and back elsewhere.
+    if let (true, Some(unstable)) = (force.has_leading_minus(), stable_elsewhere(oscillator)) {
+        return unstable.into();
+    }
     let Ok(parts) = oscillator.parts() else {
         return refusal;
     };

@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 
 use lindstedt::Values;
 use lindstedt::method::{Options, solve};
+use lindstedt::numeric::period::PeriodError;
 use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::Reach;
 use lindstedt::verify::comparison::{Comparison, compare};
-use lindstedt::verify::{Verdict, Verification, judge};
+use lindstedt::verify::{Verdict, Verification, VerificationError, judge};
 use lindstedt::{Oscillator, Symbol};
 
 fn values(at: &[(&str, &str)]) -> Values {
@@ -628,4 +629,21 @@ fn harmonic_balance_follows_the_branch_from_rest() {
             assert!((before - 2.6597).abs() < 1e-3, "{before}");
         }
     }
+}
+
+/// Over the top of a pendulum beside a barrier: 1 - cos(A) + 2 gamma (A - xc)^(5/2)/5 > 2, and nothing turns it back.
+#[test]
+fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
+    let equation = "x'' + sin(x) + gamma*(x - xc)^(3/2)*H(x - xc) = 0";
+    let oscillator = Oscillator::parse(equation).expect(equation);
+    let solution = solve(&oscillator, &Options::default()).expect(equation);
+    let at = |amplitude: &str| {
+        format!("gamma = 100, xc = 3/10, A = {amplitude}")
+            .parse()
+            .expect("values")
+    };
+    let refused = judge(&oscillator, &solution, &at("1"), 0.01).expect_err("it does not come back");
+    let escapes = matches!(refused, VerificationError::Period(PeriodError::Escapes { .. }));
+    assert!(escapes, "{refused}");
+    assert!(judge(&oscillator, &solution, &at("1/2"), 0.01).is_ok());
 }

@@ -359,6 +359,8 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
     const FARTHEST: f64 = 1e10;
+    /// So many amplitudes away it is not the waves on the way that are in question, as over one summit of a pendulum after the other.
+    const FAR: f64 = 100.0;
     /// How often a stretch on which the force has no integral is halved.
     const HALVINGS: u32 = 60;
     /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
@@ -395,7 +397,10 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
             let mut halvings = 0;
             while let Some((here, next)) = stretches.pop() {
                 if evaluations.get() > MOST_EVALUATIONS {
-                    return Err(PeriodError::Waves);
+                    return Err(match (here - equilibrium).abs() > FAR * amplitude.abs() {
+                        true => PeriodError::Escapes { start, searched: here },
+                        false => PeriodError::Waves,
+                    });
                 }
                 let gain = match integral_within(&value, [next, here], below(largest), FEW_PANELS) {
                     // Towards a pole, by half of the way at a time.

@@ -221,6 +221,12 @@ impl Simulation {
         if level == 0.0 || !self.path.pieces().is_empty() || !self.stop.is_complete() {
             return None;
         }
+        // Most motions fall little by little, which is soon seen.
+        let little = |turns: &[Turn]| turns[0].x.abs() <= level || !halves(turns[0], turns[2]);
+        let ends_below = self.turns.iter().rev().take(2).all(|turn| turn.x.abs() <= level);
+        if self.turns.len() > 2 && ends_below && self.turns.windows(3).all(little) {
+            return None;
+        }
         match self.rest_by_turns(level).ok()? {
             ByTurns::Line { above, below } => is_steep(above, below, level).then_some(above),
             ByTurns::Fall(from) => Some(from),
@@ -299,9 +305,18 @@ fn swing_of(energy: f64) -> Option<f64> {
     (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
 }
 
+/// Whether a turning point is less than half as far out as an earlier one.
+fn halves(above: Turn, below: Turn) -> bool {
+    2.0 * below.x.abs() < above.x.abs()
+}
+
 /// Whether the straight line of log|x| between two turning points may be at the level before the motion is: |x| falls from the first
-/// as a cosine does, T/(2 pi) acos(level/|x|), or sooner, and half as much again is left for damping.
+/// as a cosine does, T/(2 pi) acos(level/|x|), or sooner, and half as much again is left for damping. Where one swing takes less than
+/// half, the line is what the envelope is.
 fn is_steep(above: Turn, below: Turn, level: f64) -> bool {
+    if !halves(above, below) {
+        return false;
+    }
     let fraction = (between(above, below, level) - above.t) / (below.t - above.t);
     fraction < 1.5 / TAU * (level / above.x.abs()).acos()
 }

@@ -111,7 +111,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     let force = Force::new(&still, position);
     let rests = match &at_zero {
         Ok(force) => force.is_zero(),
-        Err(_) => force.vanishes_towards_zero(),
+        Err(_) => force.vanishes_towards_zero() || force.pulls_without_bound(),
     };
     if rests {
         return match force.is_stable_at_zero() {
@@ -326,6 +326,19 @@ impl<'a> Force<'a> {
         [1.0, -1.0].into_iter().all(|side| {
             let (near, far) = (value(side * 1e-100).abs(), value(side * 1e-30).abs());
             far.is_finite() && near <= 1e-3 * far
+        })
+    }
+
+    /// Whether a force that is infinite at zero pulls towards it from both sides, as `sgn(x)/abs(x)^(1/3)` does, and so weakly that its
+    /// potential is finite there: the motion swings through.
+    fn pulls_without_bound(&self) -> bool {
+        let Some(value) = self.at_numbers(&self.sample(1.0)) else {
+            return false;
+        };
+        [1.0, -1.0].into_iter().all(|side| {
+            let work = |distance: f64| side * value(side * distance) * distance;
+            let (near, far) = (work(1e-100), work(1e-30));
+            near > 0.0 && far.is_finite() && near < 1e-3 * far
         })
     }
 

@@ -144,8 +144,8 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
     }
 }
 
-/// Whether a limit cycle is one of leading terms that are not the leading ones: not letters make everything but the linear terms small, and
-/// quadratic terms that damp act on its amplitude as cubic ones do.
+/// Whether the terms from which a limit cycle begins are not the leading ones: no letter makes all but the linear terms small, and quadratic
+/// terms that damp act on the amplitude as cubic ones do.
 fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
     let marked = |note: &Note| matches!(note, Note::Cut(Cut::Truncated { marks: Some(_), .. }));
     solution.limit_cycle.is_some()

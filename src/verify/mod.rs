@@ -320,6 +320,8 @@ pub(crate) fn judge_to(
     let physics = Physics::new(oscillator, &meant, &numbers)?;
     let residual = motion
         .as_ref()
+        // A force that is infinite at rest is nothing but what the samples nearest to it find.
+        .filter(|_| physics.force_at(0.0, 0.0).is_finite())
         .map(|(frequency, motion)| residual(&physics, *frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let remark = found.as_ref().and_then(|found| found.remark.clone());

@@ -18,6 +18,9 @@ fn a_force_without_an_expansion_is_answered_and_the_answer_says_why_not_as_usual
         ("x'' + sgn(x) = 0", Method::Exact, "A = 1/2"),
         ("x'' + x^(1/3) = 0", Method::Exact, "A = 3"),
         ("x'' + x^3 = 0", Method::Exact, "A = 2"),
+        ("x'' + sgn(x)/abs(x)^(1/3) = 0", Method::Exact, "A = 2"),
+        ("x'' + c*x^(-1/5) = 0", Method::Exact, "A = 1/2, c = 3"),
+        ("x'' + c*sgn(x)*abs(x)^p = 0", Method::Exact, "A = 1, c = 3, p = -2/3"),
         ("x'' + k*sgn(x)*abs(x)^p = 0", Method::Exact, "A = 1, k = 2, p = 3/2"),
         ("x'' + x + sgn(x)*sqrt(abs(x)) = 0", Method::Hamiltonian, "A = 1"),
         ("x'' + x + H(x) = 0", Method::Exact, "A = 1"),
@@ -192,4 +195,24 @@ fn a_limit_cycle_in_a_well_is_the_unstable_one() {
     }
     let found = stays(drained / fed);
     assert!((found / half - 1.0).abs() < 1e-2, "{found} and {half}");
+}
+
+/// A force that is infinite at rest, and its potential is not: sgn(x)/|x|^(1/3) swings as 1/|x|^(1/3) of a fall that lasts
+/// int_0^A dx/sqrt(3 (A^(2/3) - x^(2/3))) = A^(2/3) pi sqrt(3)/4, a quarter of the period. (x = A sin(u)^3 makes an integral of sin^2 of it.)
+#[test]
+fn a_force_that_is_infinite_at_rest_swings_through() {
+    let solution = answered("x'' + sgn(x)/abs(x)^(1/3) = 0", &Options::default());
+    let law = &solution.law.closed_form().expect("a closed law").value;
+    for amplitude in [1e-3, 1.0, 7.0] {
+        let frequency = law.evaluate(&[("A".into(), amplitude)].into()).expect("a number");
+        let quarter = amplitude.powf(2.0 / 3.0) * std::f64::consts::PI * f64::sqrt(3.0) / 4.0;
+        let truth = std::f64::consts::FRAC_PI_2 / quarter;
+        assert!(
+            (frequency / truth - 1.0).abs() < 1e-14,
+            "{amplitude}: {frequency} and {truth}"
+        );
+    }
+    // The fall to a centre that pulls with 1/x, whose potential is infinite, is refused.
+    let oscillator = Oscillator::parse("x'' + 1/x = 0").expect("an oscillator");
+    assert!(solve(&oscillator, &Options::default()).is_err());
 }

@@ -10,6 +10,7 @@
 //! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
 //! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
 
+mod force;
 mod inverse;
 mod search;
 mod shift;
@@ -22,17 +23,16 @@ use crate::decimal::{rounded, rounded_to};
 use crate::exact::Rational;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
-use crate::exact::real_roots::sign_changing_part;
-use crate::expr::{CompiledFunction, Expr, Function, Node};
+use crate::expr::Expr;
 use crate::oscillator::corner::{beside_corners, near_rest};
-use crate::oscillator::{Equilibria, Oscillator, OscillatorError, Others};
+use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::solution::Definition;
-use crate::solution::note::{CornerSide, Position};
+use crate::solution::note::CornerSide;
 use crate::symbol::{Symbol, fresh};
-use inverse::inverted;
-use search::{Zero as SignChange, polynomial_zeros, zeros};
-use shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved, value_at};
+use force::Force;
+use search::Zero as SignChange;
+use shift::{moved, value_at};
 
 /// An equation of motion in the deviation from its equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,7 +119,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
             false => Err(force.unstable()),
         };
     }
-    if force.value.is_some() {
+    if force.is_numerical() {
         let stable = force.stable();
         let nearest = stable.iter().find(|found| found.reachable);
         return match (nearest, stable.is_empty()) {
@@ -245,7 +245,7 @@ pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorErro
     }
     let force = Force::new(&still, oscillator.coordinate);
     let found = force.stable_equilibria();
-    (force.value.is_none() && !found.positions.is_empty()).then(|| force.unstable())
+    (!force.is_numerical() && !found.positions.is_empty()).then(|| force.unstable())
 }
 
 /// Where an equilibrium is.
@@ -255,329 +255,6 @@ enum Place {
     Exact(Expr),
     /// By its number alone.
     Rounded(f64),
-}
-
-/// A force of the position alone.
-struct Force<'a> {
-    force: &'a Expr,
-    coordinate: Symbol,
-    /// The force as a function, where it has no parameters.
-    value: Option<CompiledFunction>,
-}
-
-impl<'a> Force<'a> {
-    fn new(force: &'a Expr, coordinate: Symbol) -> Self {
-        Self {
-            force,
-            coordinate,
-            value: CompiledFunction::new(force, &[coordinate]).ok(),
-        }
-    }
-
-    /// The force at rest, for messages; as it stands where it is too long to be written out.
-    fn at_rest<E>(&self, at_zero: &Result<Expr, E>) -> String {
-        let as_it_stands = || self.force.substitute(self.coordinate, &Expr::zero()).ok();
-        let at_zero = at_zero.as_ref().ok().cloned().or_else(as_it_stands);
-        at_zero.unwrap_or_else(|| self.force.clone()).to_string()
-    }
-
-    /// Numbers in place of the parameters to choose between closed forms: all about equal, small first; and one of them much smaller or
-    /// larger than the others, as the load may be.
-    fn samples(&self) -> Vec<BTreeMap<Symbol, f64>> {
-        let mut samples = [0.1, 0.01, 1.0, 0.001, 10.0].map(|scale| self.sample(scale)).to_vec();
-        let alike = self.sample(1.0);
-        for factor in [0.03, 30.0] {
-            let unlike = |name: &Symbol| {
-                let mut sample = alike.clone();
-                sample.entry(*name).and_modify(|value| *value *= factor);
-                sample
-            };
-            samples.extend(alike.keys().map(unlike));
-        }
-        samples
-    }
-
-    /// Numbers for the parameters, all about equal to `scale`.
-    fn sample(&self, scale: f64) -> BTreeMap<Symbol, f64> {
-        let parameters = self.force.symbols().into_iter().filter(|name| *name != self.coordinate);
-        let values = (1..).map(|k| scale * (1.0 + 0.03 * f64::from(k)));
-        parameters.zip(values).collect()
-    }
-
-    /// The force as a function with these numbers for its parameters.
-    fn at_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<impl Fn(f64) -> f64 + use<>> {
-        let names: Vec<Symbol> = std::iter::once(self.coordinate)
-            .chain(numbers.keys().copied())
-            .collect();
-        let function = CompiledFunction::new(self.force, &names).ok()?;
-        let numbers: Vec<f64> = numbers.values().copied().collect();
-        Some(move |x: f64| function.call(&[&[x], numbers.as_slice()].concat()))
-    }
-
-    /// Whether a force that has no value at zero goes to zero there, as `(1 - cos(x))/x` does.
-    fn vanishes_towards_zero(&self) -> bool {
-        let origin = [(self.coordinate, Rational::zero())];
-        if let Ok(parts) = taylor(self.force, &origin, 1) {
-            return parts.first().is_some_and(Expr::is_zero);
-        }
-        let Some(value) = self.at_numbers(&self.sample(1.0)) else {
-            return false;
-        };
-        [1.0, -1.0].into_iter().all(|side| {
-            let (near, far) = (value(side * 1e-100).abs(), value(side * 1e-30).abs());
-            far.is_finite() && near <= 1e-3 * far
-        })
-    }
-
-    /// Whether a force that is infinite at zero pulls towards it from both sides, as `sgn(x)/abs(x)^(1/3)` does, and so weakly that its
-    /// potential is finite there: the motion swings through.
-    fn pulls_without_bound(&self) -> bool {
-        let Some(value) = self.at_numbers(&self.sample(1.0)) else {
-            return false;
-        };
-        [1.0, -1.0].into_iter().all(|side| {
-            let work = |distance: f64| side * value(side * distance) * distance;
-            let (near, far) = (work(1e-100), work(1e-30));
-            near > 0.0 && far.is_finite() && near < 1e-3 * far
-        })
-    }
-
-    /// Whether the force, zero at `x = 0`, pulls back there; a parameter is given the benefit of the doubt.
-    fn is_stable_at_zero(&self) -> bool {
-        let origin = [(self.coordinate, Rational::zero())];
-        for degree in [1, 3, 5, 9, 15] {
-            let Ok(parts) = taylor(self.force, &origin, degree) else {
-                break;
-            };
-            let coefficient = |part: &Expr| part.substitute(self.coordinate, &Expr::one()).ok();
-            let lowest = parts.iter().enumerate().skip(1).find_map(|(power, part)| {
-                let coefficient = coefficient(part).filter(|coefficient| !is_nothing(coefficient))?;
-                Some((power, coefficient))
-            });
-            if let Some((power, coefficient)) = lowest {
-                let negative = coefficient.evaluate(&BTreeMap::new()).is_ok_and(|value| value < 0.0);
-                return power % 2 == 1 && !negative;
-            }
-        }
-        // Without a Taylor series, or flat: the first force that is felt on either side.
-        let Some(value) = &self.value else { return true };
-        let felt = |side: f64| {
-            let places = (-1200..1200).map(|k| side * 10_f64.powf(f64::from(k) / 40.0));
-            let mut forces = places.map(|x| value.call(&[x])).take_while(|force| force.is_finite());
-            forces.find(|force| *force != 0.0).unwrap_or(0.0)
-        };
-        felt(1.0) > 0.0 && felt(-1.0) < 0.0
-    }
-
-    /// All changes of sign of a force without parameters.
-    fn signs(&self) -> Vec<SignChange> {
-        /// Fractions grow with every division of the exact polynomials.
-        const LONGEST_EXACT: usize = 32;
-        let Some(function) = &self.value else { return vec![] };
-        let coefficients = coefficients(self.force, self.coordinate);
-        let numbers = coefficients.and_then(|coefficients| {
-            let exact: Option<Vec<Rational>> = coefficients.iter().map(|each| each.as_number().cloned()).collect();
-            // A multiple zero of rounded coefficients would be many zeros near it.
-            if let Some(exact) = exact.filter(|exact| exact.len() <= LONGEST_EXACT) {
-                return Some(sign_changing_part(&exact).iter().map(to_f64).collect());
-            }
-            let values = coefficients
-                .iter()
-                .map(|coefficient| coefficient.evaluate(&BTreeMap::new()).ok());
-            values.collect::<Option<Vec<f64>>>()
-        });
-        if let Some(numbers) = numbers {
-            return polynomial_zeros(&numbers);
-        }
-        let centres = linear_zeros(self.force, self.coordinate);
-        let centres: Vec<f64> = centres
-            .iter()
-            .filter_map(|zero| zero.evaluate(&BTreeMap::new()).ok())
-            .collect();
-        zeros(&|x| function.call(&[x]), &centres)
-    }
-
-    /// The stable equilibria, the nearest first; those that a pole hides only where there are no others.
-    fn stable(&self) -> Vec<SignChange> {
-        let mut found: Vec<SignChange> = self.signs().into_iter().filter(|found| found.stable).collect();
-        if found.iter().any(|found| found.reachable) {
-            found.retain(|found| found.reachable);
-        }
-        // Of two mirror images the positive one, though rounding may put it farther away.
-        found.sort_by(|a, b| {
-            let size = |found: &SignChange| found.position.abs() as f32;
-            size(a).total_cmp(&size(b)).then(b.position.total_cmp(&a.position))
-        });
-        found
-    }
-
-    /// A number with the closed form that belongs to it, where one is known.
-    fn exact_or_rounded(&self, position: f64) -> Place {
-        if let Some(exact) = exact_zero(self.force, self.coordinate, position) {
-            return Place::Exact(exact);
-        }
-        let belongs = |form: &Expr| {
-            let value = form.evaluate(&BTreeMap::new());
-            value.is_ok_and(|value| (value - position).abs() <= 1e-15 * position.abs())
-        };
-        let forms = closed_forms(self.force, self.coordinate);
-        let form = forms.into_iter().find(belongs);
-        form.map_or(Place::Rounded(position), Place::Exact)
-    }
-
-    /// What the equilibria of a force with parameters may be.
-    fn forms(&self) -> Vec<Expr> {
-        let forms = closed_forms(self.force, self.coordinate);
-        match forms.is_empty() {
-            true => inverted(self.force, self.coordinate),
-            false => forms,
-        }
-    }
-
-    /// The closed form of the stable equilibrium in the parameters, chosen where loads are small, and where no pole hides it if that
-    /// can be.
-    fn stable_closed_form(&self) -> Option<Place> {
-        let forms = self.forms();
-        let samples = self.samples();
-        let nearest = |hidden_too: bool| {
-            samples.iter().find_map(|sample| {
-                let mut stable = self.stable_at(&forms, sample);
-                stable.retain(|(position, _)| hidden_too || !self.is_hidden(*position, sample));
-                stable.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()).then(b.0.total_cmp(&a.0)));
-                stable.into_iter().next()
-            })
-        };
-        let (_, form) = nearest(false).or_else(|| nearest(true))?;
-        Some(Place::Exact(form))
-    }
-
-    /// Whether the force has no value somewhere between zero and a position, with these numbers for its parameters.
-    fn is_hidden(&self, position: f64, sample: &BTreeMap<Symbol, f64>) -> bool {
-        let Some(value) = self.at_numbers(sample) else {
-            return false;
-        };
-        let places = linear_zeros(self.force, self.coordinate);
-        let mut places = places.iter().filter_map(|place| place.evaluate(sample).ok());
-        places.any(|place| place / position > 0.0 && place / position < 1.0 && !value(place).is_finite())
-    }
-
-    /// The forms at which the force pulls back with these numbers for its parameters, and their values.
-    fn stable_at(&self, forms: &[Expr], sample: &BTreeMap<Symbol, f64>) -> Vec<(f64, Expr)> {
-        let Some(value) = self.at_numbers(sample) else {
-            return vec![];
-        };
-        let stable = |form: &Expr| {
-            let position = form.evaluate(sample).ok()?;
-            let step = 1e-6 * position.abs();
-            let (left, right) = (value(position - step), value(position + step));
-            (left < 0.0 && right > 0.0 && position != 0.0).then(|| (position, form.clone()))
-        };
-        forms.iter().filter_map(stable).collect()
-    }
-
-    /// The stable equilibrium in the parameters that has the value asked for whatever they are, however that is written.
-    fn stable_form_of(&self, asked: &Expr) -> Option<Expr> {
-        if self.value.is_some() {
-            return None;
-        }
-        let forms = self.forms();
-        let samples = self.samples();
-        let same = |form: &&Expr| {
-            let pairs = samples
-                .iter()
-                .filter_map(|sample| Some((form.evaluate(sample).ok()?, asked.evaluate(sample).ok()?)));
-            let pairs: Vec<(f64, f64)> = pairs.collect();
-            !pairs.is_empty()
-                && pairs
-                    .iter()
-                    .all(|(one, other)| (one - other).abs() <= 1e-12 * one.abs())
-        };
-        let form = forms.iter().find(same)?;
-        let is_stable = |sample| !self.stable_at(std::slice::from_ref(form), sample).is_empty();
-        samples.iter().any(is_stable).then(|| form.clone())
-    }
-
-    fn unstable(&self) -> OscillatorError {
-        OscillatorError::Unstable {
-            coordinate: self.coordinate,
-            stable: self.stable_equilibria(),
-        }
-    }
-
-    /// The stable equilibria: the nearest few, and the period with which they come back.
-    fn stable_equilibria(&self) -> Equilibria {
-        const MOST: usize = 4;
-        if self.value.is_none() {
-            let stable = self.stable_at(&self.forms(), &self.sample(1.0)).into_iter();
-            return Equilibria {
-                positions: stable.map(|(_, form)| Position::Exact(form)).collect(),
-                others: None,
-            };
-        }
-        let period = self.period();
-        let half = period
-            .as_ref()
-            .and_then(|period| period.evaluate(&BTreeMap::new()).ok());
-        let near = |position: &f64| half.is_none_or(|period| position.abs() <= 0.5 * period * (1.0 + 1e-9));
-        let mut positions: Vec<f64> = self.stable().into_iter().map(|found| found.position).collect();
-        positions.retain(near);
-        let more = positions.len() > MOST;
-        positions.truncate(MOST);
-        positions.sort_by(f64::total_cmp);
-        let named = |position: f64| match exact_zero(self.force, self.coordinate, position) {
-            Some(exact) if exact.to_string().len() <= 12 => Position::Exact(exact),
-            _ => Position::Number(position),
-        };
-        let others = match period {
-            Some(period) => Some(Others::Every(period)),
-            None => more.then_some(Others::FartherOut),
-        };
-        Equilibria {
-            others: others.filter(|_| !positions.is_empty()),
-            positions: positions.into_iter().map(named).collect(),
-        }
-    }
-
-    /// The period of a force of angles, by trying those of its sines and cosines.
-    fn period(&self) -> Option<Expr> {
-        let mut slopes: Vec<Rational> = Vec::new();
-        let collected = self.force.fold(|expr, _: &[()]| {
-            if let Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) = expr.node()
-                && let Some(slope) = arguments
-                    .first()
-                    .and_then(|angle| angle.differentiate(self.coordinate).ok())
-                && let Some(slope) = slope.as_number().filter(|slope| !slope.is_zero())
-            {
-                slopes.push(num_traits::Signed::abs(slope));
-            }
-            Ok::<(), std::convert::Infallible>(())
-        });
-        collected.ok()?;
-        slopes.sort();
-        let periods = slopes
-            .iter()
-            .map(|slope| Expr::from(2) * Expr::pi() * Expr::number(slope.recip()));
-        periods.into_iter().find(|period| {
-            let moved = moved(self.force, self.coordinate, period);
-            let difference = moved.and_then(|moved| (&moved - self.force).expand());
-            difference.is_ok_and(|difference| difference.is_zero())
-        })
-    }
-}
-
-/// Whether a coefficient is zero, or what rounding leaves of terms that cancel.
-fn is_nothing(coefficient: &Expr) -> bool {
-    let Ok(expanded) = coefficient.expand() else {
-        return false;
-    };
-    let values = expanded.terms().iter().map(|term| term.evaluate(&BTreeMap::new()));
-    let Ok(values) = values.collect::<Result<Vec<f64>, _>>() else {
-        return expanded.is_zero();
-    };
-    let (sum, size) = values
-        .iter()
-        .fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
-    f64::abs(sum) <= 1e-14 * size
 }
 
 /// The sides of corners on which there is no force at rest, where letters decide them; nothing where there is one all the same.

@@ -434,6 +434,15 @@ fn the_frequency_is_the_same_with_and_without_the_motion() {
     }
 }
 
+/// What a command prints whose time is up after a second: the warning says of how much it is a part.
+fn stopped_early(arguments: &[&str], of: &str) -> Value {
+    let output = run(&[arguments, &["--timeout", "1"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("stopped early") && message.contains(of), "{message}");
+    serde_json::from_slice(&output.stdout).expect("a document")
+}
+
 /// What is there when the time is up is printed: an expansion to the order that its primes were enough for.
 #[test]
 fn an_expansion_that_is_stopped_keeps_its_orders() {
@@ -446,14 +455,7 @@ fn an_expansion_that_is_stopped_keeps_its_orders() {
         "--format",
         "json",
     ];
-    let output = run(&[&long[..], &["--timeout", "1"]].concat());
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(4), "{message}");
-    assert!(
-        message.contains("stopped early") && message.contains("of 600"),
-        "{message}"
-    );
-    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    let document = stopped_early(&long, "of 600");
     let order = document["order"].as_u64().expect("an order");
     assert!((32..600).contains(&order), "{order}");
     let text = document["validity"].to_string();
@@ -481,14 +483,7 @@ fn a_sweep_that_is_stopped_keeps_its_motions() {
         "--format",
         "json",
     ];
-    let output = run(&[&sweep[..], &["--timeout", "1"]].concat());
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(4), "{message}");
-    assert!(
-        message.contains("stopped early") && message.contains("of 20001 motions"),
-        "{message}"
-    );
-    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    let document = stopped_early(&sweep, "of 20001 motions");
     let motions = document["motions"].as_array().expect("motions");
     assert!((1..20001).contains(&motions.len()), "{}", motions.len());
     // They are those that are followed alone.

@@ -20,7 +20,6 @@ mod spurious;
 mod sum;
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use num_traits::{One, Signed};
 
@@ -79,14 +78,13 @@ impl AmplitudeConvention {
             Self::FirstHarmonic => "a",
         })
     }
-}
 
-impl fmt::Display for AmplitudeConvention {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Initial => "A = x(0) - equilibrium, x'(0) = 0",
-            Self::FirstHarmonic => "a = amplitude of the first harmonic",
-        })
+    /// What the symbol is in a motion of this coordinate: `A = x(0) - equilibrium, x'(0) = 0`.
+    pub fn in_words(self, coordinate: Symbol) -> String {
+        match self {
+            Self::Initial => format!("A = {coordinate}(0) - equilibrium, {}(0) = 0", coordinate.derivative()),
+            Self::FirstHarmonic => "a = amplitude of the first harmonic".to_owned(),
+        }
     }
 }
 

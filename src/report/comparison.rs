@@ -48,7 +48,8 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     if !comparison.validity.is_empty() {
         sections.push(vec![Block::TrueMotion(&comparison.validity)]);
     }
-    let convention = comparison.rows.first().map(|row| row.solution.amplitude.to_string());
+    let answer = comparison.rows.first().map(|row| &row.solution);
+    let convention = answer.map(|answer| answer.amplitude.in_words(answer.coordinate()));
     let over = match comparison.rows.iter().any(|row| row.solution.slow().is_some()) {
         true => "all of that time, of the amplitude at the start",
         false => "one period, of the amplitude",

@@ -20,7 +20,7 @@ pub(super) fn driven<'a>(
 ) -> Document<'a> {
     let title = Block::Title {
         words: solution.title(),
-        amplitude: solution.amplitude,
+        amplitude: solution.amplitude.in_words(solution.coordinate()),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title]];
     if let Some(slow) = &solution.modulation {

@@ -46,7 +46,7 @@ use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
 use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
 use crate::solution::law::Shown;
-use crate::solution::{AmplitudeConvention, Definition, Solution, Sum};
+use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::comparison::{Refused, Row};
@@ -72,7 +72,7 @@ pub enum Block<'a> {
         /// The method and its order.
         words: String,
         /// The convention.
-        amplitude: AmplitudeConvention,
+        amplitude: String,
     },
     /// The beginning of a section, or a sentence of its own.
     Heading(String),

@@ -32,7 +32,7 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
     }
     let title = Block::Title {
         words: solution.title(),
-        amplitude: solution.amplitude,
+        amplitude: solution.amplitude.in_words(solution.coordinate()),
     };
     let shown = solution.law.shown();
     let laws = match solution.slow() {

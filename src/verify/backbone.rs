@@ -27,6 +27,9 @@ pub(super) struct TrueBackbone<'a> {
 /// How far beyond the amplitude asked for a motion without escape is looked at.
 const FARTHEST: f64 = 100.0;
 
+/// The same where each frequency is found step by step: what velocities add may grow without a bound.
+const FARTHEST_BY_STEPS: f64 = 2.0;
+
 /// Evaluations of the force that one true frequency may take, and all of them together: some seconds of work. A force that
 /// waves thousands of times along a motion is looked at less far.
 const MOST_FOR_ONE: f64 = 3e7;
@@ -55,7 +58,11 @@ impl<'a> TrueBackbone<'a> {
             .physics
             .as_ref()
             .map_or(0, |physics| physics.rest.evaluations());
-        backbone.times = (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST);
+        let by_energy = backbone.physics.as_ref().is_none_or(Physics::by_energy);
+        backbone.times = match by_energy {
+            true => (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST),
+            false => FARTHEST_BY_STEPS,
+        };
         let at_origin = meant.equilibrium.is_zero();
         let symmetric = at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
         backbone.places = backbone.reached_places(symmetric).unwrap_or_default();
@@ -92,11 +99,11 @@ impl<'a> TrueBackbone<'a> {
             return *known;
         }
         let affordable = |physics: &&Physics| physics.rest.evaluations() < MOST;
-        let found = self.physics.as_ref().filter(affordable).and_then(|physics| {
-            let start = physics.start(size.copysign(self.asked())).ok()?;
-            let period = physics.period(start).ok()?;
-            Some(std::f64::consts::TAU / period)
-        });
+        let found = self
+            .physics
+            .as_ref()
+            .filter(affordable)
+            .and_then(|physics| physics.frequency(size.copysign(self.asked())).ok());
         self.known.borrow_mut().insert(size.to_bits(), found);
         found
     }

@@ -39,7 +39,7 @@ pub struct Row {
     pub relative_error: Option<f64>,
     /// Largest deviation of the motion over one true period, over the amplitude.
     pub max_deviation: Option<f64>,
-    /// The range in which the frequency is within the tolerance.
+    /// The range in which the frequency is within the tolerance, of the amplitude of the table's first row.
     pub reach: Option<Reach>,
     /// The verdict on the frequency; `None` where the true one is not known.
     pub verdict: Option<Verdict>,
@@ -95,9 +95,9 @@ pub enum ComparisonError {
     /// No method applies, each for its reason; the message has that of the first.
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
-    /// A motion whose amplitude changes.
-    #[error("there is no curve of omega against the amplitude of a motion whose amplitude changes")]
-    NoBackbone,
+    /// No curve of omega against the amplitude: why not, in words.
+    #[error("there is no curve of omega against the amplitude: {0}")]
+    NoBackbone(&'static str),
     /// There is no true motion to compare with.
     #[error(transparent)]
     Verification(#[from] VerificationError),
@@ -392,7 +392,6 @@ fn row(
         .zip(true_motion)
         .and_then(|((frequency, motion), truth)| largest_deviation(truth, frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
-    let free = solution.limit_cycle.is_none() && solution.amplitude == AmplitudeConvention::Initial;
     Row {
         solution: solution.clone(),
         frequency,
@@ -400,10 +399,7 @@ fn row(
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
         relative_error,
         max_deviation,
-        reach: match free {
-            true => reach(oscillator, solution, truth, tolerance),
-            false => None,
-        },
+        reach: reach(oscillator, solution, truth, tolerance),
         verdict: true_motion.map(|_| Verdict::of(pass)),
     }
 }
@@ -435,10 +431,19 @@ pub fn backbones(
     const POINTS: usize = 120;
     let no_method = || ComparisonError::NoMethod(comparison.refused.clone());
     let first = &comparison.rows.first().ok_or_else(no_method)?.solution;
-    if first.slow().is_some() {
-        return Err(ComparisonError::NoBackbone);
+    let missing = if first.slow().is_some() {
+        Some("that of this motion changes; `derive --plot` draws it with its envelope")
+    } else if first.response.is_some() {
+        Some("this motion has the frequency of the drive; `response --plot` draws its amplitude against that")
+    } else if first.limit_cycle.is_some() {
+        Some("a limit cycle has one; `derive --plot` draws the motion")
+    } else {
+        None
+    };
+    if let Some(reason) = missing {
+        return Err(ComparisonError::NoBackbone(reason));
     }
-    let numbers = checked_numbers(first, &comparison.at)?;
+    let numbers = checked_numbers(first, &by_start(first, &comparison.at))?;
     let truth = validity::backbone(oscillator, first, &numbers);
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
     // To the escape, or to twice the amplitude asked for.

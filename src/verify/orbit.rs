@@ -252,6 +252,19 @@ impl Physics {
             .between_turning_points(start, |force, end| period_between(force, start, end))
     }
 
+    /// omega of the true motion that a formula of this amplitude means.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be followed.
+    pub(super) fn frequency(&self, amplitude: f64) -> Result<f64, VerificationError> {
+        let start = self.start(amplitude)?;
+        let period = match self.by_energy() {
+            true => self.period(start)?,
+            false => self.swing(start, self.longest)?.period(),
+        };
+        Ok(TAU / period)
+    }
+
     /// One swing by Runge-Kutta, in positions.
     fn swing(&self, start: f64, longest: f64) -> Result<Swing, PeriodError> {
         let end = match self.by_energy() {
@@ -341,8 +354,8 @@ pub(super) fn true_frequency(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, VerificationError> {
     let physics = Physics::new(oscillator, meant, numbers)?;
-    if physics.by_energy() && meant.convention == AmplitudeConvention::Initial {
-        return Ok(TAU / physics.period(physics.start(meant.amplitude_at(numbers))?)?);
+    match meant.limit_cycle {
+        Some(_) => TrueMotion::of(oscillator, meant, numbers).map(|truth| truth.frequency),
+        None => physics.frequency(meant.amplitude_at(numbers)),
     }
-    TrueMotion::of(oscillator, meant, numbers).map(|truth| truth.frequency)
 }

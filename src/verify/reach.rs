@@ -92,7 +92,9 @@ pub(super) fn reach(
     truth: &TrueBackbone,
     tolerance: f64,
 ) -> Option<Reach> {
-    if !oscillator.of_position_alone() {
+    // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve to follow.
+    let fixed = solution.limit_cycle.is_some() || solution.response.is_some() || solution.slow().is_some();
+    if fixed {
         return None;
     }
     let mut amplitudes = truth.amplitudes();

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 use lindstedt::Values;
+use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
 use lindstedt::numeric::period::PeriodError;
-use lindstedt::solution::{AmplitudeConvention, Method};
+use lindstedt::solution::Method;
 use lindstedt::verify::Reach;
-use lindstedt::verify::comparison::{Comparison, compare};
+use lindstedt::verify::comparison::{Comparison, backbones, compare};
 use lindstedt::verify::{Verdict, Verification, VerificationError, judge};
 use lindstedt::{Oscillator, Symbol};
 
@@ -208,10 +209,6 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
         let asked = table.at.get("A".into()).unwrap();
         let oscillator = Oscillator::parse(equation).unwrap();
         for row in &table.rows {
-            // A range of A, not of the amplitude of the first harmonic.
-            if row.solution.amplitude == AmplitudeConvention::FirstHarmonic {
-                continue;
-            }
             let reach = row.reach.unwrap();
             let good = row.relative_error.is_some_and(|error| error.abs() <= 0.01);
             assert_eq!(
@@ -228,11 +225,8 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
                     continue;
                 }
                 let mut at = Values::default();
-                at.insert(
-                    "A".into(),
-                    lindstedt::expr::Expr::number(lindstedt::exact::from_f64(size).unwrap()),
-                )
-                .unwrap();
+                at.insert("A".into(), Expr::number(lindstedt::exact::from_f64(size).unwrap()))
+                    .unwrap();
                 let Ok(motion) = exact_frequency(&oscillator, size) else {
                     continue;
                 };
@@ -248,6 +242,64 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
                     row.solution.title()
                 );
             }
+        }
+    }
+}
+
+/// omega of `x'' + x + x*x'^2 = 0`, whose velocity is `x'^2 = exp(A^2 - x^2) - 1`: the time over the angle `x = A*sin(angle)` by the
+/// midpoint rule, which is exact to rounding for a periodic integrand.
+fn with_velocity_squared(amplitude: f64) -> f64 {
+    const STEPS: u32 = 400;
+    let step = std::f64::consts::FRAC_PI_2 / f64::from(STEPS);
+    let time = |k: u32| {
+        let distance = amplitude * ((f64::from(k) + 0.5) * step).cos();
+        distance / (distance * distance).exp_m1().sqrt()
+    };
+    PI / (2.0 * step * (0..STEPS).map(time).sum::<f64>())
+}
+
+#[test]
+fn what_velocities_add_has_its_range_and_its_backbone() {
+    type Truth = dyn Fn(f64) -> f64;
+    let cases: [(&str, &str, &Truth); 2] = [
+        ("x'' + x + x*x'^2 = 0", "1", &with_velocity_squared),
+        // P. M. Mathews and M. Lakshmanan, Q. Appl. Math. 32 (1974) 215: omega^2 = 1/(1 + k*A^2).
+        ("(1 + x^2/2)*x'' - x*x'^2/2 + x = 0", "2/3", &|amplitude: f64| {
+            (1.0 + 0.5 * amplitude * amplitude).sqrt().recip()
+        }),
+    ];
+    for (equation, amplitude, truth) in cases {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let table = compared(equation, &[("A", amplitude)]);
+        let (true_curve, _) = backbones(&oscillator, &table).unwrap();
+        assert!(true_curve.points.len() > 100, "{equation}");
+        for (amplitude, frequency) in &true_curve.points {
+            let error = frequency / truth(*amplitude) - 1.0;
+            assert!(error.abs() < 1e-9, "{equation} at {amplitude}: {error}");
+        }
+        let asked = table.at.get("A".into()).unwrap();
+        for row in &table.rows {
+            let (title, reach) = (row.solution.title(), row.reach.unwrap());
+            assert_eq!(
+                !reach.ends_before(asked),
+                row.verdict == Some(Verdict::Pass),
+                "{equation} {title}"
+            );
+            let Reach::UpTo(end) = reach else { continue };
+            let (inside, outside) = (0.99 * end, 1.01 * end);
+            let error = |size: f64| {
+                let exact = Expr::number(lindstedt::exact::from_f64(size).unwrap());
+                let mut at = Values::default();
+                at.insert("A".into(), exact).unwrap();
+                let table = compare(&oscillator, &at, None, 0.01).unwrap();
+                let row = table.rows.iter().find(|row| row.solution.title() == title).unwrap();
+                row.frequency
+                    .map_or(f64::INFINITY, |frequency| frequency / truth(size) - 1.0)
+            };
+            assert!(
+                error(inside).abs() < 0.01 && error(outside).abs() > 0.01,
+                "{equation} {title}: {end}"
+            );
         }
     }
 }

@@ -69,7 +69,7 @@ pub struct ApplyingRow {
     pub relative_error: Option<f64>,
     /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
     pub max_deviation: Option<f64>,
-    /// The range of the amplitude in which the error stays within the tolerance; null where it is not known.
+    /// The range of the amplitude of the table's first row in which the error stays within the tolerance; null where it is not known.
     pub reach: Option<Reach>,
     /// Whether |relative_error| is within the tolerance; null where the true frequency is not known.
     #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null]))]

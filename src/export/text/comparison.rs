@@ -84,6 +84,8 @@ pub(super) fn true_motion(lines: &[String], width: usize) -> String {
 fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
     let within = format!("{} % up to", significant(100.0 * tolerance, 3));
     let header = ["method", "omega", "error", "deviation", "verdict", &within].map(str::to_owned);
+    // All rows start where the first one does, whatever their formulas measure.
+    let amplitude = rows.first().map(|first| first.row.solution.amplitude.symbol());
     let cells = |MethodRow { row, title, .. }: &MethodRow| {
         [
             title.clone(),
@@ -91,7 +93,7 @@ fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
             row.relative_error.map_or("-".to_owned(), percent),
             row.max_deviation.map_or("-".to_owned(), size_in_percent),
             row.verdict.map_or("-", Verdict::name).to_owned(),
-            reach(row.reach, row.solution.amplitude.symbol()),
+            reach(row.reach.zip(amplitude)),
         ]
     };
     std::iter::once(header).chain(rows.iter().map(cells)).collect()
@@ -188,11 +190,11 @@ fn formula(row: &MethodRow) -> String {
     row.row.solution.formula() + &value.unwrap_or_default()
 }
 
-fn reach(reach: Option<Reach>, amplitude: Symbol) -> String {
+fn reach(reach: Option<(Reach, Symbol)>) -> String {
     match reach {
         None => "-".to_owned(),
-        Some(Reach::Nowhere) => "nowhere".to_owned(),
-        Some(Reach::UpTo(end)) => format!("{amplitude} = {}", significant(end, 3)),
-        Some(Reach::Everywhere(searched)) => format!("past {amplitude} = {}", significant(searched, 3)),
+        Some((Reach::Nowhere, _)) => "nowhere".to_owned(),
+        Some((Reach::UpTo(end), amplitude)) => format!("{amplitude} = {}", significant(end, 3)),
+        Some((Reach::Everywhere(searched), amplitude)) => format!("past {amplitude} = {}", significant(searched, 3)),
     }
 }

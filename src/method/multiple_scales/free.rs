@@ -113,7 +113,7 @@ impl Free<'_> {
         // In powers of the amplitude nothing else tells where it stays.
         let steady = match self.scaling.marker {
             Some(_) => vec![],
-            None => transient::steady(self.names.amplitude, &amplitude_rate),
+            None => transient::steady(self.names.amplitude, &self.leading_amplitude_rate()),
         };
         Modulation {
             amplitude: self.names.amplitude,
@@ -127,6 +127,15 @@ impl Free<'_> {
             steady,
             motion: None,
         }
+    }
+
+    /// The rate of the amplitude to the lowest order at which it changes: where its terms balance, as in `mu*a/2 - a^3/8`, the damping
+    /// is as small as `a^2`, as it was taken to be. A term of higher order, as in `-zeta*a + 3*zeta*a^3/8`, balances it at an amplitude that
+    /// is not small, of which the expansion says nothing.
+    fn leading_amplitude_rate(&self) -> Expr {
+        let rate = &self.slow.amplitude;
+        let lowest = rate.exponent_range(self.names.marker).map_or(0, |(lowest, _)| lowest);
+        Expr::from(&self.written(&rate.truncated(self.names.marker, lowest)))
     }
 
     /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept beside it.

@@ -140,6 +140,31 @@ fn several_cycles_each_on_its_own() {
     }
 }
 
+/// In powers of the amplitude the rates are cut off: only terms of one order balance at an amplitude that is small.
+#[test]
+fn only_terms_of_one_order_let_a_motion_stay() {
+    for (equation, amplitude) in [
+        // -zeta*a + 3*zeta*a^3/8: nothing feeds it, and it dies away.
+        ("x'' + 2*zeta*x' + x + x^3 = 0", None),
+        ("x'' + 2*zeta*x' + x - x^3 = 0", None),
+        ("x'' + x'/10 + x + x^3 = 0", None),
+        ("x'' + 2*zeta*x' + sin(x) = 0", None),
+        // mu*a/2 - a^3/8 + mu*a^3/32: the cycle of van der Pol.
+        ("x'' - mu*x' + x^2*x' + sin(x) = 0", Some("2*sqrt(mu)")),
+        ("x'' + nu*x' - x'^3 + sin(x) = 0", Some("sqrt(4*nu/3)")),
+    ] {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let solution = solve(&oscillator, &options(4)).unwrap();
+        let modulation = solution.modulation.as_ref().unwrap();
+        let stays: Vec<String> = modulation
+            .steady
+            .iter()
+            .map(|cycle| cycle.amplitude.to_string())
+            .collect();
+        assert_eq!(stays, Vec::from_iter(amplitude), "{equation}");
+    }
+}
+
 #[test]
 fn refusals_name_what_is_in_the_way() {
     let refused = |equation: &str, order| {

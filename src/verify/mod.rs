@@ -326,7 +326,17 @@ pub(crate) fn judge_to(
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let remark = found.as_ref().and_then(|found| found.remark.clone());
     let remark = remark.map(|text| validity::Range { text, outside: false });
-    let symbols = symbol_values(oscillator, solution, &numbers, found.as_ref());
+    let mut symbols = symbol_values(oscillator, solution, &numbers, found.as_ref());
+    if let Some(cycle) = settled.as_ref().and_then(|settled| settled.limit_cycle.as_ref()) {
+        // The formulas are those of any amplitude: where the motion settles it is the cycle's, whatever it was at the start.
+        let size = solution.evaluate(&cycle.amplitude, &|symbol| numbers.get(&symbol).copied());
+        symbols
+            .values
+            .retain(|(name, _)| *name != AmplitudeConvention::Initial.symbol());
+        symbols
+            .values
+            .extend(size.ok().map(|size| (solution.amplitude.symbol(), size)));
+    }
     let ranged = extent == Extent::Range;
     let far = ranged.then(|| validity::ranges(oscillator, solution, &numbers, tolerance));
     let far = far.into_iter().flatten();

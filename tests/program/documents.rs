@@ -15,7 +15,7 @@ use lindstedt::export::json::{
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{AmplitudeConvention, Method};
-use lindstedt::verify::judge;
+use lindstedt::verify::{judge, motions};
 use lindstedt::{Oscillator, Symbol, Values};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -408,13 +408,14 @@ fn python() -> Option<PathBuf> {
     Some(String::from_utf8(output.stdout).ok()?.trim().into())
 }
 
-/// Numbers that the reader prints for a document, a list for each line. It sees the standard library alone.
-fn by_reader(python: &Path, folder: &Path, document: &Value, times: &[f64]) -> Vec<Vec<Value>> {
-    let reader = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/read_json.py");
+/// Numbers that a reader prints for a document, a list for each line. It sees the standard library alone.
+fn by_reader(reader: &str, python: &Path, folder: &Path, document: &Value, times: &[f64]) -> Vec<Vec<Value>> {
+    let reader = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(reader);
     let file = folder.join("document.json");
     std::fs::write(&file, document.to_string()).expect("the document is written");
     let output = Command::new(python)
-        .args(["-I", "-S", reader])
+        .args(["-I", "-S"])
+        .arg(reader)
         .arg(&file)
         .args(times.iter().map(f64::to_string))
         .output()
@@ -490,7 +491,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
                 .collect();
             let own = evaluate(&oscillator, &solution, &numbers).expect(&name);
             let (omega, motion) = (own.frequency_squared.sqrt(), own.motion.expect(&name));
-            let [line] = &by_reader(&python, &folder, &written, &times)[..] else {
+            let [line] = &by_reader("read_json.py", &python, &folder, &written, &times)[..] else {
                 panic!("{name}: one line");
             };
             assert!(near(&line[0], omega, omega), "{name}: omega {} and {omega}", line[0]);
@@ -518,7 +519,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         let middles: Vec<f64> = phases()
             .flat_map(|phase| [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start)))
             .collect();
-        let lines = by_reader(&python, &folder, &written, &middles);
+        let lines = by_reader("read_json.py", &python, &folder, &written, &middles);
         assert_eq!(lines.len(), phases().count(), "{}", file.display());
         assert_eq!(derived.len(), 3, "{}", file.display());
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
@@ -534,4 +535,95 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         }
     }
     std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
+    let lines = include_str!("../../examples/read_slow_json.py").lines().count();
+    assert!(lines <= 40, "{lines} lines");
+    let Some(python) = python() else {
+        eprintln!("python3 is not here: the reader was not run");
+        return;
+    };
+    let folder = std::env::temp_dir().join(format!("lindstedt-slow-reader-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for (equation, at, method) in [
+        ("x'' + 2*zeta*x' + x + x^3 = 0", "A = 1, zeta = 1/20", Method::Averaging),
+        (
+            "x'' + 2*zeta*x' + x + x^3 = 0",
+            "A = 1, zeta = 1/20",
+            Method::MultipleScales,
+        ),
+        (
+            "x'' + 2*zeta*x' + g*sin(x)/L = 0",
+            "A = 1, zeta = 1/20, g = 9.81, L = 2",
+            Method::MultipleScales,
+        ),
+        ("x'' + 2*zeta*x' + sin(x) = 0", "A = 1, zeta = 1/20", Method::Averaging),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", "A = 1, mu = 1/10", Method::Averaging),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(w*t)",
+            "F = 1/10, eps = 1/10, w = 9/10, zeta = 1/20",
+            Method::MultipleScales,
+        ),
+    ] {
+        let name = format!("{} on {equation} at {at}", method.name());
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let options = Options {
+            method: Some(method),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).expect(&name);
+        let values: Values = at.parse().expect("values");
+        let verification = judge(&oscillator, &solution, &values, 0.05).expect(&name);
+        let written = serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
+        let paths = motions(&oscillator, &solution, &values).expect(&name).expect(&name);
+        let samples = || {
+            (0..5)
+                .map(|k| k * (paths.formula.len() - 1) / 4)
+                .map(|index| (paths.formula[index], paths.truth[index]))
+        };
+        let times: Vec<f64> = samples().map(|(formula, _)| formula.0).collect();
+        let [line] = &by_reader("read_slow_json.py", &python, &folder, &written, &times)[..] else {
+            panic!("{name}: one line");
+        };
+        let size = paths.truth.iter().map(|sample| sample.1.abs()).fold(0.0, f64::max);
+        let deviation = verification.max_deviation.expect(&name);
+        for ((formula, truth), x) in samples().zip(line) {
+            let x = x.as_f64().expect("a number");
+            assert!(
+                (x - formula.1).abs() < 1e-7,
+                "{name}: x({}) {x} and {}",
+                formula.0,
+                formula.1
+            );
+            // The motion followed by steps is as far as the verdict says.
+            assert!(
+                (x - truth.1).abs() <= 1.01 * deviation * size,
+                "{name}: x({}) {x} and {}",
+                truth.0,
+                truth.1
+            );
+        }
+    }
+    std::fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn where_a_motion_settles_the_values_are_those_of_its_cycle() {
+    let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0").expect("an equation");
+    let options = Options {
+        method: Some(Method::Averaging),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).expect("an answer");
+    let verification = judge(&oscillator, &solution, &"mu = 1/10".parse().expect("values"), 0.01).expect("a verdict");
+    let value = |name: &str| {
+        verification
+            .values
+            .iter()
+            .find(|entry| entry.0 == Symbol::new(name))
+            .map(|entry| entry.1)
+    };
+    assert_eq!((value("a"), value("A")), (Some(2.0), None));
 }

@@ -477,6 +477,7 @@ impl Powers<'_> {
             factor: self.hill.factor.clone(),
             constant: self.hill.constant.clone(),
             frequency: self.hill.frequency.clone(),
+            highest_harmonic: self.hill.highest_harmonic,
         };
         let highest = i64::from(self.order) + 2;
         let power = Powers {

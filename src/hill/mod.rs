@@ -107,6 +107,8 @@ pub struct TransitionCurves {
     pub damping: Expr,
     /// All that stands before the coordinate.
     pub stiffness: Expr,
+    /// The highest harmonic of both, in halves of their frequency.
+    pub highest_harmonic: usize,
     /// The curves, those of tongue 0 first, the lower one of a pair before the upper one where all that is small is positive.
     pub curves: Vec<TransitionCurve>,
 }
@@ -246,6 +248,8 @@ struct Hill {
     constant: Polynomial,
     small: Vec<Symbol>,
     frequency: Frequency,
+    /// Of the coefficients, in halves of the frequency.
+    highest_harmonic: usize,
     /// `p` and `c` in `phi = Omega*t/2`, the parts of degree 1, 2, ... in what is small.
     graded: Vec<[FourierSeries<Polynomials>; 2]>,
 }
@@ -290,6 +294,7 @@ pub fn transition_curves(oscillator: &Oscillator, options: &Options) -> Result<T
         frequency: hill.frequency,
         damping,
         stiffness,
+        highest_harmonic: hill.highest_harmonic,
         curves,
     })
 }
@@ -413,6 +418,7 @@ impl Hill {
                 .collect(),
             small,
             frequency,
+            highest_harmonic: damping.highest_harmonic().max(stiffness.highest_harmonic()),
         })
     }
 }

@@ -26,8 +26,14 @@ use crate::values::Values;
 /// Harmonics beyond those that the coefficients ask for.
 const SPARE_HARMONICS: usize = 16;
 
+/// How many times a wave of the motion is taken on by the highest harmonic of the coefficients.
+const TIMES_TAKEN_ON: usize = 3;
+
 /// The most harmonics of the determinant.
-const MOST_HARMONICS: usize = 120;
+const MOST_HARMONICS: usize = 200;
+
+/// What a value of the determinant is good to, over the square of the frequency.
+const ROUNDING: f64 = 1e-12;
 
 /// How far the multiplier may miss its place, in the equation `1 -+ tr Phi + det Phi = 0` over the size of its terms.
 const MULTIPLIER_TOLERANCE: f64 = 1e-6;
@@ -44,7 +50,7 @@ pub struct JudgedCurve {
     pub value: Option<f64>,
     /// In truth; none where the tongue does not reach so far.
     pub truth: Option<f64>,
-    /// `value/truth - 1`; none where one of them is none or the truth is zero.
+    /// `value/truth - 1`; none where one of them is none or the truth alone is zero.
     pub relative_error: Option<f64>,
     /// Whether the formula is right to the tolerance: both none is right.
     pub passes: bool,
@@ -124,6 +130,7 @@ pub fn judge(curves: &TransitionCurves, at: &Values, tolerance: f64) -> Result<V
         let value = formula(curves, curve, &numbers);
         let truth = true_value(curves, curve, &numbers)?;
         let relative_error = match (value, truth) {
+            (Some(value), Some(truth)) if value == truth => Some(0.0),
             (Some(value), Some(truth)) if truth != 0.0 => Some((value - truth) / truth.abs()),
             _ => None,
         };
@@ -225,8 +232,12 @@ fn true_value(
                 .and_then(|slope| slope.evaluate(&with(0.0)).ok())
                 .ok_or(TruthError::Coefficients)?;
             let above = is_upper(curves, curve, numbers) == (slope > 0.0);
-            let mu = Coefficients::of(curves, &with(0.0))?.eigenvalue(curve, above)?;
-            mu.is_real.then_some(mu.value / slope)
+            let coefficients = Coefficients::of(curves, &with(0.0))?;
+            let mu = coefficients.eigenvalue(curve, above)?;
+            // What is nothing but rounding is zero.
+            let rounding = ROUNDING * coefficients.frequency.powi(2);
+            let mu = mu.is_real.then_some(mu.value);
+            mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope })
         }
         Unknown::Frequency(_) => frequency_without_remainder(curves, curve, &with)?,
     };
@@ -320,7 +331,8 @@ impl Coefficients {
         let largest = rough
             .iter()
             .fold(0.0_f64, |largest, [c, k]| largest.max(c * c).max(k.abs()));
-        let wanted = most as f64 + SPARE_HARMONICS as f64 + 4.0 * largest.sqrt() / frequency;
+        let spare = SPARE_HARMONICS.max(TIMES_TAKEN_ON * curves.highest_harmonic);
+        let wanted = (most + spare) as f64 + 4.0 * largest.sqrt() / frequency;
         if wanted > MOST_HARMONICS as f64 {
             return Err(TruthError::Coefficients);
         }

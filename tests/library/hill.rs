@@ -104,6 +104,28 @@ fn the_judge_knows_the_table_of_characteristic_values() {
     }
 }
 
+/// A determinant with too few waves to be taken on by the tenth harmonic has another a0; the expansion is right to order five.
+#[test]
+fn the_judge_sees_as_many_waves_as_the_coefficients_need() {
+    let derived = curves("x'' + (delta + eps*(cos(t) + cos(10*t)))*x = 0", 4, 3);
+    let judged = judge(&derived, &values(&[("eps", 0.1)]), 1e-4).expect("a judgement");
+    assert_eq!(judged.len(), 7);
+    assert!(judged.iter().all(|curve| curve.passes), "{judged:?}");
+}
+
+/// `(x' + eps*sin(t)*x)' = 0` has the motion `exp(eps*cos(t))`, whatever eps: its curve is delta = 0, and rounding is no error.
+#[test]
+fn a_curve_at_zero_is_judged() {
+    let derived = curves("x'' + eps*sin(t)*x' + (delta + eps*cos(t))*x = 0", 4, 1);
+    let judged = judge(&derived, &values(&[("eps", 0.3)]), 1e-2).expect("a judgement");
+    let first = &judged[0];
+    assert_eq!(
+        (first.value, first.truth, first.relative_error),
+        (Some(0.0), Some(0.0), Some(0.0))
+    );
+    assert!(judged.iter().all(|curve| curve.passes), "{judged:?}");
+}
+
 /// The error falls with the first power that is left out.
 #[test]
 fn errors_fall_with_the_order() {

@@ -1,5 +1,6 @@
 //! The document: what a problem file may hold, section by section, and the defaults of what it leaves out.
 
+use crate::symbol::Symbol;
 use std::collections::BTreeMap;
 
 use serde::de::Error as _;
@@ -65,6 +66,9 @@ pub struct Problem {
     /// The values that win over a key that says the same.
     #[serde(skip)]
     pub overriding: Vec<String>,
+    /// Letters of the energies that cancel in the equations of motion: their values are not passed on.
+    #[serde(skip)]
+    pub cancelled: Vec<Symbol>,
 }
 
 /// A whole number, or the degrees of an approximant: `order = 4`, `order = [2, 1]`.

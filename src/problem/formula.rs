@@ -76,7 +76,7 @@ impl Problem {
         })
     }
 
-    /// `[values]` as exact numbers: `1.5` is 3/2.
+    /// `[values]` as exact numbers: `1.5` is 3/2. Those of letters that cancel in the equations of a [lagrangian] are left out.
     ///
     /// # Errors
     /// A value that is neither a number nor an expression without symbols.
@@ -103,7 +103,11 @@ impl Problem {
                 name: name.clone(),
                 error: Box::new(error),
             };
-            values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
+            let value = parse_expression(&text).map_err(error)?;
+            let name = Symbol::new(name);
+            if !self.cancelled.contains(&name) {
+                values.insert(name, value)?;
+            }
         }
         Ok(values)
     }

@@ -145,6 +145,9 @@ impl Problem {
                 .check_units(units)
                 .map_err(MechanismFileError::from)?;
         }
+        // A mass that stands in all energies is a letter of the file whose value says nothing of the motion.
+        let cancels = |name: &Symbol| equations.left.iter().all(|left| !left.contains(*name));
+        self.cancelled = question.mechanism.parameters().into_iter().filter(cancels).collect();
         if let [left] = equations.left.as_slice() {
             self.equation = Some(format!("{left} = 0"));
         }

@@ -32,7 +32,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
     let oscillator = oscillator(&formula, arguments.about.as_deref())?;
-    let (oscillator, values) = with_known_equilibrium(oscillator, exact_values(&arguments.at, &problem)?)?;
+    let (oscillator, values) =
+        with_known_equilibrium(oscillator, exact_values(&arguments.at, problem.values_of_motion())?)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(formula.small);
     if small.is_some() {

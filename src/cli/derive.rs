@@ -10,7 +10,7 @@ use lindstedt::export::{json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal, Unsuited};
-use lindstedt::problem::{Formula, Order, Problem, Reader};
+use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
 use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
@@ -117,7 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .small_parameter(options.small.as_deref())
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
-    let values = exact_values(&arguments.at, &problem)?;
+    let values = exact_values(&arguments.at, problem.values_of_motion())?;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
@@ -421,7 +421,7 @@ fn methods_like(typed: &str) -> String {
 }
 
 /// The values of the command line, which win over those of the file; `None` where there are none at all.
-pub(super) fn exact_values(at: &[String], problem: &Problem) -> Result<Option<Values>, Failure> {
+pub(super) fn exact_values(at: &[String], file: Result<Values, ProblemError>) -> Result<Option<Values>, Failure> {
     let mut values = Values::default();
     for text in at {
         let Some((name, value)) = text.split_once('=') else {
@@ -447,9 +447,7 @@ pub(super) fn exact_values(at: &[String], problem: &Problem) -> Result<Option<Va
             .insert(name, value)
             .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
-    let file = problem
-        .exact_values()
-        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
     for (name, value) in file
         .iter()
         .filter(|(name, _)| values.get(*name).is_none())

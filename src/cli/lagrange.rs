@@ -48,7 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             (question, problem)
         }
     };
-    question.values = exact_values(&arguments.at, &problem)?.unwrap_or_default().numbers();
+    question.values = exact_values(&arguments.at, problem.exact_values())?
+        .unwrap_or_default()
+        .numbers();
     let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
     let text = match common.format {
         Format::Text => text::mechanism(&study, width(common.output.as_deref())),

@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (parameter, range) = range(vary)?;
     let question = Question {
         oscillator,
-        values: exact_values(&arguments.at, &problem)?.unwrap_or_default(),
+        values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
         range,
         // Slow equations are held against as many harmonics as it takes.

@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         solve_for: arguments.solve_for.clone(),
     };
     let curves = hill::transition_curves(&oscillator, &options).map_err(|error| refused(&oscillator.typed, &error))?;
-    let values = exact_values(&arguments.at, &problem)?;
+    let values = exact_values(&arguments.at, problem.values_of_motion())?;
     let asked = values.is_some() || arguments.common.tolerance.is_some();
     let values = values.unwrap_or_default();
     let tolerance = tolerance(&arguments.common);

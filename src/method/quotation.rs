@@ -56,9 +56,13 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
             }
             found => replace(term, found),
         },
+        Unsuited::Velocity { term } => {
+            // It may be the factor of the acceleration that brings the velocity in: then the term is shown over that.
+            let has_velocity = |found: &Quotation| found.words().contains(oscillator.velocity().name());
+            replace(term, typed(term, oscillator, centred).filter(has_velocity));
+        }
         Unsuited::Damping { term, .. }
         | Unsuited::Forcing { term }
-        | Unsuited::Velocity { term }
         | Unsuited::NoWave { term }
         | Unsuited::SecondDrive { term }
         | Unsuited::ResonanceWithoutDamping { term }

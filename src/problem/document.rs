@@ -66,7 +66,7 @@ pub struct Problem {
     /// The values that win over a key that says the same.
     #[serde(skip)]
     pub overriding: Vec<String>,
-    /// Letters of the energies that cancel in the equations of motion: their values are not passed on.
+    /// Letters of the energies that cancel in the equations of motion.
     #[serde(skip)]
     pub cancelled: Vec<Symbol>,
 }

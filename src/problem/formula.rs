@@ -76,7 +76,7 @@ impl Problem {
         })
     }
 
-    /// `[values]` as exact numbers: `1.5` is 3/2. Those of letters that cancel in the equations of a [lagrangian] are left out.
+    /// `[values]` as exact numbers: `1.5` is 3/2.
     ///
     /// # Errors
     /// A value that is neither a number nor an expression without symbols.
@@ -103,13 +103,27 @@ impl Problem {
                 name: name.clone(),
                 error: Box::new(error),
             };
-            let value = parse_expression(&text).map_err(error)?;
-            let name = Symbol::new(name);
-            if !self.cancelled.contains(&name) {
-                values.insert(name, value)?;
-            }
+            values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
         }
         Ok(values)
+    }
+
+    /// Those of [`Problem::exact_values`] that the equation of motion takes: not of a letter that stands in the energies of the file and
+    /// cancels, as a mass does.
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// ```
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let file: Problem = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"m*x'^2/2\"\npotential = \"m*g*x^2/2\"\n[values]\nm = 2\ng = 3".parse()?;
+    /// assert_eq!(file.values_of_motion()?.iter().count(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn values_of_motion(&self) -> Result<Values, ProblemError> {
+        let (_, others) = self.exact_values()?.split(&self.cancelled);
+        Ok(others)
     }
 }
 

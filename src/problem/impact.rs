@@ -260,7 +260,7 @@ impl Numbers {
             (format!("{coordinate}c"), "xc", "[pendulum] barrier"),
             ("gamma".to_owned(), "gamma", "[contact] gamma"),
         ];
-        let values = problem.exact_values()?;
+        let values = problem.values_of_motion()?;
         let own = letters.each_ref().map(|(name, ..)| Symbol::new(name));
         let own: Vec<Symbol> = own.into_iter().filter(|name| !parameters.contains(name)).collect();
         let (_, others) = values.split(&own);

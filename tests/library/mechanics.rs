@@ -489,7 +489,7 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
     let text = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"m*L^2*x'^2/2\"\npotential = \"m*g*L*(1 - cos(x))\"\n\
                 [values]\nm = 3\nL = 2\ng = 9.81\nk = 1";
     let file: Problem = text.parse().expect("a file");
-    let values = file.exact_values().expect("values");
+    let values = file.values_of_motion().expect("values");
     let names: Vec<&str> = values.iter().map(|(name, _)| name.name()).collect();
     // What stands nowhere is still passed on, to be refused by its name.
     assert_eq!(names, ["L", "g", "k"]);

@@ -49,9 +49,10 @@ impl SmallTerms {
             .iter()
             .partition(|term| is_linear(term) && first.is_none_or(|name| !term.contains(name)));
         let x = oscillator.coordinate;
-        let slopes = others.iter().filter(|term| !term.contains(oscillator.velocity()));
-        let slopes = slopes.filter_map(|term| {
-            let (beside, _) = near_rest(term, x).ok()?;
+        // As in x/sqrt(1 - x'^2), whose linear part restores.
+        let slopes = others.iter().filter_map(|term| {
+            let slow = term.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
+            let (beside, _) = near_rest(&slow, x).ok()?;
             let series = taylor(&beside, &[(x, Rational::zero())], 1).ok()?;
             series.get(1).cloned()
         });

@@ -468,6 +468,29 @@ fn damped_equations_are_averaged_by_default() {
     assert_eq!(refusal.expect_err("no closed form").term(), Some("tanh(x')"));
 }
 
+/// A force with the velocity in it restores where it does at rest; what is in the way is named with the velocity in it.
+#[test]
+fn a_force_that_the_velocity_changes_is_named() {
+    for (equation, method, term) in [
+        ("x'' + x/sqrt(1 - x'^2) = 0", Method::Averaging, "x/sqrt(1 - x'^2)"),
+        ("x'' + x*exp(x'^2) = 0", Method::Averaging, "x*exp(x'^2)"),
+        ("x''*(1 + x'^2) + x = 0", Method::EnergyBalance, "x/(1 + x'^2)"),
+        ("x'' + x/sqrt(1 - x'^2) = 0", Method::EnergyBalance, "x/sqrt(1 - x'^2)"),
+    ] {
+        let options = Options {
+            method: Some(method),
+            ..Options::default()
+        };
+        let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+        assert_eq!(refusal.term(), Some(term), "{refusal}");
+    }
+    // Its linear part is as small a difference as the polynomial says: x*(1 + x'^2)^2 = x + 2*x*x'^2 + x*x'^4.
+    assert_eq!(
+        slow("x'' + x*(1 + x'^2)^2 = 0", 1).phase_rate.to_string(),
+        "1 + a^2/4 + a^4/16"
+    );
+}
+
 /// The table of `docs/averaging.md` is what comes out.
 #[test]
 fn the_table_of_the_documentation_is_what_comes_out() {

@@ -46,7 +46,7 @@ impl Coding {
                 let number = |bits: &[f64]| bits.iter().fold(0.0, |sum, bit| 2.0 * sum + bit);
                 let largest = (f64::from(bits)).exp2() - 1.0;
                 let parts: Vec<f64> = genes
-                    .chunks(bits as usize)
+                    .chunks(bits.max(1) as usize)
                     .map(|genes| number(genes) / largest)
                     .collect();
                 space.at(&parts)

@@ -58,10 +58,11 @@ pub fn scattered(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f6
 
 /// The genes up to a random place from one parent, those after it from the other; some from both where there are two or more.
 pub fn one_point(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f64> {
-    if one.len() < 2 {
+    let shared = one.len().min(other.len());
+    if shared < 2 {
         return one.to_vec();
     }
-    let place = generator.random_range(1..one.len());
+    let place = generator.random_range(1..shared);
     one[..place].iter().chain(&other[place..]).copied().collect()
 }
 

@@ -74,9 +74,10 @@ pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
 /// whole range; infinite at the ends.
 pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
     let mut distance = vec![0.0; all.len()];
-    let values = all.first().map_or(0, |first| first.objectives.len());
+    let values = all.iter().map(|each| each.objectives.len()).max().unwrap_or(0);
     for value in 0..values {
-        let of = |index: usize| all[index].objectives[value];
+        // What is not there is as bad as can be.
+        let of = |index: usize| all[index].objectives.get(value).copied().unwrap_or(f64::INFINITY);
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|one, other| of(*one).total_cmp(&of(*other)));
         let (Some(&first), Some(&last)) = (order.first(), order.last()) else {

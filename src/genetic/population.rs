@@ -210,14 +210,16 @@ impl Options {
     /// ```
     pub fn children(&self) -> (usize, usize) {
         let all = self.population.saturating_sub(self.elite);
-        let crossed = (self.crossover_fraction * all as f64).round() as usize;
-        (crossed, all - crossed.min(all))
+        let crossed = ((self.crossover_fraction * all as f64).round() as usize).min(all);
+        (crossed, all - crossed)
     }
 
     /// The most evaluations of one run.
     pub fn most_evaluations(&self) -> usize {
         let (crossed, mutated) = self.children();
-        let all = self.population + self.generations.saturating_mul(crossed + mutated);
+        let all = self
+            .population
+            .saturating_add(self.generations.saturating_mul(crossed + mutated));
         self.budget.map_or(all, |budget| budget.min(all))
     }
 }
@@ -387,7 +389,8 @@ fn children(
 ) -> Vec<Vec<f64>> {
     let (crossed, mutated) = options.children();
     let mut children: Vec<Vec<f64>> = Vec::with_capacity(crossed + mutated);
-    let (pairs, alone) = parents.split_at(2 * crossed);
+    // Fewer where no score is a number.
+    let (pairs, alone) = parents.split_at(parents.len().min(2 * crossed));
     for pair in pairs.chunks_exact(2) {
         let (one, other) = (&population[pair[0]].genes, &population[pair[1]].genes);
         children.push(match options.crossover {

@@ -66,9 +66,9 @@ pub fn has_stalled(best: &[f64], window: usize, tolerance: f64, test: StallTest)
     // The random population is no generation.
     let generations = best.get(1..).unwrap_or_default();
     let (Some(first), Some(last)) = (
-        generations
-            .len()
-            .checked_sub(window + 1)
+        window
+            .checked_add(1)
+            .and_then(|back| generations.len().checked_sub(back))
             .map(|index| generations[index]),
         generations.last(),
     ) else {

@@ -14,6 +14,7 @@ mod fuzz;
 mod high_orders;
 mod hill;
 mod homotopy;
+mod hostile;
 mod inertia;
 mod judge;
 mod layers;

@@ -166,6 +166,9 @@ impl Asked<'_> {
 
     /// Whether the drive reaches the motion at a resonance.
     pub(in crate::method) fn reaches(&self, resonance: (u32, u32), scaling: &Scaling) -> bool {
+        if !is_ratio(resonance) {
+            return false;
+        }
         let Ok(question) = Question::new(self, scaling, resonance) else {
             return false;
         };
@@ -209,6 +212,9 @@ impl Asked<'_> {
 
     /// The answer at a resonance; `None` where the drive does not reach the motion there.
     pub(in crate::method) fn at(&self, resonance: (u32, u32), scaling: &Scaling) -> Result<Option<Solution>, Refusal> {
+        if !is_ratio(resonance) {
+            return Ok(None);
+        }
         let question = Question::new(self, scaling, resonance)?;
         let expansion = question.expand(false)?;
         let slow = Slow::new(&expansion, &question);
@@ -223,6 +229,11 @@ impl Asked<'_> {
         };
         question.answer(&found).map(Some)
     }
+}
+
+/// Whether it is a ratio of frequencies: neither is zero.
+fn is_ratio((p, q): (u32, u32)) -> bool {
+    p > 0 && q > 0
 }
 
 /// Whether a linear force without damping is driven at its own frequency.

@@ -9,7 +9,7 @@
 //!
 //! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as expressions, or `None` where a term
 //! has no closed form here: the methods fall back on quadrature and say so. With numbers for all symbols out goes a [`Force`], which
-//! has a value, a slope and a turning point as near to rest as one likes, and knows where it turns fast.
+//! has a value, a slope and a turning point as near to rest as one likes, and knows where it turns fast; its [well](well::Well) has ends.
 
 pub(crate) mod features;
 pub(crate) mod force;
@@ -18,6 +18,7 @@ pub(crate) mod parity;
 pub(crate) mod potential;
 pub(crate) mod power;
 pub(crate) mod projection;
+pub(crate) mod well;
 
 pub use force::Force;
 pub use parity::is_odd;

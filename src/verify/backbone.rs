@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use super::orbit::{Meant, Physics};
-use super::well::Well;
 use crate::conservative::is_odd;
+use crate::conservative::well::Well;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;

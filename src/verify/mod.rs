@@ -28,13 +28,13 @@ mod slow_motion;
 mod smaller;
 mod transient;
 pub(crate) mod validity;
-pub(crate) mod well;
 
 pub use convergence::{Singularity, converges, nearest_singularity};
 pub use driven::JudgedState;
 pub use transient::Followed;
 pub use validity::{Range, Reach};
-pub use well::{End, Well};
+
+pub use crate::conservative::well::{End, Rim, Well};
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

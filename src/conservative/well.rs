@@ -9,7 +9,7 @@
 //!
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
-use crate::conservative::force::Force;
+use super::force::Force;
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::root::find_root;

@@ -260,8 +260,7 @@ fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
     ];
     if creep.creeps {
         blocks.push(Block::Note(
-            "formula: sin(pi*x/(2*alpha)) = sin(pi*x0/(2*alpha))*exp(-pi*t/(200*alpha)), without inertia, sin(x) ~ x"
-                .to_owned(),
+            "formula: without inertia y = sin(pi*sin(x)/(2*alpha)) falls as y' = -pi*cos(x)/(200*alpha)*y".to_owned(),
         ));
     }
     blocks

@@ -110,11 +110,63 @@ fn coulomb_stops_and_the_arctangent_creeps_at_the_rate_of_its_linear_equation() 
         let last = creep.samples.last().expect("a sample");
         assert!(last.x.abs() < 0.01 * stop.x.abs(), "{alpha}: {last:?}");
     }
-    // With much damping inertia does not count, and with little way neither does the sine.
-    let creep = with(0.2).near_rest.creep;
-    for sample in &creep.samples[2..4] {
-        let formula = sample.formula.expect("a creep");
-        assert!((sample.x / formula - 1.0).abs() < 0.02, "{sample:?}");
+}
+
+/// With much damping inertia does not count, and the formula is the motion, also where sin x is far from x and |x| above alpha.
+#[test]
+fn a_strong_creep_is_its_formula() {
+    for alpha in [0.8, 0.9, 0.95] {
+        let near_rest = with(alpha).near_rest;
+        let creep = &near_rest.creep;
+        let model = Model {
+            alpha,
+            friction: Friction::Arctangent,
+            right: None,
+            ..Model::default()
+        };
+        let start = Start {
+            x: near_rest.stop.x,
+            velocity: 0.0,
+        };
+        let settings = Settings {
+            duration: creep.motion.end_time,
+            ..Settings::default()
+        };
+        let judged = simulate(&model, start, Integrator::RungeKutta, &settings).expect("a motion");
+        for sample in &creep.samples {
+            let (x, _) = judged.path.at(sample.t).expect("a state");
+            let formula = sample.formula.expect("a creep");
+            // The rate of the linear equation is 1/c^2 above that without inertia, eight times 3e-4 at the end.
+            assert!((formula / x - 1.0).abs() < 4e-3, "{alpha}: {formula} {x}");
+            assert_eq!(creep.formula(sample.t), sample.formula);
+        }
+        let first = creep.samples[0].formula.expect("a creep");
+        assert!((first - near_rest.stop.x).abs() < 1e-12, "{alpha}: {first}");
+    }
+    assert_eq!(with(0.02).near_rest.creep.formula(1.0), None);
+}
+
+/// Where Coulomb's law holds the pendulum above a tenth of the first swing, the arctangent still comes to rest: as another integrator says.
+#[test]
+fn a_strong_friction_has_a_rest_time_by_the_arctangent() {
+    for alpha in [0.8, 0.9, 0.95] {
+        let times = with(alpha).near_rest.rest_times;
+        assert!(
+            times.coulomb.is_err() && times.difference().is_none(),
+            "{alpha}: {times:?}"
+        );
+        let model = Model {
+            alpha,
+            friction: Friction::Arctangent,
+            ..Model::default()
+        };
+        let settings = Settings {
+            duration: 200.0,
+            ..Settings::default()
+        };
+        let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings).expect("a motion");
+        let (found, truth) = (times.arctangent.expect("a rest"), judged.rest().time.expect("a rest"));
+        assert!((found / truth - 1.0).abs() < 1e-6, "{alpha}: {found} {truth}");
     }
 }
 

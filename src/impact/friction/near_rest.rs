@@ -4,7 +4,7 @@
 //! c     = alpha (2/pi) 100                                  the damping of equation (6) near rest, x'' + c x' + x = 0
 //! rate  = (c - sqrt(c^2 - 4))/2                             its slow motion where c > 2, and c/2 where it swings
 //! rate ~ pi/(200 alpha)                                     for c far above 2
-//! sin(pi x/(2 alpha)) = sin(pi x_0/(2 alpha)) e^(-rate t)   from rest at x_0, x'' left out: alpha (2/pi) atan(100 x') = -x
+//! y = sin(pi sin(x)/(2 alpha)),  y' = -pi cos(x)/(200 alpha) y   x'' left out: alpha (2/pi) atan(100 x') = -sin x
 //! W/W_C = (sqrt(1 + k^2) - 1)/k                             the work of a harmonic swing of speed V = k/100 over Coulomb's
 //! ```
 //!
@@ -17,6 +17,7 @@ use super::FrictionError;
 use crate::impact::model::{Friction, Model, STEEPNESS, Start};
 use crate::impact::simulate::simulate;
 use crate::impact::simulation::{Integrator, NoRest, Regime, Settings, Simulation, Stop, Turn};
+use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 
 /// The first cycle by the arctangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,15 +62,15 @@ pub struct Creep {
     pub rate: Option<f64>,
     /// Some states.
     pub samples: Vec<CreepSample>,
+    without_inertia: Option<WithoutInertia>,
     /// The motion.
     pub motion: Simulation,
 }
 
 impl Creep {
-    /// The place by the formula of the creep, this long after rest, rad; nothing where it swings.
+    /// The place by the formula of the creep, this long after rest, rad, up to the end of the motion; nothing where it swings.
     pub fn formula(&self, t: f64) -> Option<f64> {
-        let (alpha, x) = (self.motion.model.alpha, self.motion.start.x);
-        self.creeps.then(|| crept(alpha, x, t))
+        self.without_inertia.as_ref()?.at(t)
     }
 }
 
@@ -199,7 +200,7 @@ pub(super) fn near_rest(alpha: f64, amplitude: f64) -> Result<NearRest, Friction
         half_swings,
         meanwhile: [x, velocity],
         first_cycle: first_cycle(&arctangent),
-        rest_times: rest_times(alpha, amplitude, stop.t)?,
+        rest_times: rest_times(alpha, amplitude, stop.t, creep.motion.end_time)?,
         creep,
         motions: [coulomb, arctangent],
     })
@@ -243,6 +244,10 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
         [0.0, 1.0, 2.0, 3.0].map(|number| at(8.0 / rate_linear + number * step)),
         step,
     );
+    let without_inertia = match creeps {
+        true => Some(WithoutInertia::from_rest(alpha, x, duration)?),
+        false => None,
+    };
     let samples = [0.0, 0.5, 1.0, 2.0, 4.0, 8.0].map(|part| part / rate_linear);
     Ok(Creep {
         damping,
@@ -254,9 +259,10 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
             .map(|t| CreepSample {
                 t,
                 x: at(t),
-                formula: creeps.then(|| crept(alpha, x, t)),
+                formula: without_inertia.as_ref().and_then(|creep| creep.at(t)),
             })
             .into(),
+        without_inertia,
         motion,
     })
 }
@@ -279,25 +285,65 @@ fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     Some(-decay.ln() / step).filter(|rate| rate.is_finite())
 }
 
-/// The creep without inertia from rest at x, after this time: sin(pi x/(2 alpha)) dies at the rate pi/(200 alpha).
-fn crept(alpha: f64, x: f64, t: f64) -> f64 {
-    let rate = 0.5 * PI / (STEEPNESS * alpha);
-    FRAC_2_PI * alpha * ((0.5 * PI * x / alpha).sin() * (-rate * t).exp()).asin()
+/// The creep without inertia: alpha (2/pi) atan(100 x') = -sin x, where friction bears the whole weight.
+#[derive(Debug, Clone)]
+struct WithoutInertia {
+    alpha: f64,
+    /// Which side of zero it is on, 1 or -1.
+    side: f64,
+    /// log y, y = sin(pi |sin x|/(2 alpha)), which falls at the rate pi cos(x)/(200 alpha).
+    logarithm: Trajectory<Point<[f64; 1]>>,
 }
 
-/// On the paper's damper; as long as it takes four times to stop the swing without a barrier.
-fn rest_times(alpha: f64, amplitude: f64, stop: f64) -> Result<RestTimes, FrictionError> {
-    let rest = |friction| {
+impl WithoutInertia {
+    /// From rest at a place where friction holds, |sin x| <= alpha.
+    fn from_rest(alpha: f64, x: f64, duration: f64) -> Result<Self, FrictionError> {
+        const TOLERANCE: f64 = 1e-10;
+        let rate = 0.5 * PI / (STEEPNESS * alpha);
+        let start = Point {
+            t: 0.0,
+            y: [(0.5 * PI * (x.abs().sin() / alpha).min(1.0)).sin().ln()],
+        };
+        let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| *rates = [-rate * place(alpha, *log).cos()];
+        let options = Options::with_tolerance(TOLERANCE);
+        let logarithm = integrate_first_order(falls, start, duration, &[], &options);
+        Ok(Self {
+            alpha,
+            side: x.signum(),
+            logarithm: logarithm.map_err(|_| FrictionError::Restless(alpha))?,
+        })
+    }
+
+    /// The place after this time, rad.
+    fn at(&self, t: f64) -> Option<f64> {
+        let [log] = self.logarithm.state_at(t)?.y;
+        Some(self.side * place(self.alpha, log))
+    }
+}
+
+/// |x| of the creep without inertia from log y.
+fn place(alpha: f64, log: f64) -> f64 {
+    (FRAC_2_PI * alpha * log.exp().min(1.0).asin()).asin()
+}
+
+/// On the paper's damper; as long as it takes four times to stop the swing without a barrier, and, by the arctangent, until it has
+/// crept from there to nothing, `creep` later.
+fn rest_times(alpha: f64, amplitude: f64, stop: f64, creep: f64) -> Result<RestTimes, FrictionError> {
+    let rest = |friction, creep: f64| {
         let model = Model {
             alpha,
             friction,
             ..Model::default()
         };
-        Ok::<_, FrictionError>(followed(&model, -amplitude, (4.0 * stop).max(50.0))?.rest().time)
+        Ok::<_, FrictionError>(
+            followed(&model, -amplitude, (4.0 * stop).max(50.0) + creep)?
+                .rest()
+                .time,
+        )
     };
     Ok(RestTimes {
-        coulomb: rest(Friction::Exact)?,
-        arctangent: rest(Friction::Arctangent)?,
+        coulomb: rest(Friction::Exact, 0.0)?,
+        arctangent: rest(Friction::Arctangent, creep)?,
     })
 }
 
@@ -332,15 +378,23 @@ mod tests {
         }
     }
 
-    /// The formula of the creep solves its equation, alpha (2/pi) atan(100 x') = -x.
+    /// The formula of the creep solves its equation, alpha (2/pi) atan(100 x') = -sin x, also from beyond |x| = alpha.
     #[test]
     fn the_creep_solves_its_equation() {
-        let (alpha, start, step) = (0.3, 0.2, 1e-4);
-        assert!((crept(alpha, start, 0.0) - start).abs() < 1e-15);
-        for t in [0.5, 5.0, 40.0] {
-            let velocity = (crept(alpha, start, t + step) - crept(alpha, start, t - step)) / (2.0 * step);
-            let force = alpha * FRAC_2_PI * (STEEPNESS * velocity).atan();
-            assert!((force + crept(alpha, start, t)).abs() < 1e-8, "{t}");
+        for (alpha, start) in [(0.3, 0.2), (0.95, -1.058), (0.8, -0.479), (0.5, 0.5_f64.asin())] {
+            let creep = WithoutInertia::from_rest(alpha, start, 100.0).expect("a creep");
+            let at = |t: f64| creep.at(t).expect("a place");
+            assert!((at(0.0) - start).abs() < 1e-13, "{alpha}: {}", at(0.0));
+            let step = 1e-3;
+            for t in [0.5, 5.0, 40.0] {
+                let velocity = (at(t + step) - at(t - step)) / (2.0 * step);
+                let force = alpha * FRAC_2_PI * (STEEPNESS * velocity).atan();
+                assert!(
+                    (force + at(t).sin()).abs() < 1e-6,
+                    "{alpha}, {t}: {force} {}",
+                    at(t).sin()
+                );
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 //! equilibrium, so that nothing is lost near rest. What lies between the turning points is integrated by who asks for it.
 
 use super::force::Force;
+use super::well::Well;
 use crate::numeric::ode::energy::{self, PeriodError};
 
 impl Force {
@@ -47,5 +48,32 @@ impl Force {
             Err(error) => Err(error),
         };
         found.map_err(|error| error.moved(self.equilibrium()))
+    }
+
+    /// Why a motion released at the distance `start` has no period, where a search or a quadrature has failed with `error`: at the
+    /// separatrix that ends the well neither knows what it met. It takes a search for the rims of the well, so this is for messages.
+    pub(crate) fn why_no_period(&self, start: f64, error: PeriodError) -> PeriodError {
+        /// As near to the end of the well, relatively, as its place is known.
+        const ON: f64 = 1e-13;
+        /// So near the time that the motion takes is a quadrature of rounding.
+        const NEAR: f64 = 1e-6;
+        let lost = matches!(error, PeriodError::Quadrature(_) | PeriodError::Root(_));
+        let gone = matches!(
+            error,
+            PeriodError::PushedAway { .. } | PeriodError::OtherWell { .. } | PeriodError::Escapes { .. }
+        );
+        if !lost && !gone {
+            return error;
+        }
+        let end = Well::new(self, start).and_then(|well| well.on_side(start));
+        let Some(end) = end.filter(|end| end.rim.separatrix) else {
+            return error;
+        };
+        let (place, start) = (end.rim.place, self.equilibrium() + start);
+        match ((start - self.equilibrium()) / end.amplitude - 1.0).abs() {
+            short if short <= ON => PeriodError::Separatrix { start, place },
+            short if short <= NEAR && lost => PeriodError::NearSeparatrix { start, place },
+            _ => error,
+        }
     }
 }

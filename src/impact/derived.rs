@@ -70,7 +70,10 @@ pub enum NoFlight {
         to: f64,
     },
     /// The derived motion does not start at the release.
-    #[error("the derived motion starts at {start}, not at the release {release}")]
+    #[error(
+        "the derived motion starts at {start}, not at the release {release}: it has too few harmonics there, as next to a separatrix, \
+         where a motion all but stops; lower the amplitude, or follow it by `lindstedt simulate`"
+    )]
     Start {
         /// Where it starts.
         start: f64,

@@ -397,7 +397,9 @@ fn frequency_squared(
     if is_exact(solution) {
         // The law itself says nothing of whether the motion comes back.
         let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-        force.turning_point(amplitude_of(solution, numbers))?;
+        let start = amplitude_of(solution, numbers);
+        let turns = force.turning_point(start);
+        turns.map_err(|error| force.why_no_period(start, error))?;
     }
     // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
     let sized = by_size(solution) && (!is_exact(solution) || odd_equation(oscillator));
@@ -432,11 +434,16 @@ fn frequency_squared(
         let mut names = solution.definitions.iter().map(|definition| definition.symbol);
         names.find(|name| *name == missing)
     };
+    // What the exact motion is refused for is said rather than that its formula has no value.
+    let no_motion = || match is_exact(solution) {
+        true => exact_motion(oscillator, solution, numbers, known).err(),
+        false => None,
+    };
     let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
         match (undefined(), overflow(oscillator, solution, numbers, known)) {
             (_, Some(error)) => error,
             (Some(name), _) => NoNumbers::Undefined { name },
-            (None, _) => NoNumbers::NoValue,
+            (None, _) => no_motion().unwrap_or(NoNumbers::NoValue),
         }
     })?;
     Ok((value, rounding))
@@ -793,7 +800,9 @@ fn exact_motion(
     known: &Known,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-    let (period, cosine) = motion_about(&force, amplitude_of(solution, numbers))?;
+    let start = amplitude_of(solution, numbers);
+    let found = motion_about(&force, start);
+    let (period, cosine) = found.map_err(|error| force.why_no_period(start, error))?;
     let frequency = std::f64::consts::TAU / period;
     Ok((
         frequency * frequency,

@@ -195,6 +195,7 @@ impl VerificationError {
             Self::Period(error) => matches!(
                 error,
                 PeriodError::Waves
+                    | PeriodError::NearSeparatrix { .. }
                     | PeriodError::NoReturn(_)
                     | PeriodError::Pole { .. }
                     | PeriodError::Overflow { .. }

@@ -104,7 +104,8 @@ impl TrueMotion {
         let start = physics.start(meant.amplitude_at(numbers))?;
         if physics.by_energy() && meant.convention == AmplitudeConvention::Initial {
             // The energy knows first whether there is an orbit at all, and says why not.
-            let period = physics.period(start)?;
+            let period = physics.period(start);
+            let period = period.map_err(|error| physics.rest.why_no_period(start, error))?;
             let path = physics.swing(start, 2.0 * period).ok();
             let path = path.filter(|path| (path.period() / period - 1.0).abs() < AGREEMENT);
             return Ok(Self {

@@ -322,6 +322,59 @@ fn numbers_choose_the_equilibrium() {
     assert_eq!(solution.equilibrium.to_string(), "-3/8");
 }
 
+/// On the separatrix there is no period, whichever rim of the well it passes and whatever a quadrature meets there; next to it rounding
+/// decides; farther away nothing changes.
+#[test]
+fn a_release_on_the_separatrix_is_named() {
+    let at = |amplitude: &str| {
+        let mut at = Values::default();
+        at.insert("A".into(), amplitude.parse().unwrap()).unwrap();
+        at
+    };
+    let reason = |equation: &Oscillator, method: Method, amplitude: &str| {
+        let solution = by(equation, method).unwrap();
+        judge(equation, &solution, &at(amplitude), 0.01).map_err(|error| match error {
+            VerificationError::Period(error) => error,
+            other => panic!("{amplitude}: {other}"),
+        })
+    };
+    let pendulum = oscillator("x'' + sin(x) = 0");
+    let well = oscillator("x'' - x + x^3 = 0").about(Expr::one());
+    let softening = oscillator("x'' + x - x^3 = 0");
+    let quadratic = oscillator("x'' + x - x^2 = 0");
+    for method in [Method::LindstedtPoincare, Method::Exact] {
+        for (equation, amplitude, summit) in [
+            (&pendulum, "pi", PI),
+            (&pendulum, "-pi", -PI),
+            (&well, "sqrt(2) - 1", 0.0),
+            (&well, "-1", 0.0),
+            (&softening, "1", 1.0),
+            (&quadratic, "1", 1.0),
+            (&quadratic, "-1/2", 1.0),
+        ] {
+            match reason(equation, method, amplitude) {
+                Err(PeriodError::Separatrix { place, .. }) => {
+                    assert!((place - summit).abs() < 1e-9, "{amplitude}: {place}");
+                }
+                other => panic!("{equation:?} at {amplitude}: {other:?}"),
+            }
+        }
+        for (equation, amplitude) in [(&pendulum, "3.1415926535"), (&quadratic, "0.99999999999")] {
+            let near = reason(equation, method, amplitude);
+            assert!(matches!(near, Err(PeriodError::NearSeparatrix { .. })), "{near:?}");
+        }
+        // 4 K(m) with the complementary parameter cos^2(A/2), as ln(16/m1)/2 + ...
+        let near = "3.1415";
+        let judged = reason(&pendulum, method, near).unwrap();
+        let quarter = (4.0 / (0.5 * near.parse::<f64>().unwrap()).cos()).ln();
+        assert!((judged.true_frequency * 4.0 * quarter / TAU - 1.0).abs() < 1e-8);
+        let beyond = reason(&softening, method, "1.1");
+        assert!(matches!(beyond, Err(PeriodError::PushedAway { .. })), "{beyond:?}");
+        let beyond = reason(&quadratic, method, "-0.50001");
+        assert!(matches!(beyond, Err(PeriodError::Escapes { .. })), "{beyond:?}");
+    }
+}
+
 #[test]
 fn a_formula_is_judged_by_a_motion_about_its_own_equilibrium() {
     let wells = oscillator("x'' + x - x^3 + x^5/5 = 0");

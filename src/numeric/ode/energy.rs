@@ -58,6 +58,28 @@ pub enum PeriodError {
         /// How far the search went.
         searched: f64,
     },
+    /// On the separatrix, to the digits of the numbers.
+    #[error(
+        "no periodic motion: released at rest from x = {start}, it is on the separatrix of the unstable equilibrium x = {place}, and \
+         never comes back"
+    )]
+    Separatrix {
+        /// The release point.
+        start: f64,
+        /// The unstable equilibrium.
+        place: f64,
+    },
+    /// So close to the separatrix that rounding decides how long the motion stays there.
+    #[error(
+        "released at rest from x = {start}, the motion is too close to the separatrix of the unstable equilibrium x = {place} for its \
+         period to be computed: on the separatrix it never comes back"
+    )]
+    NearSeparatrix {
+        /// The release point.
+        start: f64,
+        /// The unstable equilibrium.
+        place: f64,
+    },
     /// A place in the way that no motion passes.
     #[error("the motion runs into x = {place}, where the force has no finite value")]
     Pole {
@@ -105,6 +127,14 @@ impl PeriodError {
             Self::Escapes { start, searched } => Self::Escapes {
                 start: start + origin,
                 searched: searched + origin,
+            },
+            Self::Separatrix { start, place } => Self::Separatrix {
+                start: start + origin,
+                place: place + origin,
+            },
+            Self::NearSeparatrix { start, place } => Self::NearSeparatrix {
+                start: start + origin,
+                place: place + origin,
             },
             Self::Pole { place } => Self::Pole { place: place + origin },
             Self::Overflow { place, term } => Self::Overflow {

@@ -78,6 +78,11 @@ impl Question {
         (case, material)
     }
 
+    /// Whether a design may have the damping of the contact that is held fixed: not where every material has its own.
+    pub fn holds_contact_damping(&self) -> bool {
+        self.materials.is_empty() || self.materials.iter().any(|material| material.damping.is_none())
+    }
+
     /// Follows a design until it rests.
     ///
     /// # Errors

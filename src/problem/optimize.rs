@@ -179,7 +179,6 @@ impl Problem {
         question.defaults.clear();
         if !ContactDamping::FORMS.into_iter().any(gives) {
             case.contact_damping = ContactDamping::Lambda(default_lambda());
-            question.defaults.push(Parameter::Lambda);
         }
         if !gives(Parameter::Zeta) && !gives(Parameter::Viscous) {
             case.zeta = DEFAULT_ZETA;
@@ -190,6 +189,9 @@ impl Problem {
             question.settings.duration = DEFAULT_DURATION;
         }
         self.boundaries(&mut question)?;
+        if !ContactDamping::FORMS.into_iter().any(gives) && question.holds_contact_damping() {
+            question.defaults.insert(0, Parameter::Lambda);
+        }
         self.kept(&mut question)?;
         self.search_options(&mut question)?;
         self.carried(&mut question)?;

@@ -175,15 +175,17 @@ fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
         }
     };
     let damping = question.case.contact_damping;
-    blocks.push(Block::Note(format!(
-        "held fixed: {}{}{}",
-        in_words(damping),
-        question
-            .case
-            .at_speed
-            .map_or(String::new(), |speed| format!(" at the speed {}", decimal(speed))),
-        said(damping.form())
-    )));
+    if question.holds_contact_damping() {
+        blocks.push(Block::Note(format!(
+            "held fixed: {}{}{}",
+            in_words(damping),
+            question
+                .case
+                .at_speed
+                .map_or(String::new(), |speed| format!(" at the speed {}", decimal(speed))),
+            said(damping.form())
+        )));
+    }
     if question.case.zeta != 0.0 || question.case.viscous.is_some() {
         let forms = [
             (Parameter::Viscous, question.case.viscous, "N s/m"),

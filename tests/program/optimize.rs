@@ -385,3 +385,48 @@ fn the_page_prints_what_is_found() {
         assert!(page.contains(row.as_str()), "{row}\nof\n{}", rows.join("\n"));
     }
 }
+
+/// No column stands there twice, whether the mass varies, is wanted small, or both.
+#[test]
+fn every_column_has_its_own_name() {
+    for (objective, fixed, columns) in [
+        (r#"["rest_time", "peak_force"]"#, "", 10),
+        (r#"["rest_time", "peak_force"]"#, "[design]\nmass = 0.01\n", 10),
+        (r#"["mass", "rest_time"]"#, "", 10),
+        (r#""mass""#, "", 9),
+    ] {
+        let text = format!("{fixed}[genetic]\nobjective = {objective}\npopulation = 6\ngenerations = 2\nruns = 1\n");
+        let table = lindstedt::export::optimization::csv(&study(asked(&text)));
+        let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+        let names: std::collections::BTreeSet<&str> = rows[1].iter().copied().collect();
+        assert_eq!((names.len(), rows[1].len()), (columns, columns), "{table}");
+        assert!(names.contains("mass"), "{table}");
+        assert!(rows.iter().all(|row| row.len() == columns), "{table}");
+    }
+}
+
+/// What is held fixed has a say: where every material has a damping of its own, that of the contact has none.
+#[test]
+fn a_damping_without_say_is_not_said_to_be_held_fixed() {
+    let text = |second: &str| {
+        format!(
+            "[[material]]\nname = \"Steel\"\nmodulus = 200e9\nrestitution = 0.9\n[[material]]\nname = \"Rubber\"\nmodulus = 8e6\n{second}\n\
+             [genetic]\npopulation = 6\ngenerations = 2\nruns = 1\n"
+        )
+    };
+    for (second, held) in [("restitution = 0.6", false), ("", true)] {
+        let question = asked(&text(second));
+        assert_eq!(question.holds_contact_damping(), held);
+        assert_eq!(question.defaults.contains(&Parameter::Lambda), held);
+        let found = study(question);
+        let printed = lindstedt::export::text::optimization(&found, 120);
+        assert_eq!(printed.contains("lambda"), held, "{printed}");
+        let document = lindstedt::export::json::optimization(&found);
+        let document = serde_json::to_value(document).expect("JSON");
+        assert_eq!(
+            document["asked"]["held_fixed"]["contact"].is_null(),
+            !held,
+            "{document}"
+        );
+    }
+}

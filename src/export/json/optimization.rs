@@ -151,8 +151,8 @@ pub struct HeldFixed {
     pub speed: f64,
     /// Where the barriers stand.
     pub barrier: Barrier,
-    /// The damping of the contact.
-    pub contact: ContactForm,
+    /// The damping of the contact; null where every material has its own.
+    pub contact: Option<ContactForm>,
     /// The viscous damping ratio, dimensionless; null where `viscous` is given.
     pub zeta: Option<f64>,
     /// The coefficient of the viscous force on the bob, in N s/m; null where zeta is given.
@@ -598,7 +598,9 @@ impl HeldFixed {
                 left: case.left,
                 right: case.right,
             },
-            contact: ContactForm::of(case.contact_damping, case.at_speed),
+            contact: question
+                .holds_contact_damping()
+                .then(|| ContactForm::of(case.contact_damping, case.at_speed)),
             zeta: case.get(Parameter::Zeta),
             viscous: case.viscous,
             alpha: case.get(Parameter::Alpha),

@@ -41,7 +41,7 @@ fn columns(question: &Question) -> Vec<(String, String)> {
     let of = |objective: &Objective| column(objective.name(), objective.unit());
     let mut columns = vec![column("run", "1")];
     columns.extend(question.objectives.iter().map(of));
-    let variables = question.variables.iter().map(|variable| variable.parameter);
+    let variables = own_variables(question).map(|index| question.variables[index].parameter);
     columns.extend(variables.map(|parameter| column(parameter.name(), parameter.unit())));
     if !question.materials.is_empty() {
         columns.push(column("material", "-"));
@@ -58,11 +58,22 @@ fn columns(question: &Question) -> Vec<(String, String)> {
     columns
 }
 
-/// What is known of a design beside what was made small.
+/// The variables that have a column of their own: the mass may be an objective, which has one.
+fn own_variables(question: &Question) -> impl Iterator<Item = usize> {
+    let is_objective = |name: &str| question.objectives.iter().any(|objective| objective.name() == name);
+    (0..question.variables.len()).filter(move |&index| !is_objective(question.variables[index].parameter.name()))
+}
+
+/// What is known of a design beside what was made small, and what varies.
 fn others(question: &Question) -> impl Iterator<Item = Objective> {
+    let varies = |name: &str| {
+        let mut variables = question.variables.iter();
+        variables.any(|variable| variable.parameter.name() == name)
+    };
     Objective::ALL
         .into_iter()
         .filter(|objective| !question.objectives.contains(objective))
+        .filter(move |objective| !varies(objective.name()))
         .filter(|objective| question.main_mass.is_some() || !objective.is_of_main_mass())
 }
 
@@ -70,8 +81,7 @@ fn others(question: &Question) -> impl Iterator<Item = Objective> {
 fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
     let found = run.found.first();
     let mut fields = vec![run.number.to_string(), number(found.map(|found| found.values[0]))];
-    let count = question.variables.len();
-    fields.extend((0..count).map(|index| number(found.map(|found| found.point[index]))));
+    fields.extend(own_variables(question).map(|index| number(found.map(|found| found.point[index]))));
     if !question.materials.is_empty() {
         let material = found.and_then(|found| question.case_of(&found.point).1);
         fields.push(name_of(material, question));
@@ -90,8 +100,7 @@ fn compromise(finalist: &Finalist, question: &Question) -> Vec<String> {
     let design = &finalist.design;
     let mut fields = vec![finalist.run.to_string()];
     fields.extend(finalist.values.iter().map(|value| number(Some(*value))));
-    let count = question.variables.len();
-    fields.extend(design.point.iter().take(count).map(|value| number(Some(*value))));
+    fields.extend(own_variables(question).map(|index| number(Some(design.point[index]))));
     if !question.materials.is_empty() {
         fields.push(name_of(design.material, question));
     }

@@ -14,6 +14,7 @@ use super::{Common, Failure, Format, Outcome, json_text, read, whole};
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
@@ -24,6 +25,7 @@ pub struct Arguments {
 }
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct PaperArguments {
     #[command(flatten)]
     own: Own,

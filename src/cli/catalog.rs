@@ -6,6 +6,7 @@ use lindstedt::export::{catalog, json};
 use super::{Common, Failure, Format, Outcome, json_text, whole};
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
     #[command(flatten)]
     pub common: Common,

@@ -7,6 +7,7 @@ use lindstedt::impact::friction::{FrictionSetup, FrictionStudy, study};
 use super::{Common, Failure, Format, Outcome, json_text, whole};
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
     /// The friction alpha, between 0 and 1; 0.05 without it, for the paper prints none
     #[arg(long, value_name = "ALPHA", allow_hyphen_values = true)]

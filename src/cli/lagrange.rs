@@ -13,6 +13,7 @@ use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, json_text, no_table, whole};
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,

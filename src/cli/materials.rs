@@ -13,6 +13,7 @@ use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
     /// A TOML file, or - for standard input; without it the paper's design and the materials of its Table 2
     pub file: Option<PathBuf>,

@@ -105,6 +105,11 @@ struct Common {
     timeout: Option<f64>,
 }
 
+/// The option of a command without a verdict: its help is silent on it, and the command refuses it with the reason.
+fn no_verdict(tolerance: clap::Arg) -> clap::Arg {
+    tolerance.hide(true)
+}
+
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Format {
     #[default]

@@ -20,6 +20,7 @@ use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, STOP, count, json_text, read_at_most, whole};
 
 #[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
     /// A TOML file, or - for standard input; without it the paper's study: its Table 4 searched for the least rest time
     pub file: Option<PathBuf>,

@@ -347,3 +347,28 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
     }
     let _ = std::fs::remove_file(file);
 }
+
+/// The help of a command lists `--tolerance` where it has a verdict, and nowhere else.
+#[test]
+fn the_help_is_silent_on_a_tolerance_that_is_refused() {
+    for (words, has_verdict) in [
+        (&["derive", "pendulum"][..], true),
+        (&["compare", "pendulum", "--at", "A=1"], true),
+        (&["impact"], true),
+        (&["simulate"], true),
+        (&["friction"], false),
+        (&["materials"], false),
+        (&["optimize"], false),
+        (&["lagrange"], false),
+        (&["audit", AUDIT], false),
+        (&["paper"], false),
+        (&["catalog"], false),
+    ] {
+        let listed = options_of(words[0]).iter().any(|name| name == "tolerance");
+        assert_eq!(listed, has_verdict, "{words:?}");
+        if !has_verdict {
+            let (status, _, error) = run(&[words, &["--tolerance", "0.1"]].concat());
+            assert!(status == Some(2) && error.contains("--tolerance"), "{words:?}: {error}");
+        }
+    }
+}

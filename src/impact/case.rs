@@ -6,7 +6,7 @@
 //! ```text
 //! gamma = (4/3) E sqrt(R) L^(3/2) / (m g)      where it is not given        equation (8), l = L
 //! mu    = gamma lambda sqrt(g L)               where lambda is given; other forms of it, and of zeta and alpha: `dissipation`
-//! x(0)  = -A, x'(0) = 0                        where no other start is given
+//! x(0)  = -A, x'(0) = 0                        where no other start is given; x(0) = A towards a barrier on the left
 //! ```
 
 use std::f64::consts::PI;
@@ -25,9 +25,11 @@ use super::units::Units;
 /// A pendulum, its barrier, and what damps and drives it; the default is the paper's, without losses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
-    /// A, rad, positive: released from rest at x = -A.
+    /// A, rad, positive: released from rest at x = -A, or at x = A towards a barrier on the left.
     pub amplitude: f64,
-    /// x(0), rad, where it is not -A.
+    /// The side of the barrier that is swung against: the release is on the other one.
+    pub side: Side,
+    /// x(0), rad, where it is not that release.
     pub start: Option<f64>,
     /// x'(0), rad times omega.
     pub speed: f64,
@@ -63,6 +65,7 @@ impl Default for Case {
     fn default() -> Self {
         Self {
             amplitude: DEFAULT_AMPLITUDE,
+            side: Side::Right,
             start: None,
             speed: 0.0,
             left: None,
@@ -126,7 +129,10 @@ impl Case {
             Parameter::Amplitude => Some(self.amplitude),
             Parameter::Start => self.start,
             Parameter::Speed => Some(self.speed),
-            Parameter::Barrier => self.right,
+            Parameter::Barrier => match self.side {
+                Side::Left => self.left,
+                Side::Right => self.right,
+            },
             Parameter::Gamma => self.gamma,
             Parameter::Mu
             | Parameter::MuOverGamma
@@ -157,7 +163,10 @@ impl Case {
             Parameter::Amplitude => self.amplitude = value,
             Parameter::Start => self.start = Some(value),
             Parameter::Speed => self.speed = value,
-            Parameter::Barrier => self.right = Some(value),
+            Parameter::Barrier => match self.side {
+                Side::Left => self.left = Some(value),
+                Side::Right => self.right = Some(value),
+            },
             Parameter::Gamma => self.gamma = Some(value),
             Parameter::Mu => self.contact_damping = ContactDamping::Mu(value),
             Parameter::MuOverGamma => self.contact_damping = ContactDamping::MuOverGamma(value),
@@ -205,7 +214,7 @@ impl Case {
     pub fn motion(&self) -> Result<(Model, Start), CaseError> {
         let x = match self.start {
             Some(start) => start,
-            None if self.amplitude > 0.0 && self.amplitude.is_finite() => -self.amplitude,
+            None if self.amplitude > 0.0 && self.amplitude.is_finite() => -self.side.sign() * self.amplitude,
             None => return Err(CaseError::Amplitude(self.amplitude)),
         };
         let start = Start {

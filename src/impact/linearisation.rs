@@ -122,6 +122,11 @@ pub enum LinearisationError {
     /// The force stays below the energy of the impact at any depth.
     #[error("the elastic force stops no impact of energy {0:e} (per unit of gamma): it must grow with the depth")]
     NeverStops(f64),
+    /// The energy is used up before there is a depth in numbers.
+    #[error(
+        "the elastic force stops an impact of energy {0:e} (per unit of gamma) in a depth below 1e-119: no line is fitted to so stiff a contact"
+    )]
+    TooShallow(f64),
     /// An integral over the force failed.
     #[error("the elastic force is not smooth enough to be replaced by a line: {0}")]
     Quadrature(#[from] QuadratureError),
@@ -185,7 +190,8 @@ pub fn work(elastic_force: impl Fn(f64) -> f64, depth: f64) -> Result<f64, Quadr
 /// apart. For Hertz contact of stiffness gamma and energy v^2/(2 gamma) it is (5 v^2/(4 gamma))^(2/5).
 ///
 /// # Errors
-/// [`LinearisationError::NeverStops`] where no depth is deep enough, and those of [`work`].
+/// [`LinearisationError::NeverStops`] where no depth is deep enough, [`LinearisationError::TooShallow`] where every one is, and those
+/// of [`work`].
 pub fn greatest_depth(elastic_force: impl Fn(f64) -> f64, energy: f64) -> Result<f64, LinearisationError> {
     if !(energy.is_finite() && energy > 0.0) {
         return Err(LinearisationError::NeverStops(energy));
@@ -205,7 +211,10 @@ pub fn greatest_depth(elastic_force: impl Fn(f64) -> f64, energy: f64) -> Result
             return Ok(find_root(missing, low, high)?.powi(2));
         }
     }
-    Err(LinearisationError::NeverStops(energy))
+    Err(match low < 1.0 {
+        true => LinearisationError::TooShallow(energy),
+        false => LinearisationError::NeverStops(energy),
+    })
 }
 
 /// Weighted least squares at Gauss points in sqrt(depth): the integral of the squared misfit, exactly enough.

@@ -13,13 +13,13 @@ use crate::spelling::nearest;
 /// A number that a study may vary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Parameter {
-    /// A: the release is from rest at x = -A.
+    /// A: the release is from rest at x = -A, or at x = A towards a barrier on the left.
     Amplitude,
     /// x(0), where it is not -A.
     Start,
     /// x'(0).
     Speed,
-    /// x_c, the place of the right barrier.
+    /// x_c, the place of the barrier that is swung against.
     Barrier,
     /// Stiffness of the contact.
     Gamma,

@@ -113,7 +113,7 @@ pub struct Pendulum {
     pub amplitude: f64,
     /// x_c, rad, or `[left, right]`, or `false` for none.
     pub barrier: Barrier,
-    /// For an impact, on which side of its place a single barrier is: `right`, or `left` with the release at x = amplitude.
+    /// On which side of its place a single barrier is: `right`, or `left` with the release at x = amplitude.
     pub side: Option<BarrierSide>,
     /// x(0), rad, where it is not -amplitude.
     pub start: Option<f64>,
@@ -308,14 +308,14 @@ impl TryFrom<bool> for NoBarrier {
     }
 }
 
-/// One barrier on the right, or one on either side.
+/// One barrier, on the right unless `side` says otherwise, or one on either side.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "expected a number, or two: [left, right], or false for none")]
 pub enum Barrier {
     /// `false`: none at all.
     Absent(NoBarrier),
-    /// The position of the right one.
-    Right(f64),
+    /// The position of the only one.
+    One(f64),
     /// The positions of both.
     Both([f64; 2]),
 }
@@ -472,7 +472,7 @@ impl Default for Pendulum {
     fn default() -> Self {
         Self {
             amplitude: DEFAULT_AMPLITUDE,
-            barrier: Barrier::Right(DEFAULT_BARRIER),
+            barrier: Barrier::One(DEFAULT_BARRIER),
             side: None,
             start: None,
             speed: None,

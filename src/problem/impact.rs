@@ -46,7 +46,7 @@ pub enum ImpactFileError {
     #[error(transparent)]
     DampingBeyond(#[from] DampingError),
     /// A restitution that is none.
-    #[error("[contact] restitution must lie above 0 and below 1, not {0}: leave it out for a contact without loss")]
+    #[error("[contact] restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss")]
     Restitution(f64),
     /// A damping that is none.
     #[error("[contact] {key} must be a number and not negative, not {value}: 0 is a contact without loss")]
@@ -304,7 +304,7 @@ impl Numbers {
 fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFileError> {
     match (barrier, side) {
         (Barrier::Absent(_), _) => Err(ImpactFileError::NoBarrier),
-        (Barrier::Right(position), _) => Ok(position),
+        (Barrier::One(position), _) => Ok(position),
         (Barrier::Both([left, right]), Side::Right) if left < release => Ok(right),
         (Barrier::Both([left, right]), Side::Left) if right > release => Ok(left),
         (Barrier::Both(_), _) => Err(ImpactFileError::LeftBarrier),
@@ -405,13 +405,14 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
         [(one, _), (other, _), ..] => return Err(ImpactFileError::TwoLosses(one, other)),
     };
     let of_restitution = key == "restitution";
-    if of_restitution && !(value > 0.0 && value < 1.0) {
+    if of_restitution && !(value > 0.0 && value <= 1.0) {
         return Err(ImpactFileError::Restitution(value));
     }
     if !(value.is_finite() && value >= 0.0) {
         return Err(ImpactFileError::Damping { key, value });
     }
-    if value == 0.0 {
+    // A contact without loss.
+    if value == if of_restitution { 1.0 } else { 0.0 } {
         return Ok(None);
     }
     if !of_restitution && (problem.equation.is_some() || contact.force.is_some()) {

@@ -84,7 +84,7 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("[primary] frequency", &[Simulate]),
     ("[pendulum] amplitude", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] barrier", &[Impact, Simulate, Materials, Optimize]),
-    ("[pendulum] side", &[Impact]),
+    ("[pendulum] side", &[Impact, Simulate]),
     ("[pendulum] start", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] speed", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] mass", &[Impact, Simulate, Materials, Optimize]),
@@ -113,11 +113,11 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("[design] modulus", &[Impact, Simulate, Materials, Optimize]),
     ("[design] gravity", &[Impact, Simulate, Materials, Optimize]),
     ("[sphere] radius", &[Impact, Simulate, Materials, Optimize]),
-    ("[sphere] modulus", &[Impact, Materials, Optimize]),
-    ("[sphere] poisson", &[Impact, Materials, Optimize]),
+    ("[sphere] modulus", &[Impact, Simulate, Materials, Optimize]),
+    ("[sphere] poisson", &[Impact, Simulate, Materials, Optimize]),
     ("[sphere] yield", &[Impact, Materials, Optimize]),
     ("[barrier] modulus", &[Impact, Simulate, Materials, Optimize]),
-    ("[barrier] poisson", &[Impact]),
+    ("[barrier] poisson", &[Impact, Simulate]),
     ("[barrier] yield", &[Impact, Optimize]),
     ("[run] duration", &[Simulate, Materials, Trajectory, Optimize]),
     ("[run] integrator_tolerance", &[Impact, Simulate, Materials, Optimize]),
@@ -220,10 +220,14 @@ impl Problem {
         }
         for (key, readers) in KEYS {
             if self.gives(key) && !readers.contains(&reader) {
-                let mut names: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
-                names.dedup();
+                // Two readers may be one command.
                 let own = format!("`{reader}`");
-                names.retain(|name| *name != own);
+                let mut names: Vec<String> = Vec::new();
+                for name in readers.iter().map(|reader| format!("`{reader}`")) {
+                    if name != own && !names.contains(&name) {
+                        names.push(name);
+                    }
+                }
                 if names.is_empty() {
                     return Err(UnreadKey::Beside { key: key.to_owned() });
                 }

@@ -150,10 +150,10 @@ impl Problem {
             };
         }
         let without_say: &[&str] = match (self.damps_in_si_units(), self.contact.lambda) {
-            (true, _) => &["radius", "modulus"],
+            (true, _) => &["radius", "modulus", "poisson"],
             // mu = gamma*lambda*sqrt(g*L)
-            (false, Some(_)) => &["mass", "radius", "modulus"],
-            (false, None) => &["mass", "radius", "modulus", "length", "gravity"],
+            (false, Some(_)) => &["mass", "radius", "modulus", "poisson"],
+            (false, None) => &["mass", "radius", "modulus", "poisson", "length", "gravity"],
         };
         let gives = |sections: &[&str]| {
             let mut keys = without_say
@@ -180,7 +180,7 @@ mod tests {
             problem.pendulum,
             Pendulum {
                 amplitude: 1.5,
-                barrier: Barrier::Right(0.323),
+                barrier: Barrier::One(0.323),
                 side: None,
                 start: None,
                 speed: None,

@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use super::{Barrier, Problem, ProblemError, Reader, UnreadKey};
-use crate::impact::{Case, CaseError, ContactDamping, Friction, Parameter, Settings, Units};
+use super::{Barrier, BarrierSide, Problem, ProblemError, Reader, UnreadKey};
+use crate::impact::{Case, CaseError, ContactDamping, Friction, Parameter, Settings, Side, Units};
 
 /// What a problem file says of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +46,12 @@ pub enum SimulateError {
     /// A number of a barrier that is not there.
     #[error("`{0}` changes nothing where `[pendulum] barrier = false`: leave one of them out")]
     NoBarrier(Parameter),
+    /// A side of which nothing is: neither the only barrier nor the release.
+    #[error("`[pendulum] side` changes nothing beside {0} and a start: leave it out")]
+    Side(&'static str),
+    /// A modulus that is not that of one body.
+    #[error("`modulus` is that of the barrier alone, and `{0}` makes it that of two bodies: leave out one of them")]
+    ModulusOfTwo(&'static str),
     /// A number that zero leaves nothing to say.
     #[error("`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out")]
     Zero {
@@ -146,6 +152,7 @@ impl Problem {
         refuse_two_forms(gives)?;
         let case = self.case()?;
         let settings = self.settings()?;
+        self.check_side(swept)?;
         self.check_pairs(gives)?;
         Ok(Simulate {
             settings,
@@ -184,10 +191,15 @@ impl Problem {
 
     /// The numbers of the pendulum and its barrier, as they are given.
     pub(super) fn case(&self) -> Result<Case, SimulateError> {
-        let (left, right) = match self.pendulum.barrier {
-            Barrier::Absent(_) => (None, None),
-            Barrier::Right(right) => (None, Some(right)),
-            Barrier::Both([left, right]) => (Some(left), Some(right)),
+        let side = match self.pendulum.side {
+            Some(BarrierSide::Left) => Side::Left,
+            Some(BarrierSide::Right) | None => Side::Right,
+        };
+        let (left, right) = match (self.pendulum.barrier, side) {
+            (Barrier::Absent(_), _) => (None, None),
+            (Barrier::One(place), Side::Left) => (Some(place), None),
+            (Barrier::One(place), Side::Right) => (None, Some(place)),
+            (Barrier::Both([left, right]), _) => (Some(left), Some(right)),
         };
         let friction = match self.damping.friction.as_deref() {
             None | Some("exact") => Friction::Exact,
@@ -196,6 +208,7 @@ impl Problem {
         };
         Ok(Case {
             amplitude: self.pendulum.amplitude,
+            side,
             start: self.pendulum.start,
             speed: self.pendulum.speed.unwrap_or(0.0),
             left,
@@ -267,6 +280,13 @@ impl Problem {
                 other: Beta,
             });
         }
+        let of_two = [
+            ("[sphere] modulus", self.sphere.modulus.is_some()),
+            ("[barrier] poisson", self.barrier.poisson.is_some()),
+        ];
+        if let (true, Some((key, _))) = (swept.contains(&Modulus), of_two.into_iter().find(|(_, given)| *given)) {
+            return Err(SimulateError::ModulusOfTwo(key));
+        }
         let without_loss = self.contact.restitution == Some(1.0) && !swept.contains(&Restitution);
         if swept.contains(&AtSpeed) && without_loss {
             return Err(SimulateError::NoEffect {
@@ -284,6 +304,19 @@ impl Problem {
         match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {
             Some(key) => Err(SimulateError::NoEffect { key, other: Gamma }),
             None => Ok(()),
+        }
+    }
+
+    /// Refuses a side that says nothing: of a barrier there is or is swept, or of the release.
+    fn check_side(&self, swept: &[Parameter]) -> Result<(), SimulateError> {
+        let starts = self.pendulum.start.is_some() || swept.contains(&Parameter::Start);
+        if self.pendulum.side.is_none() || !starts || swept.contains(&Parameter::Barrier) {
+            return Ok(());
+        }
+        match self.pendulum.barrier {
+            Barrier::Absent(_) => Err(SimulateError::Side("no barrier")),
+            Barrier::Both(_) => Err(SimulateError::Side("two barriers")),
+            Barrier::One(_) => Ok(()),
         }
     }
 

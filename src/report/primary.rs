@@ -40,9 +40,14 @@ pub fn primary<'a>(report: &PrimaryReport<'a>) -> Document<'a> {
         vec![
             Block::Heading("Main mass on spring and dashpot, with the pendulum and its barriers".to_owned()),
             Block::QuestionAsTyped("(R + 1)*y'' + x''*cos(x) - x'^2*sin(x) + delta*y' + kappa*y = f*sin(eta*t)"),
-            Block::QuestionAsTyped(
-                "x'' + y''*cos(x) + sin(x) + 2*zeta*x' + alpha*sgn(x') + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0",
-            ),
+            Block::QuestionAsTyped(match (report.motion.case.model.left, report.motion.case.model.right) {
+                (Some(_), None) => {
+                    "x'' + y''*cos(x) + sin(x) + 2*zeta*x' + alpha*sgn(x') - (gamma - mu*x')*(xc - x)^(3/2)*H(xc - x) = 0"
+                }
+                _ => {
+                    "x'' + y''*cos(x) + sin(x) + 2*zeta*x' + alpha*sgn(x') + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0"
+                }
+            }),
             Block::Note(
                 "x: angle, rad; y: displacement of the main mass over L; t in units of 1/omega, omega^2 = g/L"
                     .to_owned(),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::text::LISTED;
+use super::text::{LISTED, duration};
 use crate::decimal::{decimal, significant};
 use crate::export::text::percent;
 use crate::impact::{ContactDeviation, NoRest, Piece, Regime, Simulation};
@@ -35,7 +35,7 @@ pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation
             index + 1,
             impact.side.name(),
             significant(impact.entry_time, 8),
-            optional(impact.exit_time.map(|exit| exit - impact.entry_time)),
+            duration(impact),
             decimal(impact.speed_in),
             optional(impact.speed_out),
             decimal(impact.penetration),

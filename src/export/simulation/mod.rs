@@ -19,7 +19,7 @@ pub use csv::{simulation as csv, sweep as sweep_csv};
 pub use latex::simulation as latex;
 pub use text::{simulation as text, sweep as sweep_text};
 
-use crate::decimal::decimal;
+use crate::decimal::{decimal, significant};
 use crate::impact::sweep::{Axis, Summary, grid_values};
 use crate::impact::{Baseline, Dissipation, Friction, Simulation, Units};
 
@@ -98,6 +98,16 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
                 decimal(motion.end_time)
             ),
         });
+    }
+    // So small a part of the energy at the start is what rounding leaves of none.
+    if let Some(first) = motion.impacts.first()
+        && first.speed_in * first.speed_in < 1e-12 * motion.model.swing_energy(motion.start.x, motion.start.velocity)
+    {
+        notes.push(format!(
+            "the first impact is no faster than {}: the {} barrier stands where the swing turns back, and rounding decides whether it is touched",
+            significant(first.speed_in.abs(), 1),
+            first.side.name()
+        ));
     }
     if motion.is_caged() {
         notes.push(

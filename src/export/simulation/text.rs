@@ -6,7 +6,9 @@ use std::io;
 use super::{COMPARED, Report, SweepReport, chain, friction, notes};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::Axis;
-use crate::impact::{Baseline, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest, Simulation, Units};
+use crate::impact::{
+    Baseline, Contact, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest, Simulation, Units,
+};
 
 /// Impacts that are listed; a long run has thousands.
 pub(super) const LISTED: usize = 24;
@@ -139,13 +141,16 @@ fn header(report: &Report) -> String {
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let drive = if beta == 0.0 { "" } else { " - beta*sin(eta*t)*cos(x)" };
     let free = left.or(right).is_none();
-    let contact = match mu == 0.0 {
+    let left_alone = left.is_some() && right.is_none();
+    let contact = match (mu == 0.0, left_alone) {
         _ if free => "",
-        true => " + gamma*(x - xc)^(3/2)*H(x - xc)",
-        false => " + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc)",
+        (true, false) => " + gamma*(x - xc)^(3/2)*H(x - xc)",
+        (false, false) => " + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc)",
+        (true, true) => " - gamma*(xc - x)^(3/2)*H(xc - x)",
+        (false, true) => " - (gamma - mu*x')*(xc - x)^(3/2)*H(xc - x)",
     };
     let mut text = format!("x''{viscous}{dry}{drive} + sin(x){contact} = 0\n");
-    if left.is_some() {
+    if left.is_some() && !left_alone {
         text.push_str("and the mirror image of the contact on the left\n");
     }
     let [gamma_source, mu_source] = report.sources;
@@ -271,7 +276,6 @@ fn impacts(text: &mut String, motion: &Simulation) {
         if count > LISTED && index >= LISTED - 1 && index + 1 < count {
             continue;
         }
-        let duration = impact.exit_time.map(|exit| exit - impact.entry_time);
         // What is lost in an elastic contact is rounding.
         let lost = impact.energy_lost.map(|lost| {
             let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
@@ -284,13 +288,23 @@ fn impacts(text: &mut String, motion: &Simulation) {
             index + 1,
             impact.side.name(),
             significant(impact.entry_time, 8),
-            optional(duration),
+            duration(impact),
             decimal(impact.speed_in),
             optional(impact.speed_out),
             decimal(impact.penetration),
             optional(restitution),
             optional(lost)
         );
+    }
+}
+
+/// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter than their last digit.
+pub(super) fn duration(impact: &Contact) -> String {
+    let least = 2.0 * f64::EPSILON * impact.entry_time.abs();
+    match impact.exit_time.map(|exit| exit - impact.entry_time) {
+        None => "-".to_owned(),
+        Some(short) if short <= least => format!("< {}", significant(least, 1)),
+        Some(duration) => decimal(duration),
     }
 }
 

@@ -104,13 +104,17 @@ impl HuntCrossley {
 
         let scale = depth / speed;
         let half_way = 0.5_f64.powf(0.5 * inverse);
+        let too_damped = |error| match error {
+            ContactError::NotSmooth => ContactError::TooDamped { product: x },
+            other => other,
+        };
         // d = D q^2, dt = 2 q dq D/(v |r|).
         let side = |sign: f64| {
             let slowness = move |q: f64| {
                 let rate = 1.0 / motion.speed_ratio(sign * remaining(q * q, m)).abs();
                 Ok(rate)
             };
-            expand(slowness, |q| 2.0 * q * scale, 0.0, half_way)
+            expand(slowness, |q| 2.0 * q * scale, 0.0, half_way).map_err(too_damped)
         };
         let (loading, unloading) = (side(1.0)?, side(-1.0)?);
         let rate = |phi: f64| {
@@ -122,7 +126,7 @@ impl HuntCrossley {
             };
             Ok(2.0 * inverse * phi.sin().powf(2.0 * inverse - 1.0) * quotient)
         };
-        let turning = expand(rate, |_| scale, FRAC_PI_4, 3.0 * FRAC_PI_4)?;
+        let turning = expand(rate, |_| scale, FRAC_PI_4, 3.0 * FRAC_PI_4).map_err(too_damped)?;
         let duration = length(&loading) + length(&turning) + length(&unloading);
 
         let energy_lost = 0.5 * speed * loss * (2.0 - loss) * speed;

@@ -23,6 +23,7 @@ use thiserror::Error;
 
 use super::hertz::NotPositive;
 use super::linearisation::LinearisationError;
+use crate::decimal::decimal;
 use crate::numeric::ode::quadrature::QuadratureError;
 use crate::numeric::ode::root::RootError;
 
@@ -106,6 +107,15 @@ pub enum ContactError {
     /// The force has corners, jumps or waves on the way.
     #[error("the force in contact is not smooth enough for its motion to be computed: integrate it step by step")]
     NotSmooth,
+    /// A damping that changes the speed too fast for the panels that resolve it.
+    #[error(
+        "the contact is damped so strongly, mu*v/gamma = {}, that nearly all of the speed is lost at once: integrate it step by step",
+        decimal(*product)
+    )]
+    TooDamped {
+        /// lambda v, the product of damping and speed.
+        product: f64,
+    },
     /// A law of a power of the depth, asked about another force.
     #[error(
         "the force of this contact is not given as a power of the depth: give its exponent, or take the exact contact"

@@ -115,7 +115,48 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
     Ok(found)
 }
 
+/// What the terms in the time do at a place of rest of the equations without them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drive {
+    /// There are none.
+    Absent,
+    /// They vanish there, as what shakes the pivot of a pendulum upright does: it is a rest, whose swings they change.
+    Vanishes,
+    /// They act: it is no rest where they do.
+    Acts,
+}
+
 impl Equations {
+    /// What the terms in the time do at a place of rest.
+    pub(super) fn drive_at(&self, rest: &Rest) -> Result<Drive, ExprError> {
+        let at = |place: &Place| match place {
+            Place::At(place) => Some(place.clone()),
+            Place::Anywhere => None,
+        };
+        let names = self.coordinates.iter();
+        let mut there: BTreeMap<Symbol, Expr> = names
+            .clone()
+            .zip(&rest.places)
+            .filter_map(|(name, place)| Some((*name, at(place)?)))
+            .collect();
+        there.extend(names.map(|name| (name.derivative(), Expr::zero())));
+        let mut drive = Drive::Absent;
+        for rest in &self.rest {
+            let written_out = rest.expand()?;
+            let terms = written_out.terms().iter();
+            let driving: Expr = terms.filter(|term| term.contains(Symbol::new("t"))).cloned().sum();
+            if driving.is_zero() {
+                continue;
+            }
+            let acts = driving.substitute_all(&there).and_then(|driving| simplified(&driving));
+            if !acts.is_ok_and(|driving| driving.is_zero()) {
+                return Ok(Drive::Acts);
+            }
+            drive = Drive::Vanishes;
+        }
+        Ok(drive)
+    }
+
     /// What pulls at rest, equation by equation: no velocities, no terms in the time, no contacts.
     pub(super) fn forces_at_rest(&self) -> Result<Vec<Expr>, ExprError> {
         let still: BTreeMap<Symbol, Expr> = self

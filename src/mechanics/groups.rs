@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use num_traits::{One, Signed, Zero};
 use thiserror::Error;
 
-use super::{Dimension, Equations, Mechanism};
+use super::{Combination, Dimension, Equations, Mechanism};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, fresh};
 use crate::symbol::Symbol;
@@ -29,6 +29,8 @@ pub struct Groups {
     pub rank: usize,
     /// The parameters that give the units, one for each rank.
     pub units: Vec<Symbol>,
+    /// The sums of parameters that count as one, by the names that they have here.
+    pub combinations: Vec<Combination>,
     /// The unit of time in them.
     pub time: Expr,
     /// The unit of each coordinate in them; 1 for an angle.
@@ -97,9 +99,28 @@ impl Groups {
         equations: &Equations,
         units: &BTreeMap<Symbol, Dimension>,
     ) -> Result<Self, NoGroups> {
-        let parameters = equations.parameters();
+        // In sums that enter as one, each with the unit of its terms.
+        let combined = |expressions: &[Expr]| -> Result<Vec<Expr>, ExprError> {
+            expressions
+                .iter()
+                .map(|expression| equations.combined(expression))
+                .collect()
+        };
+        let mut units = units.clone();
+        for combination in &equations.combinations {
+            let unit = super::dimension::dimension(&combination.meaning, &units, "sum").unwrap_or_default();
+            units.insert(combination.name, unit);
+        }
+        let left = combined(&equations.left)?;
+        let symbols: BTreeSet<Symbol> = left.iter().flat_map(Expr::symbols).collect();
+        let parameters: Vec<Symbol> = symbols
+            .into_iter()
+            .filter(|name| equations.is_parameter(*name))
+            .collect();
         let dimension_of = |name: Symbol| units.get(&name).cloned().unwrap_or_default();
-        let basis = Basis::of(&preferred(mechanism, equations, &parameters), dimension_of);
+        let inertia = combined(&equations.mass.concat())?;
+        let stiffness = combined(std::slice::from_ref(&mechanism.potential))?;
+        let basis = Basis::of(&preferred(&inertia, &stiffness, &parameters), dimension_of);
         let time = basis.express(&Dimension::of([0, 0, 1]))?;
         let names = || names(&parameters);
         let time = time.ok_or_else(|| NoGroups::NoTime(names()))?;
@@ -123,7 +144,7 @@ impl Groups {
                 .collect(),
         };
         let ones: BTreeMap<Symbol, Expr> = basis.members.iter().map(|(name, _)| (*name, Expr::one())).collect();
-        for left in &equations.left {
+        for left in &left {
             scaling
                 .left
                 .push(positive_factors_out(&left.expand()?.substitute_all(&ones)?, equations)?.expand()?);
@@ -143,7 +164,7 @@ impl Groups {
             let definition = basis.in_parameters(scaled, dimension_of)?;
             groups.push(Group {
                 name: *name,
-                dimension: super::dimension::dimension(&definition, units, "group").unwrap_or_default(),
+                dimension: super::dimension::dimension(&definition, &units, "group").unwrap_or_default(),
                 definition,
                 meaning: meaning.clone(),
             });
@@ -152,6 +173,7 @@ impl Groups {
             parameters: parameters.len(),
             rank: basis.members.len(),
             units: basis.members.iter().map(|(name, _)| *name).collect(),
+            combinations: equations.combinations.clone(),
             time,
             lengths,
             groups,
@@ -166,9 +188,9 @@ fn names(parameters: &[Symbol]) -> String {
 }
 
 /// The parameters in the order in which they are taken for units: those of inertia, of stiffness, all others.
-fn preferred(mechanism: &Mechanism, equations: &Equations, parameters: &[Symbol]) -> Vec<Symbol> {
-    let inertia: BTreeSet<Symbol> = equations.mass.iter().flatten().flat_map(Expr::symbols).collect();
-    let stiffness = mechanism.potential.symbols();
+fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
+    let [inertia, stiffness] =
+        [inertia, stiffness].map(|parts| parts.iter().flat_map(Expr::symbols).collect::<BTreeSet<_>>());
     let place = |name: &Symbol| match (inertia.contains(name), stiffness.contains(name)) {
         (true, _) => 0,
         (false, true) => 1,

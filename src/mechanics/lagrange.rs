@@ -10,8 +10,9 @@ use std::fmt;
 
 use num_traits::{One, Zero};
 
+use super::combination::{put_into, written_out};
 use super::trigonometry::simplified;
-use super::{MechanicsError, Mechanism, linear};
+use super::{Combination, MechanicsError, Mechanism, linear};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
@@ -30,6 +31,8 @@ pub struct Equations {
     pub left: Vec<Expr>,
     /// What each was divided by; parameters are taken not to vanish.
     pub divisors: Vec<Expr>,
+    /// The sums of parameters that enter as one; here they are written out.
+    pub combinations: Vec<Combination>,
 }
 
 impl fmt::Display for Equations {
@@ -74,6 +77,7 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsErr
         rest,
         left: Vec::new(),
         divisors: Vec::new(),
+        combinations: Vec::new(),
     };
     for index in 0..coordinates.len() {
         let (left, divisor) = equations.printed(index)?;
@@ -139,6 +143,22 @@ fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
 }
 
 impl Equations {
+    /// The equations of a mechanism in these combinations, with what those are in their places.
+    pub(super) fn written_out(mut self, combinations: Vec<Combination>) -> Result<Self, ExprError> {
+        let entries = self.mass.iter_mut().flatten();
+        let others = self.rest.iter_mut().chain(&mut self.left).chain(&mut self.divisors);
+        for entry in entries.chain(others) {
+            *entry = written_out(entry, &combinations)?;
+        }
+        self.combinations = combinations;
+        Ok(self)
+    }
+
+    /// An expression in the combinations.
+    pub(super) fn combined(&self, expression: &Expr) -> Result<Expr, ExprError> {
+        put_into(expression, &self.combinations)
+    }
+
     /// The accelerations, solved for: quotients in coordinates, velocities, time and parameters, not written out.
     ///
     /// # Errors

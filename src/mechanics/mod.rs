@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod combination;
 pub mod dimension;
 mod equilibrium;
 mod groups;
@@ -36,8 +37,9 @@ use thiserror::Error;
 use crate::expr::{Expr, ExprError, ParseError, parse_expression};
 use crate::symbol::Symbol;
 
+pub use combination::Combination;
 pub use dimension::{Dimension, UnitError};
-pub use equilibrium::{Place, Rest, equilibria};
+pub use equilibrium::{Drive, Place, Rest, equilibria};
 pub use groups::{Group, Groups, NoGroups};
 pub use lagrange::Equations;
 pub use modes::{Mode, Modes, NoModes};
@@ -158,7 +160,21 @@ impl Mechanism {
     /// ```
     pub fn equations(&self) -> Result<Equations, MechanicsError> {
         self.check()?;
-        lagrange::equations(self)
+        let (own, combinations) = combination::combined(self)?;
+        let equations = lagrange::equations(&own)?;
+        Ok(equations.written_out(combinations)?)
+    }
+
+    /// The same with something else in the place of every part.
+    fn mapped(&self, change: impl Fn(&Expr) -> Result<Expr, ExprError>) -> Result<Self, ExprError> {
+        let force = |(on, force): (&Symbol, &Expr)| Ok((*on, change(force)?));
+        Ok(Self {
+            coordinates: self.coordinates.clone(),
+            kinetic: change(&self.kinetic)?,
+            potential: change(&self.potential)?,
+            dissipation: change(&self.dissipation)?,
+            forces: self.forces.iter().map(force).collect::<Result<_, ExprError>>()?,
+        })
     }
 
     /// Everything that is written down, with what it is called.

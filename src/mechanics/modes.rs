@@ -12,8 +12,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use thiserror::Error;
 
+use super::combination::{put_into, written_out};
 use super::equilibrium::undriven;
-use super::{Equations, MechanicsError, Place, Rest, trigonometry::simplified};
+use super::{Combination, Equations, MechanicsError, Place, Rest, trigonometry::simplified};
 use crate::expr::{EvaluationError, Expr, ExprError, Function};
 use crate::symbol::Symbol;
 
@@ -28,6 +29,8 @@ pub struct Modes {
     pub stiffness: Vec<Vec<Expr>>,
     /// The coordinates that may be anywhere and on whose place the modes depend: they are taken at 0.
     pub taken_at_zero: Vec<Symbol>,
+    /// The sums of parameters that enter as one: they cancel as one.
+    combinations: Vec<Combination>,
 }
 
 /// A way of swinging, or of leaving.
@@ -116,6 +119,7 @@ impl Modes {
             damping,
             stiffness,
             taken_at_zero,
+            combinations: equations.combinations.clone(),
         })
     }
 
@@ -136,7 +140,11 @@ impl Modes {
     /// A mass that vanishes there.
     pub fn square(&self) -> Result<Option<Expr>, ExprError> {
         match (self.mass.as_slice(), self.stiffness.as_slice()) {
-            ([mass], [stiffness]) => Expr::divide(&stiffness[0], &mass[0])?.expand().map(Some),
+            ([mass], [stiffness]) => {
+                let [stiffness, mass] = [&stiffness[0], &mass[0]].map(|entry| put_into(entry, &self.combinations));
+                let square = Expr::divide(&stiffness?, &mass?)?.expand()?;
+                written_out(&square, &self.combinations).map(Some)
+            }
             _ => Ok(None),
         }
     }

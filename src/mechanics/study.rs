@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::paper::{self, Finding, PaperError};
 use super::{
-    Dimension, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes, Rest, UnitError,
+    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes, Rest, UnitError,
     equilibria,
 };
 use crate::symbol::Symbol;
@@ -44,6 +44,8 @@ pub struct MechanismStudy {
 pub struct RestStudy {
     /// Where.
     pub rest: Rest,
+    /// What the terms in the time, which the linear equations leave out, do there.
+    pub drive: Drive,
     /// The linear equations there.
     pub modes: Modes,
     /// Their numbers; nothing where not every parameter has a value, or the place does not exist for these values.
@@ -127,7 +129,13 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
         let known = (needed.is_empty() || !question.values.is_empty())
             && needed.iter().all(|name| question.values.contains_key(name));
         let numbers = (known && exists).then(|| modes.numbers(&question.values));
-        rests.push(RestStudy { rest, modes, numbers });
+        let drive = equations.drive_at(&rest).map_err(MechanicsError::from)?;
+        rests.push(RestStudy {
+            rest,
+            drive,
+            modes,
+            numbers,
+        });
     }
     let groups = question
         .units

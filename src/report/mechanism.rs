@@ -7,7 +7,7 @@ use crate::decimal::decimal;
 use crate::derivation::Line;
 use crate::expr::{Expr, Function};
 use crate::mechanics::paper::Finding;
-use crate::mechanics::{Groups, MechanismStudy, Mode, NoGroups, Place, RestStudy};
+use crate::mechanics::{Drive, Groups, MechanismStudy, Mode, NoGroups, Place, RestStudy};
 use crate::symbol::Symbol;
 
 /// The document of a study of a mechanism.
@@ -84,24 +84,40 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         true => "No place of rest was found".to_owned(),
         false => "Places of rest, and small swings about them; others are not ruled out".to_owned(),
     })];
-    let left_out =
-        |expression: &Expr| expression.contains(Symbol::new("t")) || expression.contains_function(Function::Step);
-    if study.equations.rest.iter().any(left_out) {
+    let has = |function: Function| study.equations.rest.iter().any(|rest| rest.contains_function(function));
+    let driven = study.equations.rest.iter().any(|rest| rest.contains(Symbol::new("t")));
+    let vanishes = !study.rests.is_empty() && study.rests.iter().all(|rest| rest.drive == Drive::Vanishes);
+    if vanishes && !has(Function::Step) {
+        blocks.push(Block::Note(
+            "at rest there with the terms in t, too; the swings are those without them, which may hold what falls and shake loose what rests"
+                .to_owned(),
+        ));
+    } else if driven || has(Function::Step) {
         blocks.push(Block::Note(
             "of the equations without the terms in t and without contacts, H(..): where those act there is no such rest".to_owned(),
         ));
     }
+    let is_whole = !driven && !has(Function::Step) && !has(Function::Sign);
     for rest in &study.rests {
         blocks.push(Block::Note(place(rest, coordinates)));
+        let anywhere = rest.rest.places.contains(&Place::Anywhere);
+        let unpulled = match (anywhere, is_whole) {
+            (true, true) => "moves freely",
+            (true, false) => "moves freely where nothing that is left out acts",
+            (false, _) => "no linear force pulls it back: what does is of a higher power",
+        };
         if let Ok(Some(square)) = rest.modes.square() {
-            let square = square_in_words(&square);
-            blocks.push(Block::Note(format!("  {square}")));
+            let why = match square.is_zero() && rest.numbers.is_none() {
+                true => format!(": {unpulled}"),
+                false => String::new(),
+            };
+            blocks.push(Block::Note(format!("  omega^2 = {square}{why}")));
         }
         match &rest.numbers {
             Some(Ok(modes)) => blocks.extend(
                 modes
                     .iter()
-                    .map(|mode| Block::Note(format!("  {}", mode_in_words(mode, coordinates)))),
+                    .map(|mode| Block::Note(format!("  {}", mode_in_words(mode, coordinates, unpulled)))),
             ),
             Some(Err(error)) => blocks.push(Block::Note(format!("  {error}"))),
             None => {}
@@ -134,10 +150,6 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     blocks
 }
 
-fn square_in_words(square: &Expr) -> String {
-    format!("omega^2 = {square}")
-}
-
 fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
     let place = |(name, place): (&Symbol, &Place)| match place {
         Place::At(value) => format!("{name} = {value}"),
@@ -159,7 +171,8 @@ fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
     format!("{}{condition}{zero}", places.join(", "))
 }
 
-fn mode_in_words(mode: &Mode, coordinates: &[Symbol]) -> String {
+/// A mode; `unpulled` is what to say of one that neither swings nor grows.
+fn mode_in_words(mode: &Mode, coordinates: &[Symbol], unpulled: &str) -> String {
     let shape = mode.shape.as_ref().filter(|shape| shape.len() > 1).map(|shape| {
         let parts: Vec<String> = coordinates.iter().map(|name| name.name().to_owned()).collect();
         let numbers: Vec<String> = shape.iter().map(|part| decimal(*part)).collect();
@@ -174,7 +187,7 @@ fn mode_in_words(mode: &Mode, coordinates: &[Symbol]) -> String {
             if growth > 0.0 { "grows" } else { "decays" },
             decimal(growth)
         ),
-        (false, 0.0) => format!("moves freely{shape}"),
+        (false, 0.0) => format!("{unpulled}{shape}"),
         (false, growth) if growth > 0.0 => format!("unstable: leaves like exp({} t){shape}", decimal(growth)),
         (false, growth) => format!("creeps back like exp({} t){shape}", decimal(growth)),
     }
@@ -211,6 +224,10 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
             names.join(", ")
         )),
     ];
+    for combination in &groups.combinations {
+        let line = Line::equation(combination.name, combination.meaning.clone());
+        blocks.push(Block::Line(Cow::Owned(line.because("counts as one parameter"))));
+    }
     if let Ok(square) = Expr::divide(&Expr::one(), &groups.time).and_then(|rate| rate.integer_power(2)) {
         let name = match study.question.mechanism.parameters().contains(&Symbol::new("omega")) {
             true => String::new(),

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
-use lindstedt::mechanics::{Dimension, Groups, MechanicsError, Mechanism, Modes, Place, equilibria, paper};
+use lindstedt::mechanics::{
+    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place, equilibria, paper, study,
+};
 use lindstedt::problem::Problem;
 use lindstedt::system::Integrator;
 use lindstedt::trajectory::Course;
@@ -283,6 +285,128 @@ fn groups_leave_the_motion_as_it_is() {
             );
         }
     }
+}
+
+/// Parameters that enter in a sum alone count as one, and cancel as one: a ball that rolls in a bowl has no number left, as its equation
+/// divided by its inertia by hand shows. Where one of them stands elsewhere, too, both count.
+#[test]
+fn parameters_that_enter_in_one_sum_count_as_one() {
+    let units = |list: &str| -> BTreeMap<Symbol, Dimension> {
+        let pair = |pair: &str| {
+            let (name, unit) = pair.split_once(':').expect("a unit");
+            (Symbol::new(name), unit.parse().expect("a unit"))
+        };
+        list.split(' ').map(pair).collect()
+    };
+    let ball = "phi:rad m:kg R:m r:m g:m/s^2";
+    let masses = "x:m m1:kg m2:kg k1:N/m k2:N/m k3:N/m^3";
+    for (coordinate, kinetic, potential, list, sums, equation, square, form) in [
+        (
+            "phi",
+            "7*m*(R - r)^2*phi'^2/10",
+            "-m*g*(R - r)*cos(phi)",
+            ball,
+            &["R - r"][..],
+            "phi'' + 5*g*sin(phi)/(7*(R - r)) = 0",
+            "5*g/(7*(R - r))",
+            "phi'' + 5*sin(phi)/7",
+        ),
+        // One of them written out.
+        (
+            "phi",
+            "7*m*(R^2 - 2*R*r + r^2)*phi'^2/10",
+            "-m*g*(R - r)*cos(phi)",
+            ball,
+            &["R - r"],
+            "phi'' + 5*g*sin(phi)/(7*(R - r)) = 0",
+            "5*g/(7*(R - r))",
+            "phi'' + 5*sin(phi)/7",
+        ),
+        (
+            "x",
+            "(m1 + m2)*x'^2/2",
+            "(k1 + k2)*x^2/2 + k3*x^4/4",
+            masses,
+            &["m1 + m2", "k1 + k2"],
+            "x'' + x*(k1 + k2)/(m1 + m2) + k3*x^3/(m1 + m2) = 0",
+            "(k1 + k2)/(m1 + m2)",
+            "x'' + x + x^3",
+        ),
+    ] {
+        let mechanism = Mechanism::parse(&[coordinate], kinetic, potential).unwrap();
+        let equations = mechanism.equations().unwrap();
+        assert_eq!(equations.to_string(), equation);
+        let rests = equilibria(&equations).unwrap();
+        let found = Modes::at(&equations, &rests[0])
+            .unwrap()
+            .square()
+            .unwrap()
+            .expect("omega^2");
+        assert_eq!(found.to_string(), square);
+        let groups = Groups::of(&mechanism, &equations, &units(list)).unwrap();
+        let found: Vec<String> = groups.combinations.iter().map(|sum| sum.meaning.to_string()).collect();
+        assert_eq!(found, sums);
+        assert!(
+            groups.groups.is_empty() && groups.parameters == groups.rank,
+            "{groups:?}"
+        );
+        assert_eq!(groups.left[0].to_string(), form);
+    }
+    for (kinetic, potential) in [
+        ("(m1 + m2)*x'^2/2", "k1*x^2/2 + m1*g*x"),
+        ("m1*x'^2/2", "(k1 + k2)*x^2/2 + k1*x^4/4"),
+    ] {
+        let equations = Mechanism::parse(&["x"], kinetic, potential)
+            .unwrap()
+            .equations()
+            .unwrap();
+        assert!(equations.combinations.is_empty(), "{equations}");
+    }
+}
+
+/// What nothing linear pulls back does not move freely, and what shakes the pivot of a pendulum leaves it its places of rest.
+#[test]
+fn a_rest_without_a_linear_force_is_not_called_free() {
+    let printed = |coordinate: &str, kinetic: &str, potential: &str, values: &[(&str, f64)]| {
+        let question = MechanismQuestion {
+            mechanism: Mechanism::parse(&[coordinate], kinetic, potential).unwrap(),
+            units: None,
+            values: values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect(),
+            is_the_papers: false,
+        };
+        let study = study(question).unwrap();
+        let text = lindstedt::export::text::document(&lindstedt::report::mechanism(&study), 120);
+        (study.rests.iter().map(|rest| rest.drive).collect::<Vec<_>>(), text)
+    };
+    let quartic = ("x", "m*x'^2/2", "k3*x^4/4");
+    for values in [&[][..], &[("m", 1.0), ("k3", 2.0)]] {
+        let (drive, text) = printed(quartic.0, quartic.1, quartic.2, values);
+        assert_eq!(drive, [Drive::Absent]);
+        assert!(!text.contains("freely") && text.contains("no linear force"), "{text}");
+    }
+    let (_, text) = printed("x", "m*x'^2/2", "0", &[("m", 1.0)]);
+    assert!(text.contains("moves freely\n"), "{text}");
+    // Held by what swings in time alone.
+    let (drive, text) = printed(
+        "x",
+        "m*x'^2/2",
+        "k*cos(W*t)*x^2/2",
+        &[("m", 1.0), ("k", 1.0), ("W", 2.0)],
+    );
+    assert_eq!(drive, [Drive::Acts]);
+    assert!(text.contains("freely where nothing that is left out acts"), "{text}");
+    // Kapitza's pendulum rests upright and hanging; pushed sideways it does not.
+    let upwards = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*sin(phi)*phi'";
+    let (drive, text) = printed("phi", upwards, "-m*g*L*cos(phi)", &[]);
+    assert_eq!(drive, [Drive::Vanishes; 2]);
+    assert!(
+        text.contains("at rest there with the terms in t, too") && !text.contains("no such rest"),
+        "{text}"
+    );
+    let sideways = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*cos(phi)*phi'";
+    let (drive, text) = printed("phi", sideways, "-m*g*L*cos(phi)", &[]);
+    assert_eq!(drive, [Drive::Acts; 2]);
+    assert!(text.contains("no such rest"), "{text}");
 }
 
 #[test]

@@ -35,6 +35,8 @@ pub struct LagrangianDocument {
     pub units_checked: bool,
     /// The parameters that give the units of the dimensionless form; null without units or where there is none.
     pub units: Option<Vec<String>>,
+    /// The sums of parameters that count as one parameter, by their names in what follows; null likewise.
+    pub combinations: Option<Map<String>>,
     /// The unit of time in them; null likewise.
     pub time_unit: Option<String>,
     /// The number of parameters of the equations; null likewise.
@@ -163,6 +165,12 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
         accelerations: names.zip(accelerations.iter().map(ToString::to_string)).collect(),
         units_checked: study.question.units.is_some(),
         units: groups.map(|groups| groups.units.iter().map(ToString::to_string).collect()),
+        combinations: groups.map(|groups| {
+            let combinations = groups.combinations.iter();
+            combinations
+                .map(|combination| (combination.name.to_string(), combination.meaning.to_string()))
+                .collect()
+        }),
         time_unit: groups.map(|groups| groups.time.to_string()),
         parameter_count: groups.map(|groups| groups.parameters),
         rank: groups.map(|groups| groups.rank),

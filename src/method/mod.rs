@@ -96,7 +96,7 @@ pub struct Options {
     /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the smallest that attracts.
     pub cycle: Option<u32>,
     /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in numbers, or the primary one,
-    /// 2:1 where the drive is in a coefficient.
+    /// 2:1 where the drive is in a coefficient. Both are whole numbers from 1 to 9.
     pub resonance: Option<(u32, u32)>,
     /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less time.
     pub frequency_alone: bool,

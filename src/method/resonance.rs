@@ -12,6 +12,14 @@ use crate::values::Values;
 /// Those that are looked for, Omega : omega0.
 pub(super) const RESONANCES: [(u32, u32); 5] = [(1, 1), (2, 1), (1, 2), (3, 1), (1, 3)];
 
+/// The largest of either number that is asked for: the motion needs as many harmonics.
+pub(super) const LARGEST: u32 = 9;
+
+/// Whether it is a ratio of frequencies that may be asked for.
+pub(super) fn is_ratio((p, q): (u32, u32)) -> bool {
+    (1..=LARGEST).contains(&p) && (1..=LARGEST).contains(&q)
+}
+
 /// The ratio of the driving frequency to the linear one, where both are numbers.
 pub(super) fn ratio_of(frequency: &Expr, stiffness: &Expr) -> Option<f64> {
     let driving = frequency.evaluate(&BTreeMap::new()).ok()?;

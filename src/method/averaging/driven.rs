@@ -28,7 +28,7 @@ use crate::method::driven_answer::DrivenMotion;
 use crate::method::frequency_response::FrequencyResponse;
 use crate::method::multiple_scales::driven::{Asked, is_of_resonance};
 use crate::method::multiple_scales::scaling::{Scaling, bounded};
-use crate::method::resonance::{RESONANCES, by_distance, is_near, ratio_of};
+use crate::method::resonance::{RESONANCES, by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Refusal, Unsuited, not_polynomial};
 use crate::oscillator::{Oscillator, OscillatorError, Parts};
 use crate::solution::response::{ClosedRelation, Response};
@@ -144,7 +144,7 @@ impl UnderDrive<'_> {
             (None, None) => vec![(2, 1), (1, 1)],
         };
         let waves_at = |(p, q): (u32, u32)| match q {
-            1 => waves(drive, oscillator, &projected.omega0, p).map(Some),
+            1 if is_ratio((p, q)) => waves(drive, oscillator, &projected.omega0, p).map(Some),
             _ => Ok(None),
         };
         for resonance in candidates.iter().copied() {

@@ -27,7 +27,7 @@ use crate::expr::Expr;
 use crate::method::drive::{Drive, Driven, Quadrature};
 use crate::method::driven_answer::DrivenMotion;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
-use crate::method::resonance::{RESONANCES, by_distance, is_near, ratio_of};
+use crate::method::resonance::{RESONANCES, by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Refusal, Unsuited};
 use crate::oscillator::{Oscillator, OscillatorError, Parts};
 use crate::solution::{AmplitudeConvention, Definition, Law, Method, Note, Solution};
@@ -229,11 +229,6 @@ impl Asked<'_> {
         };
         question.answer(&found).map(Some)
     }
-}
-
-/// Whether it is a ratio of frequencies: neither is zero.
-fn is_ratio((p, q): (u32, u32)) -> bool {
-    p > 0 && q > 0
 }
 
 /// Whether a linear force without damping is driven at its own frequency.

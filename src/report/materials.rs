@@ -121,8 +121,19 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         decimal(settings.duration),
         decimal(100.0 * REST_FRACTION)
     )));
+    let amplitude = study.question.case.amplitude;
+    if study.question.integrator == Integrator::Chain && study.model.alpha > CHAIN_FRICTION * amplitude {
+        blocks.push(Block::Note(format!(
+            "alpha = {} is more than {} of the amplitude: rest times by closed forms may be several percent off, without --chain they are not",
+            decimal(study.model.alpha),
+            decimal(CHAIN_FRICTION)
+        )));
+    }
     blocks
 }
+
+/// alpha in parts of the amplitude up to which the rest times of a chain are within a percent; `docs/chain.md`.
+const CHAIN_FRICTION: f64 = 0.03;
 
 /// The form that is given, with its number: `held fixed: zeta = 0.02`.
 pub(super) fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2]) -> String {

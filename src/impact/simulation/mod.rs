@@ -351,7 +351,7 @@ pub struct Simulation {
     pub stop: Stop,
     /// Steps taken.
     pub steps: usize,
-    /// Without a path, and where the envelope does not tell the rest: when |x| has fallen to a tenth of the first swing.
+    /// Where the envelope does not tell the rest, and no path or that of a chain: when |x| has fallen to a tenth of the first swing.
     pub(super) fall: Option<f64>,
 }
 

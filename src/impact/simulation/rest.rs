@@ -8,9 +8,9 @@
 //! last crossing: the last time |x| = A_0/10
 //! ```
 //!
-//! Where one swing takes nearly everything, as under damping near the critical, the next turning point comes late and low, and the
-//! line to it falls below the motion itself: there the fall of |x| from the turning point is the rest. A motion that creeps has none
-//! but that.
+//! Where the line to the next turning point is at the level before the motion itself, as where one swing takes nearly everything, or just
+//! after a turning point, the fall of |x| from the turning point is the rest: the later of the two, so that neither makes it jump. A motion
+//! that creeps has none but that.
 //!
 //! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the
 //! swing. On the other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the
@@ -22,7 +22,7 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
-use super::{Simulation, Stop, Turn};
+use super::{Integrator, Simulation, Stop, Turn};
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::polynomial::crossing_of;
 
@@ -94,7 +94,7 @@ impl Simulation {
             Err(reason) => Err(reason),
             Ok(ByTurns::Line { above, below }) => {
                 let time = between(above, below, level);
-                Ok(match is_steep(above, below, level) {
+                Ok(match may_be_late(above, below, level) {
                     true => self.fall(above, level).map_or(time, |fall| time.max(fall)),
                     false => time,
                 })
@@ -131,11 +131,12 @@ impl Simulation {
     /// The same from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
         let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
+        let measure = self.measure();
         // From where it came tells on which side a turning point lies; a moment of rest without motion before it, as
         // under friction, lies where the last one did.
         let mut before = self.start.x;
         let mut side = None;
-        let mut turns: Vec<(Turn, Option<Side>)> = Vec::with_capacity(self.turns.len());
+        let mut last: Option<Turn> = None;
         for &turn in &self.turns {
             match turn.x - before {
                 rise if rise > 0.0 => side = Some(Side::Right),
@@ -143,25 +144,20 @@ impl Simulation {
                 _ => {}
             }
             before = turn.x;
-            if turn.t > 0.0 {
-                turns.push((turn, side));
+            if turn.t <= 0.0 {
+                continue;
             }
-        }
-        match self.measure() {
-            Measure::One(free) => envelope.extend(
-                turns
-                    .iter()
-                    .filter(|(_, side)| *side == Some(free))
-                    .map(|(turn, _)| *turn),
-            ),
-            Measure::Both => {
-                let larger = |pair: &[(Turn, Option<Side>)]| match pair {
-                    [(first, _), (second, _)] if second.x.abs() > first.x.abs() => *second,
-                    [(first, _), ..] => *first,
-                    [] => Turn { t: 0.0, x: amplitude },
-                };
-                envelope.extend(turns.windows(2).map(larger));
-                envelope.dedup();
+            match measure {
+                Measure::One(free) if side == Some(free) => envelope.push(turn),
+                Measure::One(_) => {}
+                Measure::Both => {
+                    let larger = last.map(|last| match turn.x.abs() > last.x.abs() {
+                        true => turn,
+                        false => last,
+                    });
+                    envelope.extend(larger.filter(|larger| envelope.last() != Some(larger)));
+                    last = Some(turn);
+                }
             }
         }
         // Held by friction to the end, or down to the rest energy: it will not be larger any more.
@@ -215,27 +211,26 @@ impl Simulation {
         })
     }
 
-    /// The turning point from which the fall to a tenth has to be known and no path tells it.
+    /// The turning point from which the fall to a tenth has to be known and no path tells it: none is kept, or it is that of a chain,
+    /// whose formulas are only near the motion between turning points.
     pub(in crate::impact) fn untold_fall(&self) -> Option<Turn> {
         let level = REST_FRACTION * self.first_swing();
-        if level == 0.0 || !self.path.pieces().is_empty() || !self.stop.is_complete() {
-            return None;
-        }
-        // Most motions fall little by little, which is soon seen.
-        let little = |turns: &[Turn]| turns[0].x.abs() <= level || !halves(turns[0], turns[2]);
-        let ends_below = self.turns.iter().rev().take(2).all(|turn| turn.x.abs() <= level);
-        if self.turns.len() > 2 && ends_below && self.turns.windows(3).all(little) {
+        if level == 0.0 || self.path_tells_the_fall() || !self.stop.is_complete() {
             return None;
         }
         match self.rest_by_turns(level).ok()? {
-            ByTurns::Line { above, below } => is_steep(above, below, level).then_some(above),
+            ByTurns::Line { above, below } => may_be_late(above, below, level).then_some(above),
             ByTurns::Fall(from) => Some(from),
         }
     }
 
+    fn path_tells_the_fall(&self) -> bool {
+        self.integrator != Integrator::Chain && !self.path.pieces().is_empty()
+    }
+
     /// When |x| has fallen to the level on the way from a turning point, or the start, to the next.
     pub(in crate::impact) fn fall(&self, from: Turn, level: f64) -> Option<f64> {
-        if self.path.pieces().is_empty() {
+        if !self.path_tells_the_fall() {
             return self.fall;
         }
         let begins = if from.t > 0.0 { from.x } else { self.start.x };
@@ -305,21 +300,19 @@ fn swing_of(energy: f64) -> Option<f64> {
     (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
 }
 
-/// Whether a turning point is less than half as far out as an earlier one.
-fn halves(above: Turn, below: Turn) -> bool {
-    2.0 * below.x.abs() < above.x.abs()
+/// Whether the motion may still be beyond the level where the straight line of log|x| between two turning points is at it: where it may
+/// not, nobody need know the fall.
+///
+/// To the level the linear swing of amplitude a takes acos(level/a). Where a turning point is at least half as far out as the one before,
+/// a is twice the level at most: the swing of the pendulum is longer by a fortieth there, and what damps, viscous or dry, makes it
+/// longer by a fifth.
+fn may_be_late(above: Turn, below: Turn, level: f64) -> bool {
+    let halves = 2.0 * below.x.abs() < above.x.abs();
+    halves || between(above, below, level) - above.t < LONGEST_FALL * (level / above.x.abs()).acos()
 }
 
-/// Whether the straight line of log|x| between two turning points may be at the level before the motion is: |x| falls from the first
-/// as a cosine does, T/(2 pi) acos(level/|x|), or sooner, and half as much again is left for damping. Where one swing takes less than
-/// half, the line is what the envelope is.
-fn is_steep(above: Turn, below: Turn, level: f64) -> bool {
-    if !halves(above, below) {
-        return false;
-    }
-    let fraction = (between(above, below, level) - above.t) / (below.t - above.t);
-    fraction < 1.5 / TAU * (level / above.x.abs()).acos()
-}
+/// In parts of that of the linear swing: the fall from a turning point that is followed by one at least half as far out.
+const LONGEST_FALL: f64 = 1.5;
 
 /// The time at which the straight line of log|x| from one turning point to a later one passes the level between them.
 fn between(above: Turn, below: Turn, level: f64) -> f64 {

@@ -156,8 +156,9 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
     runner.finish(start)
 }
 
-/// The fall to a tenth of the first swing, where that is the rest and the path was not kept: it is followed again with its path.
-fn fall(simulation: &Simulation) -> Option<f64> {
+/// The fall to a tenth of the first swing, where that may be the rest and no path tells it: it is followed with its path, again or, for a
+/// chain, for once.
+pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     let from = simulation.untold_fall()?;
     let start = match from.t > 0.0 {
         true => Start {

@@ -343,3 +343,79 @@ fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
     assert!(times.is_sorted(), "{times:?}");
     assert!((times[4] / times[6] - 1.0).abs() < 1e-3, "{times:?}");
 }
+
+/// The rest time as a function of the friction has steep stretches, just after each turning point at the level, and no jump: wherever it
+/// changes most, it changes less the closer one looks.
+#[test]
+fn the_rest_time_is_continuous_in_the_friction() {
+    for (amplitude, right, integrator) in [
+        (0.4, Some(1.0), Integrator::Taylor),
+        (0.4, None, Integrator::Taylor),
+        (1.5, Some(0.323), Integrator::Taylor),
+        (0.4, Some(1.0), Integrator::Chain),
+    ] {
+        let rest = |alpha: f64| {
+            let model = Model {
+                alpha,
+                gamma: 4e5,
+                right,
+                ..Model::default()
+            };
+            let start = Start {
+                x: -amplitude,
+                velocity: 0.0,
+            };
+            let settings = Settings {
+                duration: 100.0,
+                keep_path: false,
+                ..Settings::default()
+            };
+            let motion = simulate(&model, start, integrator, &settings).expect("a motion");
+            motion.rest().time.expect("it rests")
+        };
+        let (from, to) = (0.0985 * amplitude, 0.1015 * amplitude);
+        let (mut from, mut to) = (from, to);
+        for _ in 0..6 {
+            let alphas: Vec<f64> = (0..=24).map(|k| from + (to - from) * f64::from(k) / 24.0).collect();
+            let times: Vec<f64> = alphas.iter().map(|alpha| rest(*alpha)).collect();
+            let rise = |k: &usize| (times[k + 1] - times[*k]).abs();
+            let most = (0..24)
+                .max_by(|one, other| rise(one).total_cmp(&rise(other)))
+                .expect("some");
+            (from, to) = (alphas[most], alphas[most + 1]);
+        }
+        let jump = (rest(to) - rest(from)).abs();
+        assert!(jump < 1e-3, "{amplitude} {right:?} {integrator:?}: {jump} at {from}");
+    }
+}
+
+/// Whether the path is kept changes no rest time, by either route.
+#[test]
+fn a_rest_time_does_not_depend_on_whether_the_path_is_kept() {
+    for integrator in [Integrator::Taylor, Integrator::Chain] {
+        for k in 0..60 {
+            let model = Model {
+                alpha: 0.02 + 5e-4 * f64::from(k),
+                zeta: 0.004 * f64::from(k % 7),
+                gamma: 4e5,
+                right: Some(1.0),
+                ..Model::default()
+            };
+            let start = Start { x: -0.4, velocity: 0.0 };
+            let [kept, not] = [true, false].map(|keep_path| {
+                let settings = Settings {
+                    duration: 100.0,
+                    keep_path,
+                    ..Settings::default()
+                };
+                let motion = simulate(&model, start, integrator, &settings).expect("a motion");
+                motion.rest().time
+            });
+            let same = match (kept, not) {
+                (Ok(kept), Ok(not)) => (kept - not).abs() < 1e-8,
+                _ => kept == not,
+            };
+            assert!(same, "{integrator:?} {model:?}: {kept:?} {not:?}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ use super::dissipation::{ContactDamping, Dissipation};
 use super::hertz;
 use super::model::{Model, Start};
 use super::parameter::Parameter;
-use super::si::YieldCheck;
+use super::si::{YieldCheck, greatest};
 use super::simulate::{SimulationError, simulate};
 use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
 use super::units::{FIRST_YIELD, Modulus, Units};
@@ -454,23 +454,6 @@ fn first_contact(
         peak_pressure: units.pressure(elastic, metres).unwrap_or(f64::NAN),
         restitution,
     }))
-}
-
-/// The greatest value of a function that rises and then falls, by golden sections.
-fn greatest(function: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
-    let part = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let mut best = 0.0_f64;
-    // 0.618^60 = 3e-13 of the contact.
-    for _ in 0..60 {
-        let (left, right) = (to - part * (to - from), from + part * (to - from));
-        let (at_left, at_right) = (function(left), function(right));
-        best = best.max(at_left).max(at_right);
-        match at_left > at_right {
-            true => to = right,
-            false => from = left,
-        }
-    }
-    best
 }
 
 /// The materials under every form of the damping of the design, the given one first.

@@ -1,9 +1,11 @@
 //! The numbers of an impact in SI units, and what they say: whether a body yields, and how far the paper's contact time is.
 //!
 //! In: an [`Impact`] whose [`Setup`](super::Setup) has [`Units`]. Out: an [`SiImpact`], every number by Runge-Kutta and by each
-//! closed form. The peak force is that of Hertz at the greatest depth, also where a line stood for it.
+//! closed form. The peak force is that of Hertz at the greatest depth, also where a line stood for it; of a damped contact the greatest
+//! there is, which comes before.
 
 use super::closed_form::{Impact, Quantity};
+use super::contact::hunt_crossley;
 use super::hertz;
 use super::units::{FIRST_YIELD, PRINTED_CONTACT_TIME, Units};
 
@@ -27,9 +29,9 @@ pub struct SiImpact {
     pub duration: Quantity,
     /// From release to release, s.
     pub period: Quantity,
-    /// The force of the contact at its greatest depth, N.
+    /// The greatest force of the contact, its damping included, N; without damping that at the greatest depth.
     pub peak_force: Quantity,
-    /// The pressure in its middle there, Pa; nothing where the radius is not known.
+    /// The pressure of Hertz in its middle at the greatest depth, Pa; nothing where the radius is not known.
     pub peak_pressure: Option<Quantity>,
 }
 
@@ -73,6 +75,10 @@ impl Impact {
         let metres = |depth: f64| units.length * depth;
         let force = |depth: f64| units.force() * hertz::force(gamma, depth);
         let time = |time: f64| units.time() * time;
+        let damped_force = |speed: f64| {
+            let force = hunt_crossley::peak_force(1.5, gamma, self.damping, speed);
+            force.map_or(f64::NAN, |force| units.force() * force)
+        };
         let si = SiImpact {
             units,
             contact_stiffness: units.contact_stiffness(gamma),
@@ -84,7 +90,14 @@ impl Impact {
             penetration: converted("penetration", &penetration, metres),
             duration: converted("duration", &duration, time),
             period: converted("period", &period, time),
-            peak_force: converted("peak force", &penetration, force),
+            peak_force: match self.setup.loss {
+                None => converted("peak force", &penetration, force),
+                Some(_) => Quantity {
+                    name: "peak force",
+                    runge_kutta: units.force() * self.greatest_force(),
+                    closed_forms: speed.closed_forms.iter().map(|speed| damped_force(*speed)).collect(),
+                },
+            },
             peak_pressure: units.radius.map(|_| {
                 let pressure = |depth| units.pressure(force(depth), metres(depth)).unwrap_or(f64::NAN);
                 converted("peak pressure", &penetration, pressure)
@@ -93,6 +106,18 @@ impl Impact {
         let known = si.rows().into_iter().map(|(row, _)| row.runge_kutta);
         let in_range = known.chain([si.contact_stiffness]).all(f64::is_normal);
         in_range.then_some(si)
+    }
+}
+
+impl Impact {
+    /// The greatest force of the true contact, its damping included, per unit of mass.
+    fn greatest_force(&self) -> f64 {
+        let contact = &self.truth.contact;
+        let force = |t: f64| match contact.at(t) {
+            Some((depth, speed)) => hertz::force(self.setup.stiffness * (1.0 + self.damping * speed), depth),
+            None => 0.0,
+        };
+        greatest(force, 0.0, self.truth.duration)
     }
 }
 
@@ -148,4 +173,21 @@ impl SiImpact {
             })
             .collect()
     }
+}
+
+/// The greatest value of a function that rises and then falls, by golden sections.
+pub(super) fn greatest(function: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
+    let part = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let mut best = 0.0_f64;
+    // 0.618^60 = 3e-13 of the contact.
+    for _ in 0..60 {
+        let (left, right) = (to - part * (to - from), from + part * (to - from));
+        let (at_left, at_right) = (function(left), function(right));
+        best = best.max(at_left).max(at_right);
+        match at_left > at_right {
+            true => to = right,
+            false => from = left,
+        }
+    }
+    best
 }

@@ -438,7 +438,17 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         columns: impact.columns.iter().map(|column| column.reading).collect(),
         rows,
     });
+    let damping = &impact.letters.damping;
+    let damped = format!(
+        "peak force the greatest m g gamma d^(3/2) (1 + {damping} d'), peak pressure 3 F/(2 pi R L d) of F = m g gamma d^(3/2) at the \
+         greatest depth d, energy m v^2/2"
+    );
+    let damped_alone = format!(
+        "peak force the greatest m g gamma d^(3/2) (1 + {damping} d'), energy m v^2/2; a pressure needs [sphere] radius"
+    );
     let peak = match si.peak_pressure {
+        Some(_) if is_lossy => damped.as_str(),
+        None if is_lossy => damped_alone.as_str(),
         Some(_) => {
             "peak force F = m g gamma d^(3/2) at the greatest depth d, peak pressure 3 F/(2 pi R L d), energy m v^2/2"
         }
@@ -447,10 +457,6 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         }
     };
     blocks.push(Block::Detail(peak.to_owned()));
-    if is_lossy {
-        let words = "of a damped contact the greatest force comes before that depth, and is larger: it stands above";
-        blocks.push(Block::Note(words.to_owned()));
-    }
     blocks.push(Block::Note(printed(impact, &over_the_printed, tolerance)));
     blocks.extend(si.yield_checks().iter().map(|check| Block::Note(yielding(check))));
     blocks

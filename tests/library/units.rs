@@ -225,3 +225,45 @@ fn text_and_documents_say_so() {
     let document: Value = serde_json::from_str(&gamma).expect("JSON");
     assert!(document["si"].is_null());
 }
+
+/// The peak force of a contact that loses energy is the greatest over time, the damping in it, as in a study of materials: against samples
+/// of the other integrator, and near the law without the force of the swing.
+#[test]
+fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
+    use lindstedt::impact::contact::HuntCrossley;
+    use lindstedt::impact::{Integrator, Model, Settings, Setup, Start, simulate, solve};
+    use lindstedt::problem::Problem;
+
+    let file = "[pendulum]\namplitude = 1.5\nbarrier = 0.323\nmass = 0.02\nlength = 0.25\n[contact]\nrestitution = 0.5";
+    let file: Problem = file.parse().expect("a problem");
+    let impact = solve(Setup::try_from(&file).expect("a setup")).expect("an impact");
+    let si = impact.si().expect("units");
+    let gamma = impact.setup.stiffness;
+    let model = Model {
+        gamma,
+        mu: impact.damping * gamma,
+        right: Some(0.323),
+        ..Model::default()
+    };
+    let settings = Settings {
+        duration: 4.0,
+        ..Settings::default()
+    };
+    let motion = simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
+    let first = motion.impacts[0];
+    let (from, to) = (first.entry_time, first.exit_time.expect("it leaves"));
+    let force = |k: u32| {
+        let (x, v) = motion
+            .path
+            .at(from + (to - from) * f64::from(k) / 1e4)
+            .expect("a place");
+        model.contact(x - 0.323, v)
+    };
+    let greatest = si.units.force() * (0..=10_000).map(force).fold(0.0, f64::max);
+    let found = si.peak_force.runge_kutta;
+    assert!((found / greatest - 1.0).abs() < 1e-5, "{found} {greatest}");
+    let law = HuntCrossley::new(1.5, gamma, impact.damping, impact.energy_speed).expect("a contact");
+    assert!((found / (si.units.force() * law.peak_force) - 1.0).abs() < 0.01);
+    let told = si.peak_force.closed_forms.last().expect("a closed form");
+    assert!((told / found - 1.0).abs() < 0.01, "{told} {found}");
+}

@@ -96,7 +96,7 @@ pub struct Si {
     pub duration: Quantity,
     /// The time from release to release, in s.
     pub period: Quantity,
-    /// The force of the contact at the greatest depth, in N.
+    /// The greatest force of the contact, that of the damping included, in N; without damping it is that at the greatest depth.
     pub peak_force: Quantity,
     /// The pressure in the middle of the contact at the greatest depth, in Pa; null without a radius.
     pub peak_pressure: Option<Quantity>,

@@ -20,7 +20,7 @@ pub struct Arguments {
     /// Only the materials of the file, without those of the paper's Table 2
     #[arg(long)]
     only_own: bool,
-    /// Do not integrate: every motion as a chain of closed forms, good to a percent where damping is light and dry friction alpha no more than 0.03 of the amplitude
+    /// Do not integrate: every motion as a chain of closed forms, good to a percent where damping is light and dry friction alpha no more than 0.02 of the amplitude
     #[arg(long)]
     chain: bool,
     #[command(flatten)]

@@ -27,8 +27,8 @@ pub struct Baseline {
     pub no_barrier: Result<f64, NoRest>,
     /// With the same barrier, elastic: mu = 0.
     pub lossless_barrier: Result<f64, NoRest>,
-    /// What the actions say of the difference; nothing with dry friction, where the first swing turns over, or where two
-    /// barriers hold it within a tenth of it.
+    /// What the actions say of the difference; nothing with dry friction, where the first swing turns over, where a barrier
+    /// holds the pendulum above the bottom, or where two hold it within a tenth of it.
     pub geometry: Option<Geometry>,
 }
 
@@ -44,9 +44,10 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// By the actions of a swing of this amplitude, rad, between the barriers of the model; nothing where the formula says nothing.
+    /// By the actions of a swing of this amplitude, rad, about the bottom between the barriers of the model; nothing where the formula says
+    /// nothing.
     fn of(model: &Model, amplitude: f64) -> Option<Self> {
-        let caged = model.is_caged(REST_FRACTION * amplitude);
+        let caged = model.is_caged(0.0, REST_FRACTION * amplitude);
         if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI || caged {
             return None;
         }
@@ -101,7 +102,10 @@ pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError
         Ok::<_, SimulationError>(followed.rest().time)
     };
     Ok(Some(Baseline {
-        geometry: Geometry::of(&model, motion.rest().amplitude),
+        // The formula counts amplitudes from the bottom.
+        geometry: Some(motion.rest())
+            .filter(|rest| rest.place == 0.0)
+            .and_then(|rest| Geometry::of(&model, rest.amplitude)),
         no_barrier: rest(Model {
             left: None,
             right: None,

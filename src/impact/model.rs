@@ -49,6 +49,14 @@ impl Side {
         }
     }
 
+    /// The other one.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
     /// `left` or `right`.
     pub fn name(self) -> &'static str {
         match self {
@@ -200,9 +208,10 @@ impl Model {
         }
     }
 
-    /// Whether both barriers stand within this angle.
-    pub(super) fn is_caged(&self, angle: f64) -> bool {
-        self.left.is_some_and(|left| left.abs() < angle) && self.right.is_some_and(|right| right.abs() < angle)
+    /// Whether both barriers stand within this angle of a place.
+    pub(super) fn is_caged(&self, place: f64, angle: f64) -> bool {
+        let near = |barrier: Option<f64>| barrier.is_some_and(|barrier| (barrier - place).abs() < angle);
+        near(self.left) && near(self.right)
     }
 
     /// Whether dry friction is Coulomb's and there is some: then the motion is followed one direction at a time.

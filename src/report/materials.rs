@@ -133,7 +133,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
 }
 
 /// alpha in parts of the amplitude up to which the rest times of a chain are within a percent; `docs/chain.md`.
-const CHAIN_FRICTION: f64 = 0.03;
+const CHAIN_FRICTION: f64 = 0.02;
 
 /// The form that is given, with its number: `held fixed: zeta = 0.02`.
 pub(super) fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2]) -> String {

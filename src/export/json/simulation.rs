@@ -35,13 +35,15 @@ pub struct SimulationDocument {
     pub samples: Vec<Sample>,
     /// Every contact with a barrier, in time.
     pub impacts: Vec<Impact>,
+    /// The place of rest from which amplitudes are counted, in rad: 0, unless a barrier holds the pendulum elsewhere or it has turned over.
+    pub place_of_rest: f64,
     /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
     pub rest_time: Option<f64>,
     /// The same in seconds; null where there is none, or where units are not known.
     pub rest_time_in_seconds: Option<f64>,
     /// Why there is no rest time, in words; null where there is one.
     pub rest_reason: Option<String>,
-    /// The last time at which |x| is a tenth of the first swing, in units of time; null where it never is.
+    /// The last time at which x is a tenth of the first swing away from the place of rest, in units of time; null where it never is.
     pub last_crossing: Option<f64>,
     /// The rest times of the same swing; null where nothing damps it, where it hits nothing, or where the pivot moves.
     pub baseline: Option<Baseline>,
@@ -449,6 +451,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         final_state: final_state(motion),
         samples: report.samples.iter().map(sample).collect(),
         impacts: impacts(report),
+        place_of_rest: rest.place,
         rest_time: rest.time.ok(),
         rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
         rest_reason: rest.time.err().map(|reason| reason.to_string()),

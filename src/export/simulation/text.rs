@@ -314,9 +314,13 @@ fn rest(text: &mut String, report: &Report) {
         Some(units) => format!(", {} s", decimal(time * units.time())),
         None => String::new(),
     };
+    let about = match rest.place {
+        0.0 => String::new(),
+        place => format!(" about the place of rest, x = {}", decimal(place)),
+    };
     let _ = match rest.amplitude {
         0.0 => writeln!(text, "\nRest"),
-        amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}", decimal(amplitude)),
+        amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}{about}", decimal(amplitude)),
     };
     let _ = match rest.time {
         Ok(time) => writeln!(

@@ -331,7 +331,7 @@ impl<'a> Chain<'a> {
 
     /// From a turning point to the barrier ahead, or to the next turning point.
     fn after_turn(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
-        let (to, energy) = (opposite(side), turn.energy);
+        let (to, energy) = (side.opposite(), turn.energy);
         if let Some(ahead) = self.barrier(to)
             && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
         {
@@ -379,7 +379,7 @@ impl<'a> Chain<'a> {
         let [first, second] = [swing.energy, energy].map(Spot::turn);
         // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 - m)) with E = 2 m.
         let stretched = swing.quarter.area / (swing.energy * (2.0 - swing.energy));
-        for (energies, turn, side) in [([from, first], first, opposite(side)), ([first, second], second, side)] {
+        for (energies, turn, side) in [([from, first], first, side.opposite()), ([first, second], second, side)] {
             let [before, after] = energies;
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
@@ -394,7 +394,7 @@ impl<'a> Chain<'a> {
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after it; nothing where there is none.
     fn rub(&mut self, side: Side, from: Spot) -> Option<Place> {
-        let to = opposite(side);
+        let to = side.opposite();
         let quarter = |swing: &Swing| Leg::free(swing.quarter.time, swing.quarter.area);
         let (before, _) = self.reference(from.energy, Kind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
@@ -459,7 +459,7 @@ impl<'a> Chain<'a> {
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
         // The way back to a barrier that was left is the way there; a start between the barriers is not on one.
         let leaves = |barrier: &Barrier| barrier.spot == back;
-        let known = self.barrier(opposite(to)).is_some_and(leaves).then(|| {
+        let known = self.barrier(to.opposite()).is_some_and(leaves).then(|| {
             let reach = Stretch {
                 time: leg.time - swing.quarter.time,
                 area: leg.area - swing.quarter.area,
@@ -510,7 +510,7 @@ impl<'a> Chain<'a> {
         self.advance(bounce.duration, Regime::Contact(side), || {
             ClosedForm::contact((side, x), [bounce.depth, bounce.duration], [speed, bounce.speed_out])
         });
-        let away = opposite(side);
+        let away = side.opposite();
         let energy = spot.energy + 0.5 * bounce.speed_out * bounce.speed_out;
         if self.stop.is_none() {
             contact.released(self.model, self.t, bounce.speed_out);
@@ -610,13 +610,6 @@ impl<'a> Chain<'a> {
 /// Not zero, not negative, and a number.
 fn is_positive(value: f64) -> bool {
     value > 0.0
-}
-
-fn opposite(side: Side) -> Side {
-    match side {
-        Side::Left => Side::Right,
-        Side::Right => Side::Left,
-    }
 }
 
 /// The leg between the turning point of a swing and a spot, which is counted from the bottom away from the turning point.

@@ -6,11 +6,13 @@
 //! - `path`: the motion as a function of time, piece by piece.
 //! - `closed`: the formulas of a chain.
 //! - `energy`: the work of each force, and what is left over.
+//! - `place`: where it settles.
 //! - `rest`: the envelope and its 10 %.
 
 mod closed;
 pub(super) mod energy;
 pub(super) mod path;
+mod place;
 pub(super) mod rest;
 
 use std::fmt;
@@ -422,7 +424,8 @@ impl Simulation {
     /// Whether two barriers hold the pendulum within a tenth of its first swing: then the envelope says at once that it rests, whatever
     /// energy is left.
     pub fn is_caged(&self) -> bool {
-        self.model.is_caged(REST_FRACTION * self.rest().amplitude)
+        let rest = self.rest();
+        self.model.is_caged(rest.place, REST_FRACTION * rest.amplitude)
     }
 
     /// Whether a barrier was touched at all.

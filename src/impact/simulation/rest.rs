@@ -1,12 +1,15 @@
 //! When it comes to rest: the envelope of the amplitude and the time at which it falls to a tenth of the first swing.
 //!
 //! ```text
-//! first swing:  A_0 of the energy at the start, E = 1 - cos A_0
+//! first swing:  A_0 of the energy at the start, E = 1 - cos A_0, half a turn where it turns over
 //! envelope:     (0, A_0) and the turning points (t_i, |x_i|) on the side without a barrier, joined by straight lines of
 //!               log|x|; without a barrier, or with two, the larger of every two successive ones
 //! rest:         envelope = A_0/10, the last time it falls there
 //! last crossing: the last time |x| = A_0/10
 //! ```
+//!
+//! Here x is counted from the place of rest (`place`), which is not 0 where a barrier holds the pendulum above the bottom, or where it has
+//! turned over; A_0 is less by how far above the bottom that is.
 //!
 //! Where the line to the next turning point is at the level before the motion itself, as where one swing takes nearly everything, or just
 //! after a turning point, the fall of |x| from the turning point is the rest: the later of the two, so that neither makes it jump. A motion
@@ -22,6 +25,7 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
+use super::place::Place;
 use super::{Integrator, Simulation, Stop, Turn};
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::polynomial::crossing_of;
@@ -34,9 +38,11 @@ pub const REST_FRACTION: f64 = 0.1;
 pub struct Rest {
     /// The amplitude of the first swing, rad.
     pub amplitude: f64,
+    /// The place of rest from which amplitudes are counted, rad: 0, unless a barrier holds the pendulum elsewhere or it has turned over.
+    pub place: f64,
     /// The time at which the envelope falls to a tenth of it.
     pub time: Result<f64, NoRest>,
-    /// The last time at which |x| was a tenth of it; nothing where it never was.
+    /// The last time at which the pendulum was so far from the place of rest; nothing where it never was.
     pub last_crossing: Option<f64>,
 }
 
@@ -51,20 +57,11 @@ pub enum NoRest {
     #[error("the run ends before the turning point that would show it: a longer duration will")]
     NotYetSeen,
     /// There is no amplitude to begin with.
-    #[error("the motion starts at x = 0 without speed: it has no amplitude that could decay")]
+    #[error("the motion starts at its place of rest without speed: it has no amplitude that could decay")]
     NoAmplitude,
     /// The run broke off.
     #[error("the run ended before it could be seen")]
     BrokeOff,
-}
-
-/// The turning points that make the envelope.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Measure {
-    /// Those where the motion turns back from this side: the other one has a barrier.
-    One(Side),
-    /// The larger of every two.
-    Both,
 }
 
 /// How the turning points tell the rest.
@@ -80,10 +77,12 @@ impl Simulation {
     /// When it came to rest.
     pub fn rest(&self) -> Rest {
         let amplitude = self.first_swing();
+        let place = self.place().x;
         let level = REST_FRACTION * amplitude;
         if amplitude == 0.0 {
             return Rest {
                 amplitude,
+                place,
                 time: Err(NoRest::NoAmplitude),
                 last_crossing: None,
             };
@@ -103,6 +102,7 @@ impl Simulation {
         };
         Rest {
             amplitude,
+            place,
             time,
             last_crossing,
         }
@@ -114,16 +114,13 @@ impl Simulation {
         first_swing(&self.model, self.start)
     }
 
-    fn measure(&self) -> Measure {
-        match (self.model.left, self.model.right) {
-            (None, Some(_)) => Measure::One(Side::Left),
-            (Some(_), None) => Measure::One(Side::Right),
-            _ => Measure::Both,
-        }
+    /// Where it settles.
+    pub(super) fn place(&self) -> Place {
+        Place::near(&self.model, self.end_x)
     }
 
     /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|) are what is joined by straight lines
-    /// of log|x|.
+    /// of log|x|, with x counted from the place of rest.
     pub fn envelope(&self) -> Vec<Turn> {
         self.envelope_from(self.first_swing())
     }
@@ -131,7 +128,12 @@ impl Simulation {
     /// The same from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
         let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
-        let measure = self.measure();
+        let place = self.place();
+        let free = place.free_side(&self.model);
+        let counted = |turn: &Turn| Turn {
+            t: turn.t,
+            x: turn.x - place.x,
+        };
         // From where it came tells on which side a turning point lies; a moment of rest without motion before it, as
         // under friction, lies where the last one did.
         let mut before = self.start.x;
@@ -147,10 +149,11 @@ impl Simulation {
             if turn.t <= 0.0 {
                 continue;
             }
-            match measure {
-                Measure::One(free) if side == Some(free) => envelope.push(turn),
-                Measure::One(_) => {}
-                Measure::Both => {
+            let turn = counted(&turn);
+            match free {
+                Some(_) if side == free => envelope.push(turn),
+                Some(_) => {}
+                None => {
                     let larger = last.map(|last| match turn.x.abs() > last.x.abs() {
                         true => turn,
                         false => last,
@@ -167,7 +170,7 @@ impl Simulation {
         if held {
             // Since when, not until when: how long a run is does not change when its motion came to rest.
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
-            envelope.extend(at_rest.last().copied());
+            envelope.extend(at_rest.last().map(counted));
         } else if self.stop == Stop::RestEnergy {
             envelope.push(Turn {
                 t: self.end_time,
@@ -179,7 +182,8 @@ impl Simulation {
 
     /// The amplitude of a swing with the energy of the end.
     fn last_swing(&self) -> f64 {
-        swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY)
+        let swing = swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY);
+        (swing - self.place().height()).max(0.0)
     }
 
     /// What the turning points say of the rest.
@@ -201,7 +205,11 @@ impl Simulation {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);
         }
-        let last = self.turns.last().copied().unwrap_or(above);
+        let place = self.place().x;
+        let last = self.turns.last().map_or(above, |last| Turn {
+            t: last.t,
+            x: last.x - place,
+        });
         if self.end_time - last.t <= TAU {
             return Err(NoRest::NotYetSeen);
         }
@@ -218,25 +226,30 @@ impl Simulation {
         if level == 0.0 || self.path_tells_the_fall() || !self.stop.is_complete() {
             return None;
         }
-        match self.rest_by_turns(level).ok()? {
-            ByTurns::Line { above, below } => may_be_late(above, below, level).then_some(above),
-            ByTurns::Fall(from) => Some(from),
-        }
+        let from = match self.rest_by_turns(level).ok()? {
+            ByTurns::Line { above, below } => may_be_late(above, below, level).then_some(above)?,
+            ByTurns::Fall(from) => from,
+        };
+        Some(Turn {
+            t: from.t,
+            x: from.x + self.place().x,
+        })
     }
 
     fn path_tells_the_fall(&self) -> bool {
         self.integrator != Integrator::Chain && !self.path.pieces().is_empty()
     }
 
-    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next.
+    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next, all counted from the place of rest.
     pub(in crate::impact) fn fall(&self, from: Turn, level: f64) -> Option<f64> {
         if !self.path_tells_the_fall() {
             return self.fall;
         }
-        let begins = if from.t > 0.0 { from.x } else { self.start.x };
+        let place = self.place().x;
+        let begins = if from.t > 0.0 { from.x } else { self.start.x - place };
         let next = self.turns.iter().find(|turn| turn.t > from.t);
         let until = next.map_or(self.end_time, |turn| turn.t);
-        let edge = level.copysign(begins);
+        let edge = place + level.copysign(begins);
         let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
         let falls = begins.abs() > level && excess(until) * begins < 0.0;
         falls.then(|| crossing_of(excess, from.t, until))
@@ -245,7 +258,9 @@ impl Simulation {
     /// Between turning points x only rises or only falls: the last stretch that begins beyond the level holds the
     /// crossing, unless the run ends beyond it.
     fn last_crossing(&self, level: f64) -> Option<f64> {
-        if self.path.pieces().is_empty() || self.end_x.abs() > level {
+        let place = self.place().x;
+        let beyond = |x: f64| (x - place).abs() > level;
+        if self.path.pieces().is_empty() || beyond(self.end_x) {
             return None;
         }
         let start = Turn {
@@ -256,28 +271,29 @@ impl Simulation {
             t: self.end_time,
             x: self.end_x,
         };
-        let index = self.turns.iter().rposition(|turn| turn.x.abs() > level);
+        let index = self.turns.iter().rposition(|turn| beyond(turn.x));
         let from = match index {
             Some(index) => self.turns[index],
-            None if start.x.abs() > level => start,
+            None if beyond(start.x) => start,
             None => return None,
         };
         let to = index
             .map_or(self.turns.first(), |index| self.turns.get(index + 1))
             .copied()
             .unwrap_or(end);
-        let edge = level.copysign(from.x);
+        let edge = place + level.copysign(from.x - place);
         let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
         Some(crossing_of(excess, from.t, to.t))
     }
 }
 
-/// The amplitude, rad, of a swing with the energy of the start.
+/// The amplitude, rad, of a swing with the energy of the start, counted from the place at which it would settle if it did not turn over.
 pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
     let Start { x, velocity } = start;
+    let place = Place::near(model, x);
     match velocity == 0.0 && model.depth(x).is_none() {
-        true => x.abs(),
-        false => swing_of(model.energy(x, velocity)).unwrap_or(PI.max(x.abs())),
+        true => (x - place.x).abs(),
+        false => (swing_of(model.energy(x, velocity)).unwrap_or(PI) - place.height()).max(0.0),
     }
 }
 
@@ -286,11 +302,21 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
     if model.beta != 0.0 {
         return false;
     }
-    let small = |turn: &Turn| turn.x.abs() <= level;
-    match (model.left, model.right, turns) {
-        (None, Some(right), [.., last]) => last.x < right.min(0.0) && small(last),
-        (Some(left), None, [.., last]) => last.x > left.max(0.0) && small(last),
-        (_, _, [.., before, last]) => small(before) && small(last),
+    let Some(last) = turns.last() else {
+        return false;
+    };
+    let place = Place::near(model, last.x);
+    let small = |turn: &Turn| (turn.x - place.x).abs() <= level;
+    // On the free side, not in the barrier.
+    let free = |side: Side| {
+        let from_barrier = model
+            .barrier(side.opposite())
+            .map(|barrier| side.sign() * (last.x - barrier));
+        side.sign() * (last.x - place.x) > 0.0 && from_barrier.is_none_or(|distance| distance > 0.0)
+    };
+    match (place.free_side(model), turns) {
+        (Some(side), [.., last]) => free(side) && small(last),
+        (None, [.., before, last]) => small(before) && small(last),
         _ => false,
     }
 }

@@ -45,11 +45,11 @@ fn how_long_a_run_is_does_not_change_when_its_motion_rests() {
 }
 
 /// The rest time by its definition, from nothing but samples of the Runge-Kutta motion: crests on the left, each by a
-/// parabola through three samples, and the straight line of log|x| between the two around the level.
-fn rest_by_samples(model: &Model, level: f64, duration: f64) -> f64 {
+/// parabola through three samples, and the straight line of log|x| between the two around the level, x counted from the place of rest.
+fn rest_by_samples(model: &Model, place: f64, level: f64, duration: f64) -> f64 {
     const STEP: f64 = 1e-3;
     let motion = run(model, REST, 1e-11, duration, Integrator::RungeKutta);
-    let at = |k: usize| motion.path.at(STEP * k as f64).map_or(0.0, |(x, _)| x);
+    let at = |k: usize| motion.path.at(STEP * k as f64).map_or(0.0, |(x, _)| x - place);
     let crests = (1..(duration / STEP) as usize - 1).filter_map(|k| {
         let [before, here, after] = [at(k - 1), at(k), at(k + 1)];
         (here < before && here <= after).then(|| {
@@ -57,7 +57,7 @@ fn rest_by_samples(model: &Model, level: f64, duration: f64) -> f64 {
             (STEP * (k as f64 - slope / bend), here - 0.5 * slope * slope / bend)
         })
     });
-    let mut before = (0.0, REST.x);
+    let mut before = (0.0, REST.x - place);
     for (t, x) in crests {
         if -x <= level {
             let fraction = (level / -before.1).ln() / (x / before.1).ln();
@@ -91,7 +91,7 @@ fn a_barrier_near_plumb_does_not_invent_rest() {
         };
         assert_eq!(taylor(&model, REST, 1e-10, 100.0).rest().time, Err(NoRest::StaysAbove));
         let found = taylor(&model, REST, 1e-10, 260.0).rest().time.expect("it rests");
-        let sampled = rest_by_samples(&model, 0.15, 260.0);
+        let sampled = rest_by_samples(&model, 0.0, 0.15, 260.0);
         assert!((found - sampled).abs() < 1e-3, "{right}: {found} {sampled}");
     }
 }
@@ -159,14 +159,14 @@ fn a_motion_that_creeps_is_its_own_envelope_and_one_that_swings_must_be_seen_to_
     assert!(taylor(&swinging, REST, 1e-10, 60.0).rest().time.is_ok());
 }
 
-/// Over the top there is no swing: the amplitude is half a turn, or the start where that lies farther out.
+/// Over the top there is no swing: the amplitude is half a turn, wherever the count of turns begins.
 #[test]
 fn the_amplitude_of_a_motion_that_turns_over() {
     let model = Model {
         right: None,
         ..Model::default()
     };
-    for (x, amplitude) in [(-10.0, 10.0), (10.0, 10.0), (0.5, std::f64::consts::PI)] {
+    for (x, amplitude) in [-10.0, 10.0, 0.5].map(|x| (x, std::f64::consts::PI)) {
         let motion = taylor(&model, Start { x, velocity: 3.0 }, 1e-9, 5.0);
         assert!(
             (motion.rest().amplitude - amplitude).abs() < 1e-12,
@@ -418,4 +418,72 @@ fn a_rest_time_does_not_depend_on_whether_the_path_is_kept() {
             assert!(same, "{integrator:?} {model:?}: {kept:?} {not:?}");
         }
     }
+}
+
+/// A turn more or less is the same motion: one that begins at -4 settles at -2 pi as one that begins at 2 pi - 4 does at 0.
+#[test]
+fn a_motion_that_goes_over_the_top_rests_where_it_settles() {
+    let model = Model {
+        zeta: 0.1,
+        right: None,
+        ..Model::default()
+    };
+    let turn = std::f64::consts::TAU;
+    for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
+        let [beyond, plain] = [-4.0, turn - 4.0].map(|x| {
+            let start = Start { x, velocity: 0.0 };
+            run(&model, start, 1e-12, 200.0, integrator).rest()
+        });
+        assert_eq!((beyond.place, plain.place), (-turn, 0.0));
+        assert!((beyond.amplitude - (turn - 4.0)).abs() < 1e-12, "{beyond:?}");
+        let (one, other) = (beyond.time.expect("it rests"), plain.time.expect("it rests"));
+        assert!((one - other).abs() < 1e-6, "{one} {other}");
+        let (one, other) = (
+            beyond.last_crossing.expect("falls"),
+            plain.last_crossing.expect("falls"),
+        );
+        assert!((one - other).abs() < 1e-6, "{one} {other}");
+    }
+}
+
+/// Held by a barrier before the bottom the pendulum rests there, pressed in by its weight, and that is where amplitudes are counted from:
+/// the crests against samples of the other integrator, with the run stopped as soon as the rest is known and not.
+#[test]
+fn a_pendulum_held_by_its_barrier_rests_there() {
+    let model = Model {
+        gamma: 1e5,
+        mu: 2e4,
+        zeta: 0.05,
+        right: Some(-0.2),
+        ..Model::default()
+    };
+    let depth = find_root(|d| 1e5 * d.powf(1.5) - (0.2 - d).sin(), 0.0, 0.2).expect("a depth");
+    let place = -0.2 + depth;
+    let level = 0.1 * (1.5 + place);
+    let sampled = rest_by_samples(&model, place, level, 60.0);
+    for stop_at_rest in [true, false] {
+        let settings = Settings {
+            duration: 60.0,
+            stop_at_rest,
+            ..Settings::default()
+        };
+        let motion = simulate(&model, REST, Integrator::Taylor, &settings).expect("a motion");
+        let rest = motion.rest();
+        assert!((rest.place - place).abs() < 1e-12, "{rest:?}");
+        assert!((rest.amplitude - 10.0 * level).abs() < 1e-12, "{rest:?}");
+        let time = rest.time.expect("it rests");
+        assert!((time - sampled).abs() < 1e-3, "{time} {sampled}");
+        assert_eq!(motion.stop == Stop::AtRest, stop_at_rest);
+    }
+    // Its mirror image is the same.
+    let mirrored = Model {
+        left: Some(0.2),
+        right: None,
+        ..model
+    };
+    let rests = [(model, -1.5), (mirrored, 1.5)].map(|(model, x)| {
+        let rest = taylor(&model, Start { x, velocity: 0.0 }, 1e-10, 60.0).rest();
+        rest.time.expect("it rests")
+    });
+    assert!((rests[0] - rests[1]).abs() < 1e-9, "{rests:?}");
 }

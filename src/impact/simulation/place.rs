@@ -1,0 +1,65 @@
+//! Where a motion settles: at the bottom of its turn, or held above it by a barrier that stands in the way.
+//!
+//! ```text
+//! bottom:   2 pi n, the nearest
+//! held:     a barrier at x_c between there and the bottom, pressed in by the weight: gamma d^(3/2) = sin(|x_c - 2 pi n| - d)
+//! ```
+
+use std::f64::consts::{PI, TAU};
+
+use crate::impact::hertz;
+use crate::impact::model::{Model, Side};
+use crate::numeric::ode::root::find_root;
+
+/// A place of rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::impact) struct Place {
+    /// Where, rad.
+    pub x: f64,
+    /// The lowest place of this turn, rad.
+    bottom: f64,
+    /// The barrier that holds the pendulum above it.
+    held: Option<Side>,
+}
+
+impl Place {
+    /// The one at which a motion here settles, friction and excitation left aside; for a motion that is nowhere, the bottom.
+    pub fn near(model: &Model, x: f64) -> Self {
+        let bottom = if x.is_finite() { TAU * (x / TAU).round() } else { 0.0 };
+        let held = [Side::Left, Side::Right].into_iter().find_map(|side| {
+            let barrier = model.barrier(side).filter(|_| model.gamma > 0.0)?;
+            let height = side.sign() * (bottom - barrier);
+            (height > 0.0).then_some((side, barrier, height))
+        });
+        let Some((side, barrier, height)) = held else {
+            return Self {
+                x: bottom,
+                bottom,
+                held: None,
+            };
+        };
+        let excess = |depth: f64| hertz::force(model.gamma, depth) - (height - depth).sin();
+        let depth = find_root(excess, 0.0, height).unwrap_or(0.0);
+        Self {
+            x: barrier + side.sign() * depth,
+            bottom,
+            held: Some(side),
+        }
+    }
+
+    /// How far above the bottom the pendulum is held, rad.
+    pub fn height(&self) -> f64 {
+        (self.x - self.bottom).abs()
+    }
+
+    /// The side on which every swing shows its whole energy, where there is one: no barrier stands there, and one on the other. A barrier
+    /// beyond the upright position is none.
+    pub fn free_side(&self, model: &Model) -> Option<Side> {
+        let stands = |barrier: Option<f64>| barrier.is_some_and(|barrier| (barrier - self.bottom).abs() <= PI);
+        match (self.held, stands(model.left), stands(model.right)) {
+            (Some(Side::Right), ..) | (None, false, true) => Some(Side::Left),
+            (Some(Side::Left), ..) | (None, true, false) => Some(Side::Right),
+            (None, ..) => None,
+        }
+    }
+}

@@ -17,7 +17,8 @@
 //!
 //! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the
 //! swing. On the other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the
-//! parameters wherever the motion is. The last crossing is a staircase: it jumps by half a swing when one more crest
+//! parameters wherever the motion is, but for one case: beside one barrier, where dry friction just holds the pendulum at a turning
+//! point on the barrier's side, the next one on the other side, half a swing later, is missing, and the line ends sooner. The last crossing is a staircase: it jumps by half a swing when one more crest
 //! stays below the level. A crossing counts only once the turning point after it has been reached; a run that ends
 //! before knows of no rest.
 

@@ -344,10 +344,10 @@ fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
     assert!((times[4] / times[6] - 1.0).abs() < 1e-3, "{times:?}");
 }
 
-/// The rest time as a function of the friction has steep stretches, just after each turning point at the level, and no jump: wherever it
-/// changes most, it changes less the closer one looks.
+/// Where the last turning point beyond the level comes and goes the rest time as a function of the friction is steep, and has no jump:
+/// wherever it changes most, it changes less the closer one looks.
 #[test]
-fn the_rest_time_is_continuous_in_the_friction() {
+fn the_rest_time_does_not_jump_where_the_last_turning_point_does() {
     for (amplitude, right, integrator) in [
         (0.4, Some(1.0), Integrator::Taylor),
         (0.4, None, Integrator::Taylor),

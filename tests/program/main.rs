@@ -5,6 +5,7 @@ mod catalog;
 mod documents;
 mod errors;
 mod gallery;
+mod impact_files;
 mod materials;
 mod optimize;
 mod options;

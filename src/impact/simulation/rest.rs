@@ -15,12 +15,13 @@
 //! after a turning point, the fall of |x| from the turning point is the rest: the later of the two, so that neither makes it jump. A motion
 //! that creeps has none but that.
 //!
-//! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the
-//! swing. On the other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the
-//! parameters wherever the motion is, but for one case: beside one barrier, where dry friction just holds the pendulum at a turning
-//! point on the barrier's side, the next one on the other side, half a swing later, is missing, and the line ends sooner. The last crossing is a staircase: it jumps by half a swing when one more crest
-//! stays below the level. A crossing counts only once the turning point after it has been reached; a run that ends
-//! before knows of no rest.
+//! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the swing. On the
+//! other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the parameters wherever the motion
+//! is, but for one case: beside one barrier, where dry friction just holds the pendulum at a turning point on the barrier's side, the
+//! next one on the other side, half a swing later, is missing, and the line ends sooner.
+//!
+//! The last crossing is a staircase: it jumps by half a swing when one more crest stays below the level. A crossing counts only once the
+//! turning point after it has been reached; a run that ends before knows of no rest.
 
 use std::f64::consts::{PI, TAU};
 

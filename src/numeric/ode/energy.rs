@@ -114,35 +114,26 @@ pub enum PeriodError {
 impl PeriodError {
     /// The same where positions were distances from `origin`.
     #[must_use]
-    pub fn moved(self, origin: f64) -> Self {
-        match self {
-            Self::PushedAway { start, equilibrium } => Self::PushedAway {
-                start: start + origin,
-                equilibrium: equilibrium + origin,
-            },
-            Self::OtherWell { start, equilibrium } => Self::OtherWell {
-                start: start + origin,
-                equilibrium: equilibrium + origin,
-            },
-            Self::Escapes { start, searched } => Self::Escapes {
-                start: start + origin,
-                searched: searched + origin,
-            },
-            Self::Separatrix { start, place } => Self::Separatrix {
-                start: start + origin,
-                place: place + origin,
-            },
-            Self::NearSeparatrix { start, place } => Self::NearSeparatrix {
-                start: start + origin,
-                place: place + origin,
-            },
-            Self::Pole { place } => Self::Pole { place: place + origin },
-            Self::Overflow { place, term } => Self::Overflow {
-                place: place + origin,
-                term,
-            },
-            Self::Waves | Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => self,
+    pub fn moved(mut self, origin: f64) -> Self {
+        match &mut self {
+            Self::PushedAway {
+                start,
+                equilibrium: other,
+            }
+            | Self::OtherWell {
+                start,
+                equilibrium: other,
+            }
+            | Self::Escapes { start, searched: other }
+            | Self::Separatrix { start, place: other }
+            | Self::NearSeparatrix { start, place: other } => {
+                *start += origin;
+                *other += origin;
+            }
+            Self::Pole { place } | Self::Overflow { place, .. } => *place += origin,
+            Self::Waves | Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => {}
         }
+        self
     }
 }
 

@@ -7,7 +7,7 @@
 use std::fmt;
 
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
-use crate::expr::Expr;
+use crate::expr::{Expr, Inside};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::symbol::Symbol;
@@ -235,7 +235,7 @@ impl fmt::Display for Formula {
                         false => format!("({end})"),
                     };
                 let inside = match integrand.as_ref() {
-                    Self::Expression(sum) if sum.terms().len() > 1 => format!("({sum})"),
+                    Self::Expression(sum) if sum.terms().len() > 1 => format!("({})", Inside(sum)),
                     other => other.to_string(),
                 };
                 write!(
@@ -246,7 +246,13 @@ impl fmt::Display for Formula {
                     end(to)
                 )
             }
-            Self::OverRoot(numerator, inside) => write!(formatter, "{}/sqrt({inside})", bracketed(numerator)),
+            Self::OverRoot(numerator, inside) => {
+                let numerator = bracketed(numerator);
+                match inside.as_ref() {
+                    Self::Expression(inside) => write!(formatter, "{numerator}/sqrt({})", Inside(inside)),
+                    inside => write!(formatter, "{numerator}/sqrt({inside})"),
+                }
+            }
             Self::Slope { factor, of, by } => write!(formatter, "{}d{of}/d{by}", before(factor)),
         }
     }
@@ -261,9 +267,8 @@ fn before(factor: &Expr) -> String {
 }
 
 fn bracketed(factor: &Expr) -> String {
-    let text = factor.to_string();
-    match factor.terms().len() > 1 || text.contains('/') {
-        true => format!("({text})"),
-        false => text,
+    match factor.terms().len() > 1 || !factor.fraction().denominator.is_empty() {
+        true => format!("({})", Inside(factor)),
+        false => factor.to_string(),
     }
 }

@@ -11,7 +11,7 @@ mod expression;
 mod impact;
 mod table;
 
-pub use expression::{expression, symbol};
+pub use expression::{expression, inside, symbol};
 
 pub use super::steps::latex as steps;
 use num_traits::Zero;

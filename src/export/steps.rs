@@ -293,7 +293,7 @@ fn formula_as_latex(formula: &Formula) -> String {
         } => {
             let inside = match integrand.as_ref() {
                 Formula::Expression(sum) if sum.terms().len() > 1 => {
-                    format!("\\left({}\\right)", latex::expression(sum))
+                    format!("\\left({}\\right)", latex::inside(sum))
                 }
                 other => formula_as_latex(other),
             };
@@ -308,7 +308,10 @@ fn formula_as_latex(formula: &Formula) -> String {
         Formula::OverRoot(numerator, inside) => format!(
             "\\frac{{{}}}{{\\sqrt{{{}}}}}",
             latex::expression(numerator),
-            formula_as_latex(inside)
+            match inside.as_ref() {
+                Formula::Expression(inside) => latex::inside(inside),
+                inside => formula_as_latex(inside),
+            }
         ),
         Formula::Slope { factor, of, by } => format!(
             "{}\\frac{{\\mathrm{{d}}{}}}{{\\mathrm{{d}}{}}}",
@@ -323,7 +326,7 @@ fn formula_as_latex(formula: &Formula) -> String {
 fn before(factor: &Expr) -> String {
     match (*factor == Expr::one(), factor.terms().len() > 1) {
         (true, _) => String::new(),
-        (_, true) => format!("\\left({}\\right) ", latex::expression(factor)),
+        (_, true) => format!("\\left({}\\right) ", latex::inside(factor)),
         _ => format!("{} ", latex::expression(factor)),
     }
 }

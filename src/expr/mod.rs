@@ -29,6 +29,7 @@
 
 mod calculus;
 mod evaluate;
+mod factor;
 mod function;
 mod normal;
 mod number;
@@ -58,6 +59,7 @@ pub use function::Function;
 pub(crate) use parse::excerpt;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;
+pub(crate) use print::Inside;
 pub use rounding::Rounded;
 pub use typed::{Quotation, Typed};
 

@@ -54,16 +54,49 @@ impl Expr {
 }
 
 impl fmt::Display for Expr {
-    /// Without recursion: `open` holds what is still to be written, the next piece last.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut open = vec![Piece::Expr(self.clone(), Place::Free)];
-        while let Some(piece) = open.pop() {
-            match piece {
-                Piece::Text(text) => formatter.write_str(text)?,
-                Piece::Expr(expr, place) => write_node(&expr, place, formatter, &mut open)?,
-            }
+        write_expr(self, Place::Free, formatter)
+    }
+}
+
+/// An expression as it stands in parentheses or below a root, which the caller writes: `A^2 - x^2` for `-x^2 + A^2`.
+pub(crate) struct Inside<'a>(pub(crate) &'a Expr);
+
+impl fmt::Display for Inside<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_expr(self.0, Place::Inside, formatter)
+    }
+}
+
+/// Without recursion: `open` holds what is still to be written, the next piece last.
+fn write_expr(expr: &Expr, place: Place, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let mut open = vec![Piece::Expr(expr.clone(), place)];
+    while let Some(piece) = open.pop() {
+        match piece {
+            Piece::Text(text) => formatter.write_str(text)?,
+            Piece::Expr(expr, place) => write_node(&expr, place, formatter, &mut open)?,
         }
-        Ok(())
+    }
+    Ok(())
+}
+
+impl Expr {
+    /// The terms as they stand in parentheses: where the first has a minus, those next without one stand before it.
+    pub(crate) fn terms_inside(&self) -> impl Iterator<Item = &Self> {
+        let terms = self.terms();
+        let minus = terms.iter().take_while(|term| term.has_leading_minus()).count();
+        let (minus, others) = terms.split_at(minus);
+        let plus = others.iter().take_while(|term| !term.has_leading_minus()).count();
+        let (plus, others) = others.split_at(plus);
+        plus.iter().chain(minus).chain(others)
+    }
+
+    /// A difference turned round, `a - b` for `b - a`, which takes a minus in front of it away.
+    pub(crate) fn turned_round(&self) -> Option<Self> {
+        match self.terms() {
+            [one, other] if !one.has_leading_minus() && other.has_leading_minus() => Some(-self),
+            _ => None,
+        }
     }
 }
 
@@ -75,8 +108,10 @@ enum Piece {
 /// What surrounds an expression, and with it which expressions need parentheses.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
-    /// Alone, an argument, or in parentheses already.
+    /// Alone.
     Free,
+    /// An argument, or in parentheses already.
+    Inside,
     /// A term after its sign has been written: the sign is left out.
     Unsigned,
     /// A factor above the line.
@@ -92,14 +127,14 @@ fn in_parentheses(expr: &Expr, place: Place) -> bool {
     match expr.node() {
         Node::Symbol(_) | Node::Pi | Node::Function(..) => false,
         Node::Number(value) => match place {
-            Place::Free | Place::Unsigned => false,
+            Place::Free | Place::Inside | Place::Unsigned => false,
             Place::Factor => !value.is_integer(),
             Place::Base | Place::Exponent => !value.is_integer() || value.is_negative(),
         },
-        Node::Sum(_) => place != Place::Free,
-        Node::Product(..) => !matches!(place, Place::Free | Place::Unsigned),
+        Node::Sum(_) => !matches!(place, Place::Free | Place::Inside),
+        Node::Product(..) => !matches!(place, Place::Free | Place::Inside | Place::Unsigned),
         Node::Power(_, exponent) => match place {
-            Place::Free | Place::Unsigned | Place::Factor => false,
+            Place::Free | Place::Inside | Place::Unsigned | Place::Factor => false,
             Place::Base | Place::Exponent => !is_half(exponent),
         },
     }
@@ -107,7 +142,7 @@ fn in_parentheses(expr: &Expr, place: Place) -> bool {
 
 fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mut Vec<Piece>) -> fmt::Result {
     if in_parentheses(expr, place) {
-        open.extend([Piece::Text(")"), Piece::Expr(expr.clone(), Place::Free)]);
+        open.extend([Piece::Text(")"), Piece::Expr(expr.clone(), Place::Inside)]);
         return out.write_char('(');
     }
     match expr.node() {
@@ -116,7 +151,11 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
         Node::Number(value) if place == Place::Unsigned => write!(out, "{}", value.abs()),
         Node::Number(value) => write!(out, "{value}"),
         Node::Sum(terms) => {
-            for (index, term) in terms.iter().enumerate().rev() {
+            let terms: Vec<&Expr> = match place {
+                Place::Inside => expr.terms_inside().collect(),
+                _ => terms.iter().collect(),
+            };
+            for (index, term) in terms.into_iter().enumerate().rev() {
                 open.push(Piece::Expr(term.clone(), Place::Unsigned));
                 match (index, term.has_leading_minus()) {
                     (0, false) => {}
@@ -130,7 +169,7 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
         Node::Function(function, arguments) => {
             open.push(Piece::Text(")"));
             for (index, argument) in arguments.iter().enumerate().rev() {
-                open.push(Piece::Expr(argument.clone(), Place::Free));
+                open.push(Piece::Expr(argument.clone(), Place::Inside));
                 if index > 0 {
                     open.push(Piece::Text(", "));
                 }
@@ -138,7 +177,7 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
             write!(out, "{}(", function.name())
         }
         Node::Power(base, exponent) if is_half(exponent) => {
-            open.extend([Piece::Text(")"), Piece::Expr(base.clone(), Place::Free)]);
+            open.extend([Piece::Text(")"), Piece::Expr(base.clone(), Place::Inside)]);
             out.write_str("sqrt(")
         }
         Node::Power(base, exponent) if !exponent.as_number().is_some_and(Signed::is_negative) => {
@@ -150,9 +189,13 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
             Ok(())
         }
         Node::Product(..) | Node::Power(..) => {
-            let fraction = expr.fraction();
+            let mut fraction = expr.fraction();
             if fraction.negative && place != Place::Unsigned {
-                out.write_char('-')?;
+                let mut factors = fraction.numerator.iter_mut();
+                match factors.find_map(|factor| Some((factor.turned_round()?, factor))) {
+                    Some((turned, factor)) => *factor = turned,
+                    None => out.write_char('-')?,
+                }
             }
             push_fraction(&fraction, open);
             Ok(())

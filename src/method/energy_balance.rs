@@ -44,7 +44,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let at = |place: &Expr| potential.substitute(oscillator.coordinate, place).ok();
         let rise = at(&amplitude)? - at(&Expr::divide(&amplitude, &Expr::from(2).sqrt().ok()?).ok()?)?;
         let law = Expr::divide(&(Expr::from(4) * rise), &amplitude.integer_power(2).ok()?).ok()?;
-        positive_amplitude(&law)?.expand().ok()
+        Some(positive_amplitude(&law)?.expand().ok()?.factored())
     };
     match potential.as_ref().and_then(law) {
         Some(law) => {

@@ -70,59 +70,99 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 
 /// The period as an integral over the energy, with the force of this equation in it.
 fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
-    let (x, amplitude) = (oscillator.coordinate, Expr::symbol("A"));
-    let odd = is_odd(force, x)?;
-    let names = oscillator.names();
-    let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| fresh(name, &names));
-    let mut lines = Vec::new();
-    // What the potential has fallen by from the turning point: in closed form, or as an integral of the force.
-    let potential = potential(force, x).map(|potential| {
-        let turning = potential.substitute(x, &amplitude)?;
-        let turning = positive_amplitude(&turning).unwrap_or(turning);
-        (Expr::from(2) * (turning - potential)).expand()
-    });
-    let gained: Formula = match potential {
-        Some(Ok(gained)) => gained.into(),
-        _ => Formula::Integral {
-            factor: Expr::from(2),
-            from: x.into(),
-            to: amplitude.clone(),
-            integrand: Box::new(force.substitute(x, &variable.into())?.into()),
-            variable,
-        },
+    let x = oscillator.coordinate;
+    let energy = Energy {
+        force,
+        potential: potential(force, x),
+        root_of_mass: Expr::one(),
+        is_odd: is_odd(force, x)?,
     };
-    let (factor, from) = if odd {
-        (4, Expr::zero())
-    } else {
-        (2, Expr::from(turning_back))
-    };
-    if !odd {
-        let work = Formula::Integral {
-            factor: Expr::one(),
-            from: from.clone(),
-            to: amplitude.clone(),
-            integrand: Box::new(force.into()),
+    energy.period(oscillator)
+}
+
+/// `M x'^2/2 + U`, what a period follows from.
+pub(super) struct Energy<'a> {
+    /// `U'`.
+    pub(super) force: &'a Expr,
+    /// `U`, where it has a closed form.
+    pub(super) potential: Option<Expr>,
+    /// `sqrt(M)`, one for a mass that does not change.
+    pub(super) root_of_mass: Expr,
+    /// Whether `U` and `M` are even.
+    pub(super) is_odd: bool,
+}
+
+impl Energy<'_> {
+    /// `T = 2 int_(x_1)^A sqrt(M)/sqrt(2 (U(A) - U(x))) dx`, and where `x_1` comes from.
+    pub(super) fn period(&self, oscillator: &Oscillator) -> Result<Vec<Line>, Refusal> {
+        let (x, amplitude) = (oscillator.coordinate, Expr::symbol("A"));
+        let names = oscillator.names();
+        let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| fresh(name, &names));
+        // In closed form where all of it is.
+        let at = |place: &Expr| -> Option<Expr> {
+            let value = self.potential.as_ref()?.substitute(x, place).ok()?;
+            // Of both signs where the other turning point is another.
+            let value = if self.is_odd {
+                positive_amplitude(&value)?
+            } else {
+                value
+            };
+            value.expand().ok()
+        };
+        let gained = at(&amplitude).zip(at(&x.into()));
+        let gained = gained.and_then(|(turning, here)| (Expr::from(2) * (turning - here)).expand().ok());
+        let gained: Formula = gained.map_or_else(
+            || {
+                Ok::<_, Refusal>(Formula::Integral {
+                    factor: Expr::from(2),
+                    from: x.into(),
+                    to: amplitude.clone(),
+                    integrand: Box::new(self.force.substitute(x, &variable.into())?.into()),
+                    variable,
+                })
+            },
+            |gained| Ok(gained.into()),
+        )?;
+        let (factor, from) = if self.is_odd {
+            (4, Expr::zero())
+        } else {
+            (2, Expr::from(turning_back))
+        };
+        let mut lines = Vec::new();
+        if !self.is_odd {
+            let equal: [Formula; 2] = match at(&from).zip(at(&amplitude)) {
+                Some((there, here)) => [there.into(), here.into()],
+                None => {
+                    let work = Formula::Integral {
+                        factor: Expr::one(),
+                        from: from.clone(),
+                        to: amplitude.clone(),
+                        integrand: Box::new(self.force.into()),
+                        variable: x,
+                    };
+                    [work, Expr::zero().into()]
+                }
+            };
+            lines.push(Line::equal(equal).because(format!(
+                "the other turning point {turning_back}, of the other sign than A"
+            )));
+        }
+        let period = Formula::Integral {
+            factor: Expr::from(factor),
+            from,
+            to: amplitude,
+            integrand: Box::new(Formula::OverRoot(self.root_of_mass.clone(), Box::new(gained))),
             variable: x,
         };
-        lines.push(Line::equal([work, Expr::zero().into()]).because(format!(
-            "the other turning point {turning_back}, of the other sign than A"
-        )));
+        let words = match self.is_odd {
+            true => "the period, from the energy".to_owned(),
+            false => format!("the period, from the energy; for A < 0 from A to {turning_back}"),
+        };
+        lines.push(Line::equation(total, period).because(words));
+        let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
+        lines.push(Line::equation("omega", frequency));
+        Ok(lines)
     }
-    let period = Formula::Integral {
-        factor: Expr::from(factor),
-        from,
-        to: amplitude,
-        integrand: Box::new(Formula::OverRoot(Expr::one(), Box::new(gained))),
-        variable: x,
-    };
-    let words = match odd {
-        true => "the period, from the energy".to_owned(),
-        false => format!("the period, from the energy; for A < 0 from A to {turning_back}"),
-    };
-    lines.push(Line::equation(total, period).because(words));
-    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
-    lines.push(Line::equation("omega", frequency));
-    Ok(lines)
 }
 
 enum Known {

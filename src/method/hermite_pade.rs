@@ -19,7 +19,7 @@
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::HermitePade), degrees: Some(Degrees::Quadratic(1, 1, 1)), ..Options::default() };
 //! let law = solve(&duffing, &options)?;
-//! assert_eq!(law.law.closed_form().unwrap().to_string(), "omega^2 = -(Q - S*sqrt(-4*P*R + Q^2))/(2*R)");
+//! assert_eq!(law.law.closed_form().unwrap().to_string(), "omega^2 = (S*sqrt(Q^2 - 4*P*R) - Q)/(2*R)");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

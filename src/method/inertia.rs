@@ -26,6 +26,7 @@ use nalgebra::{DMatrix, DVector};
 use num_traits::Zero;
 
 use super::energy_balance::positive_amplitude;
+use super::exact::Energy;
 use super::exact_motion::weighted_motion;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
@@ -73,7 +74,7 @@ impl VariableMass {
         if growth.contains(velocity) {
             return Ok(None);
         }
-        let mass = integrating_factor(&growth, oscillator.coordinate);
+        let mass = integrating_factor(2, &growth, oscillator.coordinate);
         Ok(Some(Self {
             growth,
             force: parts.restoring,
@@ -151,9 +152,9 @@ impl VariableMass {
     }
 }
 
-/// `exp(2 int g dx)`, logarithms in the exponent written as powers.
-fn integrating_factor(growth: &Expr, coordinate: Symbol) -> Option<Expr> {
-    let exponent = (Expr::from(2) * potential(growth, coordinate)?).expand().ok()?;
+/// `exp(n int g dx)`, logarithms in the exponent written as powers.
+fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr> {
+    let exponent = (Expr::from(n) * potential(growth, coordinate)?).expand().ok()?;
     let factor = |term: &Expr| -> Result<Expr, ExprError> {
         let (number, factors) = term.factors();
         match factors {
@@ -277,49 +278,31 @@ fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> R
     let mut solution = unsolved(oscillator, options, Method::Exact, 0);
     solution.displacement = FourierSeries::zero(POLYNOMIALS);
     let x = oscillator.coordinate;
-    let (mass, force) = match (&moving.mass, moving.weighted_force()) {
-        (Some(mass), Some(force)) => (mass.clone(), force),
-        _ => {
-            let mass = Expr::from(mass_name(oscillator));
-            (mass.clone(), mass * &moving.force)
-        }
+    let closed = moving.mass.as_ref().and_then(|_| {
+        let root = integrating_factor(1, &moving.growth, x)?;
+        Some((root, moving.weighted_force()?))
+    });
+    let named_mass = Expr::from(mass_name(oscillator));
+    let named_force = &named_mass * &moving.force;
+    let energy = match &closed {
+        Some((root, force)) => Energy {
+            force,
+            potential: potential(force, x),
+            root_of_mass: root.clone(),
+            is_odd: moving.is_odd(oscillator)?,
+        },
+        None => Energy {
+            force: &named_force,
+            potential: None,
+            root_of_mass: named_mass.sqrt()?,
+            is_odd: moving.is_odd(oscillator)?,
+        },
     };
-    let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| named(name, oscillator));
-    let gained = Formula::Integral {
-        factor: Expr::from(2),
-        from: x.into(),
-        to: Expr::symbol("A"),
-        integrand: Box::new(force.substitute(x, &variable.into())?.into()),
-        variable,
-    };
-    let period = Formula::Integral {
-        factor: Expr::from(2),
-        from: turning_back.into(),
-        to: Expr::symbol("A"),
-        integrand: Box::new(Formula::OverRoot(mass.sqrt()?, Box::new(gained))),
-        variable: x,
-    };
-    let work = Formula::Integral {
-        factor: Expr::one(),
-        from: turning_back.into(),
-        to: Expr::symbol("A"),
-        integrand: Box::new(force.into()),
-        variable: x,
-    };
-    let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
     let mut lines = match moving.mass {
         Some(_) => vec![],
         None => mass_lines(moving, oscillator)?.into_iter().take(1).collect(),
     };
-    lines.extend([
-        Line::equal([work, Expr::zero().into()]).because(format!(
-            "the other turning point {turning_back}, of the other sign than A"
-        )),
-        Line::equation(total, period).because(format!(
-            "the period, from the energy; for A < 0 from A to {turning_back}"
-        )),
-        Line::equation("omega", frequency),
-    ]);
+    lines.extend(energy.period(oscillator)?);
     solution.derivation = mass_lines(moving, oscillator)?;
     solution
         .derivation

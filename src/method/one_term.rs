@@ -126,7 +126,7 @@ pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal
         Some(polynomial) => Law::squared(polynomial),
         None => Law::Closed(ClosedForm {
             squared: true,
-            value: law.clone(),
+            value: law.factored(),
         }),
     };
     Ok(())
@@ -136,7 +136,7 @@ pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal
 pub(super) fn shared_integral(oscillator: &Oscillator, force: &Expr) -> Option<Expr> {
     let amplitude = Expr::symbol("A");
     let first = cosine_coefficient(force, oscillator.coordinate, &amplitude, 1)?;
-    Expr::divide(&first, &amplitude).ok()?.expand().ok()
+    Some(Expr::divide(&first, &amplitude).ok()?.expand().ok()?.factored())
 }
 
 /// The answer of the methods whose law is the shared integral.

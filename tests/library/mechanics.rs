@@ -471,7 +471,7 @@ fn what_is_no_mechanism_is_refused() {
         (&["x", "x"], "m*x'^2/2", "0", "twice"),
         (&[], "0", "0", "1 to 8 coordinates"),
         (&["x", "y"], "m*(x' + y')^2/2", "0", "singular"),
-        (&["x"], "m*x'^2/2", "k*H(x - 1)", "jumps with `H(-1 + x)`"),
+        (&["x"], "m*x'^2/2", "k*H(x - 1)", "jumps with `H(x - 1)`"),
         (&["x"], "m*(1 + H(x))*x'^2/2", "0", "jumps"),
         (&["t"], "m*t^2/2", "0", "`t` cannot be a coordinate"),
         (&["x"], "m*x'", "k*x^2", "singular"),

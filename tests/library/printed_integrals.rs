@@ -61,7 +61,8 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
             let excess = |x: f64| {
                 let mut there = numbers.clone();
                 there.insert(unknown, x);
-                value(&line.equal[0], &there, context).expect("an equation")
+                let [left, right] = [&line.equal[0], &line.equal[1]].map(|side| value(side, &there, context));
+                left.expect("an equation") - right.expect("an equation")
             };
             let (mut near, mut far) = (-0.05 * amplitude, -1.9 * amplitude);
             assert!(excess(near) * excess(far) < 0.0, "{name}: {line}");
@@ -114,10 +115,14 @@ fn derived(equation: &str, method: Method) -> Option<(Oscillator, Solution)> {
 fn every_printed_integral_is_the_number_given_with_it() {
     /// Equation, `M` of its energy, and how many methods print integrals for it.
     type Case = (&'static str, fn(f64) -> f64, usize);
-    let cases: [Case; 6] = [
-        ("x'' + x + x^3/(1 + x^4) = 0", |_| 1.0, 8),
+    let cases: [Case; 9] = [
+        ("x'' + x + x^3/(1 + x^4) = 0", |_| 1.0, 7),
         ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0, 6),
         ("x'' + atan(3*x) + x^5/(2 + cos(x)) = 0", |_| 1.0, 8),
+        // Their potentials by substitution.
+        ("x'' + exp(x) - 1 = 0", |_| 1.0, 2),
+        ("x'' + sin(x) - sin(x)*cos(x)/2 = 0", |_| 1.0, 2),
+        ("x'' + x + x*x'^2 = 0", |x| (x * x).exp(), 3),
         // log M = 2 int g, g what stands before x'^2.
         ("(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0", |x| 1.0 + x.powi(4), 4),
         ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4), 2),
@@ -186,6 +191,7 @@ fn the_period_of_a_negative_amplitude_is_printed_as_well() {
     for (equation, mass) in [
         ("x'' + x + x^2 = 0", (|_| 1.0) as fn(f64) -> f64),
         ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0),
+        ("x'' + x + x*abs(x)/2 + x^2/5 = 0", |_| 1.0),
         ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4)),
     ] {
         let (oscillator, solution) = derived(equation, Method::Exact).expect(equation);
@@ -308,5 +314,31 @@ fn a_balance_is_found_at_every_amplitude() {
             );
             last = squared;
         }
+    }
+}
+
+/// What is known of the motion stands in the law: a force and an inertia that are even or odd turn back at -A, and a potential in
+/// closed form needs no integral.
+#[test]
+fn the_energy_is_written_out_where_it_can_be() {
+    for (equation, expected) in [
+        (
+            "(1 + k*x^2)*x'' + k*x*x'^2 + x = 0",
+            "T = 4*int_0^A sqrt(1 + k*x^2)/sqrt(A^2 - x^2) dx",
+        ),
+        (
+            "x'' + x + x*x'^2 = 0",
+            "T = 4*int_0^A exp(x^2/2)/sqrt(exp(A^2) - exp(x^2)) dx",
+        ),
+        ("x'' + exp(x) - 1 = 0", "-x1 + exp(x1) = -A + exp(A)"),
+        (
+            "x'' + x - 1/x = 0",
+            "x1 + x1^2/2 - log(1 + x1) = A + A^2/2 - log(1 + A)",
+        ),
+    ] {
+        let (_, solution) = derived(equation, Method::Exact).expect(equation);
+        let lines = solution.law.quadrature().expect(equation);
+        let text: Vec<String> = lines.iter().map(ToString::to_string).collect();
+        assert!(text.iter().any(|line| line.contains(expected)), "{equation}: {text:?}");
     }
 }

@@ -15,8 +15,17 @@ use crate::symbol::{GREEK, Symbol};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn expression(expression: &Expr) -> String {
+    written(expression, Place::Free)
+}
+
+/// As it stands in parentheses or below a root, which the caller writes.
+pub fn inside(expression: &Expr) -> String {
+    written(expression, Place::Inside)
+}
+
+fn written(expression: &Expr, place: Place) -> String {
     let mut text = String::new();
-    let mut open = vec![Piece::Expr(expression.clone(), Place::Free)];
+    let mut open = vec![Piece::Expr(expression.clone(), place)];
     while let Some(piece) = open.pop() {
         match piece {
             Piece::Text(piece) => text.push_str(&piece),
@@ -34,10 +43,14 @@ enum Piece {
 /// What surrounds an expression, and with it what needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
-    /// Alone, an argument, or between braces or parentheses already.
+    /// Alone.
     Free,
+    /// An argument, or between braces or parentheses already.
+    Inside,
     /// A term after its sign has been written: the sign is left out.
     Unsigned,
+    /// The same for a single term, whose minus has gone into a difference above the line.
+    Turned,
     /// A factor that needs no sign between itself and its neighbours.
     Factor,
 }
@@ -51,10 +64,17 @@ fn pieces(expr: &Expr, place: Place) -> Vec<Piece> {
     let is_negative = |term: &Expr| term.factors().0.is_negative();
     match place {
         Place::Factor => factor(expr),
-        Place::Unsigned => term(expr),
-        Place::Free => {
-            let terms = expr.terms().iter().enumerate();
-            let signed = terms.flat_map(|(index, term)| {
+        Place::Unsigned => term(expr, false),
+        Place::Turned => term(expr, true),
+        Place::Free | Place::Inside if is_negative(expr) && difference(expr).is_some() => {
+            vec![Piece::Expr(expr.clone(), Place::Turned)]
+        }
+        Place::Free | Place::Inside => {
+            let terms: Vec<&Expr> = match place {
+                Place::Inside => expr.terms_inside().collect(),
+                _ => expr.terms().iter().collect(),
+            };
+            let signed = terms.into_iter().enumerate().flat_map(|(index, term)| {
                 let sign = match (index, is_negative(term)) {
                     (0, false) => "",
                     (0, true) => "-",
@@ -68,26 +88,46 @@ fn pieces(expr: &Expr, place: Place) -> Vec<Piece> {
     }
 }
 
-/// One term without its sign, as a fraction where there is a denominator.
-fn term(term: &Expr) -> Vec<Piece> {
+/// The first difference above the line of a product, and it turned round.
+fn difference(product: &Expr) -> Option<(usize, Expr)> {
+    let (_, factors) = product.factors();
+    let mut turned = factors.iter().map(Expr::turned_round).enumerate();
+    turned.find_map(|(place, turned)| Some((place, turned?)))
+}
+
+/// One term without its sign, as a fraction where there is a denominator; with its first difference turned round, if so asked.
+fn term(term: &Expr, turn: bool) -> Vec<Piece> {
     let (coefficient, factors) = term.factors();
     let (mut above, mut below) = (vec![], vec![]);
-    for factor in factors {
-        let (base, exponent) = factor.base_and_exponent();
+    let turned = if turn { difference(term) } else { None };
+    for (place, factor) in factors.iter().enumerate() {
+        let (base, exponent) = match &turned {
+            Some((turned, difference)) if *turned == place => (difference.clone(), Expr::one()),
+            _ => factor.base_and_exponent(),
+        };
         match exponent.as_number() {
             Some(number) if number.is_negative() => below.push((base, Expr::number(-number))),
             _ => above.push((base, exponent)),
         }
     }
     let (numerator, denominator) = (coefficient.numer().abs(), coefficient.denom());
-    let above = row(
-        (!numerator.is_one() || above.is_empty()).then(|| numerator.to_string()),
-        &above,
-    );
+    let is_fraction = !denominator.is_one() || !below.is_empty();
+    let above = match above.as_slice() {
+        // As what is alone under it.
+        [(base, exponent)] if is_fraction && numerator.is_one() && exponent.is_one() => {
+            vec![Piece::Expr(base.clone(), Place::Inside)]
+        }
+        _ => row(
+            (!numerator.is_one() || above.is_empty()).then(|| numerator.to_string()),
+            &above,
+        ),
+    };
     let below = match below.as_slice() {
         [] if denominator.is_one() => return above,
         // What is alone under the line stands between braces already.
-        [(base, exponent)] if denominator.is_one() && exponent.is_one() => vec![Piece::Expr(base.clone(), Place::Free)],
+        [(base, exponent)] if denominator.is_one() && exponent.is_one() => {
+            vec![Piece::Expr(base.clone(), Place::Inside)]
+        }
         _ => row((!denominator.is_one()).then(|| denominator.to_string()), &below),
     };
     let line = [vec![text("\\frac{")], above, vec![text("}{")], below, vec![text("}")]];
@@ -113,10 +153,10 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
     let exponent = match exponent.as_number() {
         Some(number) if number.is_one() => return vec![Piece::Expr(base.clone(), Place::Factor)],
         Some(number) if *number == half => {
-            return vec![text("\\sqrt{"), Piece::Expr(base.clone(), Place::Free), text("}")];
+            return vec![text("\\sqrt{"), Piece::Expr(base.clone(), Place::Inside), text("}")];
         }
         Some(number) if !number.is_integer() => text(format!("{}/{}", number.numer(), number.denom())),
-        _ => Piece::Expr(exponent.clone(), Place::Free),
+        _ => Piece::Expr(exponent.clone(), Place::Inside),
     };
     // A function would carry its exponent, `\sin^{2} x`, a power has one already, and a derivative needs braces around its
     // primes.
@@ -132,7 +172,7 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
 fn in_parentheses(expr: &Expr) -> Vec<Piece> {
     vec![
         text("\\left("),
-        Piece::Expr(expr.clone(), Place::Free),
+        Piece::Expr(expr.clone(), Place::Inside),
         text("\\right)"),
     ]
 }
@@ -183,7 +223,7 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
         if index > 0 {
             call.push(text(", "));
         }
-        call.push(Piece::Expr(argument.clone(), Place::Free));
+        call.push(Piece::Expr(argument.clone(), Place::Inside));
     }
     call.push(text(close));
     call
@@ -259,6 +299,12 @@ mod tests {
             ("-2*y*(1 + x)/3", r"-\frac{2 y \left(1 + x\right)}{3}"),
             ("(x^2)^(3/2)", r"\left(x^{2}\right)^{3/2}"),
             ("1/(1 + sin(x))", r"\frac{1}{1 + \sin\left(x\right)}"),
+            (
+                "2*(cos(b) - cos(a))/y",
+                r"\frac{2 \left(\cos\left(b\right) - \cos\left(a\right)\right)}{y}",
+            ),
+            ("-(b - a)/y", r"\frac{a - b}{y}"),
+            ("sqrt(b - a)*y", r"y \sqrt{b - a}"),
         ] {
             let parsed = parse_expression(text).expect(text);
             assert_eq!(expression(&parsed), expected, "{text}");

@@ -5,7 +5,10 @@
 //! it, and what its symbols stand for; or an [`OscillatorError`] that names the stable equilibria there are.
 //!
 //! `f(x_e) = 0`, stable where the lowest term of the force about `x_e` is odd and pulls back; where there is no Taylor
-//! series, where the force changes its sign from negative to positive.
+//! series, where the force changes its sign from negative to positive. A force may also be infinite at `x = 0`: with
+//! `f ~ k sgn(x)|x|^p` there, `k > 0`, the potential is finite for `p > -1` and the motion swings through; `p = -1` is the limit of
+//! these, `V = k log|x|`, in which the period stays finite while the speed at `x = 0` does not (R. E. Mickens, *Truly Nonlinear
+//! Oscillations*, World Scientific 2010, section 2.3.3). A motion that is pulled faster than that falls in.
 //!
 //! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
 //! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
@@ -30,7 +33,7 @@ use crate::series::taylor::taylor;
 use crate::solution::Definition;
 use crate::solution::note::CornerSide;
 use crate::symbol::{Symbol, fresh};
-use force::Force;
+use force::{Force, Pull};
 use search::Zero as SignChange;
 use shift::{moved, value_at};
 
@@ -49,6 +52,8 @@ pub struct Centred {
     pub numerical: bool,
     /// The sides of corners at rest without which there would be a force there: a barrier `H(x - xc)` is away for `xc > 0`.
     pub sides: Vec<CornerSide>,
+    /// Whether the force pulls towards it as `1/x` does: the potential there is minus infinity, the speed of every motion infinite.
+    pub endless: bool,
 }
 
 impl Centred {
@@ -60,6 +65,7 @@ impl Centred {
             definition: None,
             numerical: false,
             sides: vec![],
+            endless: false,
         }
     }
 }
@@ -109,22 +115,41 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     }
     let at_zero = value_at(&still, position, &Expr::zero());
     let force = Force::new(&still, position);
+    let pull = match &at_zero {
+        Err(_) if !force.vanishes_towards_zero() => force.pull_without_bound(),
+        _ => None,
+    };
     let rests = match &at_zero {
         Ok(force) => force.is_zero(),
-        Err(_) => force.vanishes_towards_zero() || force.pulls_without_bound(),
+        Err(_) => force.vanishes_towards_zero() || matches!(pull, Some(Pull::Passed | Pull::Inverse)),
     };
     if rests {
         return match force.is_stable_at_zero() {
-            true => Ok(Centred::at_origin(oscillator)),
+            true => Ok(Centred {
+                endless: pull == Some(Pull::Inverse),
+                ..Centred::at_origin(oscillator)
+            }),
             false => Err(force.unstable()),
         };
     }
+    let falls_in = |uneven: bool| OscillatorError::FallsIn {
+        force: still.to_string(),
+        coordinate: position,
+        uneven,
+    };
+    let no_equilibrium = || match pull {
+        Some(Pull::Endless) => falls_in(false),
+        Some(Pull::UnevenInverse) => falls_in(true),
+        _ => OscillatorError::NoEquilibrium(force.at_rest(&at_zero)),
+    };
     if force.is_numerical() {
-        let stable = force.stable();
+        let mut stable = force.stable();
+        // Where it is infinite it is none, whatever an expression with a sign in it is worth at zero itself.
+        stable.retain(|found| pull.is_none() || found.position.abs() > 1e-100);
         let nearest = stable.iter().find(|found| found.reachable);
         return match (nearest, stable.is_empty()) {
             (Some(nearest), _) => seen_from(oscillator, &force.exact_or_rounded(nearest.position), degree),
-            (None, true) => Err(OscillatorError::NoEquilibrium(force.at_rest(&at_zero))),
+            (None, true) => Err(no_equilibrium()),
             (None, false) => Err(OscillatorError::BeyondPole {
                 force: force.at_rest(&at_zero),
                 coordinate: position,

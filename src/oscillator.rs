@@ -114,6 +114,23 @@ pub enum OscillatorError {
     /// There is a force at rest, and nowhere near a stable equilibrium.
     #[error("the force at rest is `{0}`, not zero, and no stable equilibrium was found")]
     NoEquilibrium(String),
+    /// The force is infinite at zero, and pulls there without a motion that would pass.
+    #[error(
+        "the force `{force}` pulls towards {coordinate} = 0 {}",
+        if *uneven {
+            "as 1/x does, and is followed through such a place only where it is odd, which it is not"
+        } else {
+            "and grows there faster than 1/x: a motion falls in with ever more energy, and nothing says how it would come out"
+        }
+    )]
+    FallsIn {
+        /// The force.
+        force: String,
+        /// The coordinate.
+        coordinate: Symbol,
+        /// Whether it grows as `1/x` and has an even part; otherwise it grows faster.
+        uneven: bool,
+    },
     /// There is a force at rest, and stable equilibria only where no motion from rest leads.
     #[error(
         "the force at rest is `{force}`, not zero, and no stable equilibrium was found before the force has a pole or ends; beyond there {} {stable}",

@@ -423,18 +423,23 @@ impl Trajectory {
             values.insert(Symbol::new("t"), time);
             values.extend(self.course.rates.states.iter().copied().zip(state.iter().copied()));
             let works = state[count..].to_vec();
-            Some((energy.value.evaluate(&values).ok()?, works))
+            // Kinetic and potential energy may cancel each other: the largest of them counts beside their sum.
+            let parts = energy.value.terms().iter().map(|part| part.evaluate(&values));
+            let largest = parts
+                .filter_map(Result::ok)
+                .fold(0.0, |largest: f64, part| largest.max(part.abs()));
+            Some((energy.value.evaluate(&values).ok()?, works, largest))
         };
         // The sum of nothing is minus zero.
         let sum = |works: &[f64]| works.iter().fold(0.0, |sum, work| sum + work);
-        let (start, _) = at(0.0)?;
-        let (end, works) = at(self.end())?;
+        let (start, ..) = at(0.0)?;
+        let (end, works, _) = at(self.end())?;
         let (mut astray, mut moved) = (0.0_f64, 0.0_f64);
         for index in 0..=ACCOUNTS {
-            let (now, works) = at(self.end() * f64::from(index) / f64::from(ACCOUNTS))?;
+            let (now, works, largest) = at(self.end() * f64::from(index) / f64::from(ACCOUNTS))?;
             let work = sum(&works);
             astray = astray.max((now - start - work).abs());
-            moved = moved.max(now.abs()).max(work.abs());
+            moved = moved.max(now.abs()).max(work.abs()).max(largest);
         }
         Some(Balance {
             start,

@@ -3,7 +3,7 @@
 //! Reference: L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., section 11.
 //!
 //! ```text
-//! V' = f:   x^n -> x^(n+1)/(n+1),   sin(kx + p) -> -cos(kx + p)/k,   exp -> exp/k,   tan -> -log(cos)/k
+//! V' = f:   x^n -> x^(n+1)/(n+1),   1/x -> log|x|,   sin(kx + p) -> -cos(kx + p)/k,   exp -> exp/k,   tan -> -log(cos)/k
 //! (kx + p)^n H(kx + p) -> (kx + p)^(n+1) H(kx + p)/(k (n+1)),   x/(a + b x^2) -> log(a + b x^2)/(2 b)
 //! log u -> (u log u - u)/k,   atan u -> (u atan u - log(1 + u^2)/2)/k,   1/u -> log(u)/k      with u = kx + p
 //! h(g(x)) g'(x) -> W(g(x)),  W' = h:   sin(x) cos(x), x exp(x^2), tanh(x)/cosh(x)^2
@@ -136,6 +136,11 @@ fn at_sight(term: &Expr, coordinate: Symbol) -> Option<Expr> {
     let next = &power.exponent + Rational::one();
     let whole = power.exponent.is_integer();
     let value = match inside.as_slice() {
+        // Of 1/x on both sides of the pole; that of 1/|x| would jump there.
+        [] if next.is_zero() && power.odd => {
+            let size = Expr::function(Function::Absolute, vec![x]).ok()?;
+            Expr::function(Function::Log, vec![size]).ok()?
+        }
         [] if next.is_zero() => return None,
         [] => {
             // |x|^(n+1)/(n+1), with the sign where the force is even.
@@ -372,6 +377,7 @@ mod tests {
             "tan(x/3) + tanh(x)",
             "x*abs(x) - sgn(x)",
             "abs(x)^(3/2)",
+            "x + 2/x",
             "x^(1/3) + x^(2/3)",
             "(x - 1/2)^(3/2)*H(x - 1/2)",
             "(x - 1/2)*H(x - 1/2) + x^2*H(1/3 - x)",
@@ -408,7 +414,7 @@ mod tests {
             "sin(x^2)",
             "exp(x^2)",
             "x*tan(x)",
-            "1/x",
+            "1/abs(x)",
             "exp(x)*sin(x)",
             "x*sqrt(1 + x^2 + x^4)",
             "(x - 1/2)^(3/2)*H(x - 1/3)",

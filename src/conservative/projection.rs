@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! c_k          = (2/pi) int_0^pi f(A cos theta) cos(k theta) dtheta          (c_0 is twice the mean)
-//! |cos|^n      : c_0 = (2/sqrt(pi)) Gamma((n+1)/2)/Gamma(n/2+1),  c_1 of sgn |cos|^n = (2/sqrt(pi)) Gamma(n/2+1)/Gamma((n+3)/2),
-//!                c_(k+2) = c_k (n - k)/(n + k + 2)
+//! |cos|^n      : c_0 = (2/sqrt(pi)) Gamma((n+1)/2)/Gamma(n/2+1) for n > -1,
+//!                c_1 of sgn |cos|^n = (2/sqrt(pi)) Gamma(n/2+1)/Gamma((n+3)/2) for n > -2,     c_(k+2) = c_k (n - k)/(n + k + 2)
 //! sin(z cos)   : c_(2i+1) = 2 (-1)^i J_(2i+1)(z),     cos(z cos) : c_(2i) = 2 (-1)^i J_(2i)(z),     sinh, cosh: I, no signs
 //! H(cos - c)   : arcs |theta| < acos(c), int_0^acos(c) cos(i theta) dtheta = sin(i acos(c))/i
 //! times cos    : c_k(cos g) = (c_(k+1) + c_|k-1|)/2
@@ -178,7 +178,9 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
 
 /// `c_k` of `|cos|^n`, or of `sgn(cos) |cos|^n` where `odd`.
 fn power_coefficient(exponent: &Rational, odd: bool, k: usize) -> Option<Expr> {
-    if *exponent <= -Rational::one() {
+    // Where the cosine is zero those of its odd multiples are, too: one power of it more that an integral may take.
+    let lowest = if odd { ratio(-2, 1) } else { ratio(-1, 1) };
+    if *exponent <= lowest {
         return None;
     }
     if k.is_odd() != odd {
@@ -402,7 +404,7 @@ mod tests {
 
     #[test]
     fn closed_forms_are_the_integrals() {
-        let cases: [(&str, &[f64]); 22] = [
+        let cases: [(&str, &[f64]); 23] = [
             ("x + 3*x^3/7 - x^4", &[]),
             ("sin(x)", &[]),
             ("sin(2*x + 1/3)", &[]),
@@ -417,6 +419,7 @@ mod tests {
             ("sgn(x)", &[0.0]),
             ("abs(2*x)^3*sgn(-x)", &[0.0]),
             ("x^(7/3)", &[0.0]),
+            ("x + 3/x", &[0.0]),
             ("sgn(x)*abs(x)^(5/2)", &[0.0]),
             ("H(x - 1/2)", &[0.5]),
             ("(x - 1/2)^3*H(x - 1/2)", &[0.5]),
@@ -429,6 +432,10 @@ mod tests {
         for (text, corners) in cases {
             let force: Expr = text.parse().unwrap();
             for k in 0..5 {
+                // Even harmonics of 1/x are zero by symmetry alone: their integrals do not exist.
+                if text.contains("/x") && k % 2 == 0 {
+                    continue;
+                }
                 let Some(formula) = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), k) else {
                     assert!(k > 1 && text.contains('/'), "{text} {k}");
                     continue;
@@ -483,7 +490,8 @@ mod tests {
             "k/(1 - c - x)",
             "sqrt(x)",
             "sin(x^2)",
-            "1/x",
+            "1/x^2",
+            "1/x^3",
         ] {
             let force: Expr = text.parse().unwrap();
             assert_eq!(

@@ -11,6 +11,7 @@ use super::Place;
 use super::inverse::inverted;
 use super::search::{Zero as SignChange, polynomial_zeros, zeros};
 use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved};
+use crate::conservative::is_odd;
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::exact::real_roots::sign_changing_part;
@@ -19,6 +20,19 @@ use crate::oscillator::{Equilibria, OscillatorError, Others};
 use crate::series::taylor::taylor;
 use crate::solution::note::Position;
 use crate::symbol::Symbol;
+
+/// How a force that is infinite at `x = 0` pulls towards it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pull {
+    /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings through.
+    Passed,
+    /// As `1/x`, and oddly: the potential is that of a logarithm, and the motion the limit of those of weaker powers, which swing through.
+    Inverse,
+    /// As `1/x`, but with an even part.
+    UnevenInverse,
+    /// Faster than `1/x`: whatever falls in gains energy as a power of the distance, and nothing says how it would come out.
+    Endless,
+}
 
 /// A force of the position alone.
 pub(super) struct Force<'a> {
@@ -97,16 +111,26 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// Whether a force that is infinite at zero pulls towards it from both sides, as `sgn(x)/abs(x)^(1/3)` does, and so weakly that its
-    /// potential is finite there: the motion swings through.
-    pub(super) fn pulls_without_bound(&self) -> bool {
-        let Some(value) = self.at_numbers(&self.sample(1.0)) else {
-            return false;
+    /// How a force that is infinite at zero pulls towards it from both sides; `None` where it does not.
+    pub(super) fn pull_without_bound(&self) -> Option<Pull> {
+        /// Two exponents that differ by less than this are the same: over seventy decades rounding makes one of 1e-17.
+        const SAME: f64 = 1e-12;
+        let value = self.at_numbers(&self.sample(1.0))?;
+        // By how much force times distance falls from far to near, in decades a decade: p + 1 of a power p.
+        let falls = |side: f64| {
+            let work = |decade: i32| {
+                let distance = 10.0_f64.powi(-decade);
+                side * value(side * distance) * distance
+            };
+            let (near, far) = (work(100), work(30));
+            (near > 0.0 && far.is_finite()).then(|| (far / near).log10() / 70.0)
         };
-        [1.0, -1.0].into_iter().all(|side| {
-            let work = |distance: f64| side * value(side * distance) * distance;
-            let (near, far) = (work(1e-100), work(1e-30));
-            near > 0.0 && far.is_finite() && near < 1e-3 * far
+        let (right, left) = (falls(1.0)?, falls(-1.0)?);
+        Some(match f64::min(right, left) {
+            least if least > SAME => Pull::Passed,
+            least if least < -SAME => Pull::Endless,
+            _ if is_odd(self.force, self.coordinate).unwrap_or(false) => Pull::Inverse,
+            _ => Pull::UnevenInverse,
         })
     }
 

@@ -127,6 +127,17 @@ pub enum SetupError {
         /// The term.
         term: String,
     },
+    /// A swing that is infinitely fast on its way.
+    #[error(
+        "the swing goes through x = {place}, where the force `{force}` and its speed are infinite: `impact` does not follow it through such a \
+         place; give a barrier on the side of the release"
+    )]
+    InfinitelyFast {
+        /// The force.
+        force: String,
+        /// Where.
+        place: f64,
+    },
     /// A parameter without a value.
     #[error("a value is needed for `{name}`")]
     NoValue {
@@ -320,11 +331,20 @@ impl Setup {
         let (known, rest) = self.values.split(&swing.parameters);
         let numerical = with_numbers_where_needed(&swing, &known)?;
         let in_numbers = swing.with_values(&known)?;
-        let position = centred(&in_numbers, None).ok().map(|centred| centred.position);
+        let centred = centred(&in_numbers, None).ok();
+        let position = centred.as_ref().map(|centred| &centred.position);
+        let equilibrium = position
+            .and_then(|position| position.evaluate(&[].into()).ok())
+            .unwrap_or(0.0);
+        let through = (self.release - equilibrium) * (self.barrier - equilibrium) <= 0.0;
+        if through && centred.is_some_and(|centred| centred.endless) {
+            return Err(SetupError::InfinitelyFast {
+                force: swing.force.to_string(),
+                place: equilibrium,
+            });
+        }
         Ok(Equations {
-            equilibrium: position
-                .and_then(|position| position.evaluate(&[].into()).ok())
-                .unwrap_or(0.0),
+            equilibrium,
             forces: [
                 function(&swing.force, x)?,
                 function(&swing.force.differentiate(x)?, x)?,

@@ -17,12 +17,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use num_traits::{One as _, Signed};
+
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
 use crate::conservative::force::Force;
 use crate::conservative::potential::potential;
 use crate::derivation::{Formula, Line};
-use crate::expr::Expr;
+use crate::exact::{Integer, Rational};
+use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::solution::{Law, Method, Note, Solution, note::Instant};
 use crate::symbol::fresh;
@@ -43,6 +46,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let amplitude = Expr::symbol("A");
         let at = |place: &Expr| potential.substitute(oscillator.coordinate, place).ok();
         let rise = at(&amplitude)? - at(&Expr::divide(&amplitude, &Expr::from(2).sqrt().ok()?).ok()?)?;
+        // The logarithm of A cancels.
+        let rise = logarithms_apart(&positive_amplitude(&rise)?).ok()?;
         let law = Expr::divide(&(Expr::from(4) * rise), &amplitude.integer_power(2).ok()?).ok()?;
         Some(positive_amplitude(&law)?.expand().ok()?.factored())
     };
@@ -96,9 +101,35 @@ fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Re
     ])
 }
 
+/// `log(sqrt(2)*A/2) = log(A) - log(2)/2`: logarithms of products of whole numbers, their roots and the positive amplitude as sums.
+fn logarithms_apart(law: &Expr) -> Result<Expr, ExprError> {
+    let amplitude = Expr::symbol("A");
+    let logarithm = |of: Expr| Expr::function(Function::Log, vec![of]);
+    law.fold(|expr, children: &[Expr]| {
+        let (Node::Function(Function::Log, _), [inside]) = (expr.node(), children) else {
+            return expr.with_children(children);
+        };
+        let (number, factors) = inside.factors();
+        let known = |factor: &Expr| {
+            let (base, exponent) = factor.base_and_exponent();
+            let positive = base == amplitude || base.as_number().is_some_and(Signed::is_positive);
+            positive && exponent.as_number().is_some()
+        };
+        if !number.is_positive() || factors.len() + usize::from(!number.is_one()) < 2 || !factors.iter().all(known) {
+            return expr.with_children(children);
+        }
+        let whole = |part: &Integer| logarithm(Expr::number(Rational::from_integer(part.clone())));
+        let mut sum = whole(number.numer())? - whole(number.denom())?;
+        for factor in factors {
+            let (base, exponent) = factor.base_and_exponent();
+            sum = sum + exponent * logarithm(base)?;
+        }
+        Ok(sum)
+    })
+}
+
 /// `abs` and `sgn` of the positive amplitude resolved: `|A| = A`.
 pub(super) fn positive_amplitude(law: &Expr) -> Option<Expr> {
-    use crate::expr::{Function, Node};
     let amplitude = Expr::symbol("A");
     law.fold(|expr, children: &[Expr]| match (expr.node(), children) {
         (Node::Function(Function::Absolute | Function::Sign, _), [inside]) => {

@@ -7,7 +7,8 @@
 //!
 //! ```text
 //! T = 2 int_(x_1)^A dx/sqrt(2 (V(A) - V(x)))
-//! c sgn(x)|x|^n:        omega = sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))
+//! c sgn(x)|x|^n:        omega = sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1)),   n > -1
+//! c/x, its limit:       omega = sqrt(pi c/2)/A,   by x = A exp(-s^2): T = 4 A sqrt(2/c) int_0^inf exp(-s^2) ds
 //! k sin(c x):           omega = pi sqrt(k c)/(2 K(sin^2(c A/2)))
 //! k sinh(c x):          omega = pi sqrt(k c)/(2 K(-sinh^2(c A/2)))
 //! a x + b x^3 + l x^5:  with x = A cos phi, t = tan phi, p = a + b A^2 + l A^4, r = a + b A^2/2 + l A^4/3, q = 2 r + (b/2 + l A^2/3) A^2:
@@ -273,6 +274,12 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
         return Ok(form.map(Known::Form));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
+        Some(power) if inside.is_empty() && power.odd && power.exponent == -Rational::one() => {
+            let scale = Expr::divide(&(Expr::pi() * &outside), &Expr::from(2))?
+                .expand()?
+                .sqrt()?;
+            Ok(Some(Known::Form(Expr::divide(&scale, &Expr::symbol("A"))?)))
+        }
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
             Ok(Some(Known::Form(of_power(&outside, &Expr::number(power.exponent))?)))
         }

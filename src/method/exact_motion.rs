@@ -186,7 +186,7 @@ fn period_by_pieces(rates: &Rates) -> Result<f64, PeriodError> {
                 f64::NAN
             })
         };
-        let (time, error) = match integrate_smooth(rate, ends[0], ends[1], rates.tolerance()) {
+        let (time, error) = match integrate_smooth(rate, ends[0], ends[1], rates.tolerance(piece)) {
             // Below the rounding of the force no panel gets.
             Err(QuadratureError::NotConverged {
                 value, error_estimate, ..

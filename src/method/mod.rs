@@ -682,6 +682,11 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
     if !sides.is_empty() {
         solution.validity.push(Note::CornerSides(sides));
     }
+    if centred.endless {
+        solution.validity.push(Note::EndlessPotential {
+            coordinate: oscillator.coordinate,
+        });
+    }
     if centred.position.is_zero() {
         // The question is the equation as it was typed, whatever a method made of its force.
         solution.equation = oscillator.equation();

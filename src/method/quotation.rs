@@ -120,6 +120,16 @@ fn typed_around(inner: &Expr, oscillator: &Oscillator, centred: &Centred) -> Opt
     };
     let number = numbers_where(&parts, occurs).into_iter().next()?;
     let part = parts.get(number)?.clone()?;
+    // Of `1/x`, from `x*x'' + 1`, the typed term `1` shows nothing.
+    let divided = oscillator.velocity().derivative();
+    let own_mass = oscillator
+        .residual
+        .differentiate(divided)
+        .is_ok_and(|mass| mass.symbols().is_empty());
+    let typed = oscillator.typed.values().nth(number)?;
+    if !own_mass && centred.written.is_zero() && !occurs(&typed) {
+        return None;
+    }
     Some(Quotation::new(part, oscillator.typed.quote(&[number])))
 }
 

@@ -56,7 +56,7 @@ fn period_of_rates(rates: &Rates) -> Result<f64, PeriodError> {
             integrand,
             rates.angles[piece],
             rates.angles[piece + 1],
-            rates.tolerance(),
+            rates.tolerance(piece),
         ) {
             Ok((value, error)) => (half, estimate) = (half + value, estimate + error),
             // The force itself is rounded where it is a small difference, as x^2 - 4 near x = 2: no panel gets below that.

@@ -167,6 +167,11 @@ pub enum Note {
     Corners,
     /// The sides of corners at rest that letters decide.
     CornerSides(Vec<CornerSide>),
+    /// A force that is infinite at rest, as `1/x`, with a potential that is minus infinity there.
+    EndlessPotential {
+        /// The coordinate.
+        coordinate: Symbol,
+    },
     /// The equilibrium about which the motion swings.
     Equilibrium {
         /// The coordinate.
@@ -425,6 +430,11 @@ impl fmt::Display for Note {
                 )
             }
             Self::CornerSides(sides) => corner_sides(formatter, sides),
+            Self::EndlessPotential { coordinate } => write!(
+                formatter,
+                "at {coordinate} = 0 the force and the speed are infinite: the motion goes through as the limit of weaker forces, \
+                 sgn({coordinate})*abs({coordinate})^p for p -> -1, by its energy"
+            ),
             Self::Equilibrium { coordinate, position } => {
                 write!(formatter, "swings about the equilibrium {coordinate} = {position}")
             }

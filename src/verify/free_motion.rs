@@ -58,6 +58,8 @@ pub(super) struct FreeMotion {
     motion: Path,
     equilibrium: f64,
     end: f64,
+    /// Whether it could not be followed as long as it was asked for.
+    ends_early: bool,
     /// Times and distances from the equilibrium at which it turns, the start left out.
     pub(super) turns: Vec<(f64, f64)>,
     /// When and where friction takes hold of it, from the equilibrium.
@@ -98,6 +100,7 @@ impl FreeMotion {
             return Err(VerificationError::NotFollowed { time: end });
         }
         let mut followed = Self {
+            ends_early: end < start.duration,
             end,
             motion,
             equilibrium: start.equilibrium,
@@ -107,6 +110,14 @@ impl FreeMotion {
         };
         followed.look(start.step);
         Ok(followed)
+    }
+
+    /// Why there is no swing where it goes through its equilibrium less than twice.
+    pub(super) fn why_no_swing(&self) -> VerificationError {
+        match self.ends_early {
+            true => VerificationError::NotFollowed { time: self.end },
+            false => VerificationError::NoSwing,
+        }
     }
 
     /// When it ends.

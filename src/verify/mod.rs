@@ -172,6 +172,11 @@ pub enum VerificationError {
         /// When it ends.
         time: f64,
     },
+    /// A motion whose period alone is known.
+    #[error(
+        "Runge-Kutta does not follow the true motion, of which the energy tells the period alone: there is no path to compare with"
+    )]
+    NoPath,
     /// A start off the limit cycle that a formula describes.
     #[error("x(0) = A is a start off the limit cycle, and this method describes the cycle alone")]
     OffCycle,
@@ -321,8 +326,8 @@ pub(crate) fn judge_to(
     let physics = Physics::new(oscillator, &meant, &numbers)?;
     let residual = motion
         .as_ref()
-        // A force that is infinite at rest is nothing but what the samples nearest to it find.
-        .filter(|_| physics.force_at(0.0, 0.0).is_finite())
+        // The mean square of a force that is infinite at rest is nothing but what the samples nearest to it find.
+        .filter(|_| physics.force_at(0.0, 0.0).is_finite() && !physics.is_infinite_at_rest(truth.amplitude))
         .map(|(frequency, motion)| residual(&physics, *frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let remark = found.as_ref().and_then(|found| found.remark.clone());
@@ -355,6 +360,7 @@ pub(crate) fn judge_to(
         ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
+            .chain(unfollowed(&truth, &physics, solution.coordinate()).filter(|_| motion.is_some()))
             .chain(remark)
             .chain(far)
             .collect(),
@@ -481,6 +487,9 @@ pub fn motions(
     let solution = settled.as_ref().unwrap_or(solution);
     let meant = meant(oscillator, solution, &numbers);
     let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
+    if !truth.has_path() {
+        return Err(VerificationError::NoPath);
+    }
     let Some((frequency, motion)) = formula_motion(oscillator, solution, &numbers) else {
         return Ok(None);
     };
@@ -616,6 +625,24 @@ fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::R
             "the true limit cycle turns at {coordinate} = {} and {does}",
             decimal(cycle.at(0.0).0)
         ),
+        outside: false,
+    })
+}
+
+/// That the displacement is not judged, where the true path is not known.
+fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Option<validity::Range> {
+    if truth.has_path() {
+        return None;
+    }
+    let why = match physics.is_infinite_at_rest(truth.amplitude) {
+        true => format!(
+            " through {coordinate} = {}, where the force is infinite",
+            decimal(physics.rest.equilibrium())
+        ),
+        false => String::new(),
+    };
+    Some(validity::Range {
+        text: format!("the displacement is not judged: Runge-Kutta does not follow the true motion{why}"),
         outside: false,
     })
 }

@@ -9,6 +9,7 @@ use super::VerificationError;
 use crate::conservative::force::Force;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr, ExprError};
+use crate::numeric::ode::energy::grows_towards_zero;
 use crate::numeric::ode::root::find_root;
 use crate::numeric::period::{PeriodError, Swing, period_between, swing_with_cuts};
 use crate::numeric::return_map::{Equation, LimitCycle, nearest_limit_cycle};
@@ -233,6 +234,11 @@ impl Physics {
         };
         physics.longest = 1000.0 * TAU / slowest;
         Ok(physics)
+    }
+
+    /// Whether the force grows without end towards rest, as `1/x` does; a motion as large as this is meant.
+    pub(super) fn is_infinite_at_rest(&self, amplitude: f64) -> bool {
+        grows_towards_zero(&|y| self.force_at(y, 0.0), amplitude)
     }
 
     /// Whether the period follows from the energy.

@@ -87,7 +87,7 @@ pub(super) fn judge(
         _ => None,
     };
     let reference = if count < 2 { &own[..] } else { &own[..count] };
-    let true_frequency = mean(reference).ok_or(VerificationError::NoSwing)?;
+    let true_frequency = mean(reference).ok_or_else(|| truth.why_no_swing())?;
     let frequency = mean(&crossings[..count]);
     let relative_error = frequency.map(|frequency| frequency / true_frequency - 1.0);
     let errors = judged.errors(*until);

@@ -1,8 +1,11 @@
 //! The method that answers where none is asked for, and the force has no expansion about its equilibrium.
 
 use lindstedt::expr::Expr;
-use lindstedt::method::{Options, solve};
+use lindstedt::method::numbers::evaluate;
+use lindstedt::method::{Options, Refusal, solve};
+use lindstedt::oscillator::OscillatorError;
 use lindstedt::solution::{AmplitudeConvention, Method, Note};
+use lindstedt::verify::{VerificationError, motions};
 use lindstedt::{Oscillator, Values, Verdict, judge};
 
 fn answered(equation: &str, options: &Options) -> lindstedt::solution::Solution {
@@ -212,7 +215,220 @@ fn a_force_that_is_infinite_at_rest_swings_through() {
             "{amplitude}: {frequency} and {truth}"
         );
     }
-    // The fall to a centre that pulls with 1/x, whose potential is infinite, is refused.
-    let oscillator = Oscillator::parse("x'' + 1/x = 0").expect("an oscillator");
-    assert!(solve(&oscillator, &Options::default()).is_err());
+}
+
+/// T of `x'' + s x + k/x = 0` from `x = A`: with `x = A exp(-u^2)` the integrand of the period is smooth, even and falls as `exp(-u^2)`, so
+/// that equal steps give all digits.
+fn period_through_a_logarithm(s: f64, k: f64, amplitude: f64) -> f64 {
+    const STEP: f64 = 0.05;
+    let rate = |u: f64| {
+        let lost = if u == 0.0 {
+            2.0
+        } else {
+            -(-2.0 * u * u).exp_m1() / (u * u)
+        };
+        8.0 * amplitude * (-u * u).exp() / (s * amplitude * amplitude * lost + 2.0 * k).sqrt()
+    };
+    let sum: f64 = (1..160).map(|step| rate(f64::from(step) * STEP)).sum();
+    STEP * (0.5 * rate(0.0) + sum)
+}
+
+#[test]
+fn a_force_like_one_over_x_has_its_period() {
+    let pi = std::f64::consts::PI;
+    // Mickens: T = 2 sqrt(2 pi) A.
+    assert!((period_through_a_logarithm(0.0, 1.0, 3.0) / (6.0 * (2.0 * pi).sqrt()) - 1.0).abs() < 1e-14);
+    for (equation, s, k) in [
+        ("x'' + 1/x = 0", 0.0, 1.0),
+        ("x*x'' + 3 = 0", 0.0, 3.0),
+        ("x'' + 2*sgn(x)/abs(x) = 0", 0.0, 2.0),
+        ("x'' + x + 3/x = 0", 1.0, 3.0),
+        ("x'' + 5*x + 1/(100*x) = 0", 5.0, 0.01),
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let options = Options {
+            method: Some(Method::Exact),
+            ..Options::default()
+        };
+        let exact = answered(equation, &options);
+        for amplitude in ["1/50", "2", "-7"] {
+            let at: Values = format!("A = {amplitude}").parse().expect("a value");
+            let judged = judge(&oscillator, &exact, &at, 1e-9).expect(equation);
+            let size = at
+                .iter()
+                .next()
+                .expect("A")
+                .1
+                .evaluate(&[].into())
+                .expect("a number")
+                .abs();
+            let omega = 2.0 * pi / period_through_a_logarithm(s, k, size);
+            // The judge, and the law or the quadrature of the method.
+            assert!(
+                (judged.true_frequency / omega - 1.0).abs() < 1e-11,
+                "{equation} at {amplitude}"
+            );
+            assert!(
+                (judged.frequency.expect("a frequency") / omega - 1.0).abs() < 1e-11,
+                "{equation} at {amplitude}"
+            );
+            assert_eq!(judged.verdict, Verdict::Pass);
+            // Nobody follows the path: nothing is said of it, and that is said.
+            assert_eq!((judged.max_deviation, judged.residual), (None, None));
+            let said = judged
+                .ranges
+                .iter()
+                .any(|range| range.text.contains("displacement is not judged"));
+            assert!(said, "{equation}");
+        }
+    }
+}
+
+/// `c_k` of `1/x` along a motion by the midpoint rule, which is exact for the trigonometric polynomial that `cos(k theta)/x` nearly is.
+fn balance_of_one_over_x(coefficients: &[(usize, f64)], k: usize) -> f64 {
+    const POINTS: usize = 4000;
+    let theta = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / POINTS as f64;
+    let x = |theta: f64| {
+        coefficients
+            .iter()
+            .map(|(j, a)| a * (*j as f64 * theta).cos())
+            .sum::<f64>()
+    };
+    let sum: f64 = (0..POINTS)
+        .map(theta)
+        .map(|theta| (k as f64 * theta).cos() / x(theta))
+        .sum();
+    2.0 / POINTS as f64 * sum
+}
+
+#[test]
+fn methods_of_few_terms_take_one_over_x_where_their_integral_exists() {
+    for (method, law) in [
+        (Method::Exact, "omega = sqrt(pi*k/2)/A"),
+        (Method::Hamiltonian, "2*k/A^2"),
+        (Method::VariationalIteration, "2*k/A^2"),
+        (Method::EnergyBalance, "omega^2 = 2*k*log(2)/A^2"),
+        (Method::AmplitudeFrequency, "4*k/(3*A^2)"),
+    ] {
+        let options = Options {
+            method: Some(method),
+            ..Options::default()
+        };
+        let solution = answered("x'' + k/x = 0", &options);
+        let squared = solution.law.frequency_squared().map(|law| Expr::from(law).to_string());
+        let found = squared.or_else(|| solution.law.closed_form().map(ToString::to_string));
+        assert_eq!(found.as_deref(), Some(law), "{method:?}");
+        let said = solution
+            .validity
+            .iter()
+            .any(|note| matches!(note, Note::EndlessPotential { .. }));
+        assert!(said, "{method:?}");
+    }
+    // f/x = 1/x^2 has no bound at rest.
+    let max_min = Options {
+        method: Some(Method::MaxMin),
+        ..Options::default()
+    };
+    let oscillator = Oscillator::parse("x'' + k/x = 0").expect("an equation");
+    assert!(matches!(solve(&oscillator, &max_min), Err(Refusal::Unbounded { .. })));
+    for order in 1..5 {
+        let options = Options {
+            method: Some(Method::HarmonicBalance),
+            order: Some(order),
+            ..Options::default()
+        };
+        let equation = "x'' + 1/x = 0";
+        let solution = answered(equation, &options);
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let found = evaluate(&oscillator, &solution, &[("A".into(), 1.0)].into()).expect("a balance");
+        let motion = found.motion.expect("a motion");
+        let harmonics = (0..order as usize).map(|j| 2 * j + 1);
+        let coefficients: Vec<(usize, f64)> = harmonics.map(|k| (k, motion.cosine(k).mean().0)).collect();
+        for &(k, a) in &coefficients {
+            let inertia = (k * k) as f64 * found.frequency_squared * a;
+            let force = balance_of_one_over_x(&coefficients, k);
+            assert!(
+                (inertia - force).abs() < 1e-9,
+                "order {order}, harmonic {k}: {inertia} {force}"
+            );
+        }
+    }
+}
+
+#[test]
+fn weaker_powers_go_over_into_one_over_x() {
+    // omega A = sqrt(pi/2) at p = -1; the slope of the exact law in p there is finite.
+    let limit = (std::f64::consts::PI / 2.0).sqrt();
+    let mut last = f64::INFINITY;
+    for p in ["-9/10", "-99/100", "-999/1000"] {
+        let equation = format!("x'' + sgn(x)*abs(x)^({p}) = 0");
+        let solution = answered(&equation, &Options::default());
+        assert_eq!(solution.method, Method::Exact, "{equation}");
+        let oscillator = Oscillator::parse(&equation).expect("an equation");
+        let judged = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 1e-8).expect("a motion");
+        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.relative_error);
+        let off = (judged.true_frequency - limit).abs();
+        assert!(off < 0.15 * last, "{equation}: {off}");
+        last = off;
+    }
+}
+
+#[test]
+fn what_falls_in_is_refused_and_says_why() {
+    let refused = |equation: &str| {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        solve(&oscillator, &Options::default()).expect_err(equation)
+    };
+    for equation in [
+        "x'' + 1/x^3 = 0",
+        "x'' + x + 2/x^3 = 0",
+        "x'' + sgn(x)*abs(x)^(-11/10) = 0",
+    ] {
+        let refusal = refused(equation);
+        let falls_in = matches!(
+            refusal,
+            Refusal::Oscillator(OscillatorError::FallsIn { uneven: false, .. })
+        );
+        assert!(falls_in, "{equation}: {refusal}");
+    }
+    for equation in ["x'' + 1 + 1/x = 0", "x'' + x^2 + 1/x = 0"] {
+        let refusal = refused(equation);
+        let uneven = matches!(
+            refusal,
+            Refusal::Oscillator(OscillatorError::FallsIn { uneven: true, .. })
+        );
+        assert!(uneven, "{equation}: {refusal}");
+    }
+    // What pushes away from zero has wells beside it.
+    assert_eq!(
+        answered("x'' + x - 1/x = 0", &Options::default()).equilibrium,
+        Expr::from(1)
+    );
+    assert_eq!(
+        answered("x'' + x - 1/x^3 = 0", &Options::default()).equilibrium,
+        Expr::from(1)
+    );
+}
+
+#[test]
+fn a_path_through_an_infinite_force_is_neither_drawn_nor_followed() {
+    let equation = "x'' + x'/10 + x + 1/x = 0";
+    let oscillator = Oscillator::parse(equation).expect(equation);
+    let solution = answered(equation, &Options::default());
+    assert_eq!(solution.method, Method::Averaging);
+    let error = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 0.01).expect_err("no path");
+    assert!(matches!(error, VerificationError::NotFollowed { .. }), "{error}");
+    let free = Oscillator::parse("x*x'' + 1 = 0").expect("an equation");
+    let exact = answered("x*x'' + 1 = 0", &Options::default());
+    let error = motions(&free, &exact, &"A = 1".parse().expect("a value")).err();
+    assert_eq!(error, Some(VerificationError::NoPath));
+    // The typed term `1` is no reason: its quotient is.
+    let reason = exact.validity.iter().find_map(|note| match note {
+        Note::InsteadOf { reason, .. } => Some(reason.clone()),
+        _ => None,
+    });
+    assert_eq!(
+        reason.as_deref(),
+        Some("`1/x` has no Taylor series about x = 0, x' = 0")
+    );
 }

@@ -80,8 +80,12 @@ fn of_powers(position: &Power, velocity: &Power, amplitude: &Expr, speed: &Expr)
         (true, false) => (2, 1),
         _ => return zero(),
     };
-    for exponent in [&position.exponent, &velocity.exponent] {
-        if exponent.as_number().is_some_and(|number| *number <= ratio(-1, 1)) {
+    // The integrals exist where the arguments of the Gamma functions above the line are positive.
+    for (exponent, above) in [
+        (&position.exponent, above_position),
+        (&velocity.exponent, above_velocity),
+    ] {
+        if exponent.as_number().is_some_and(|number| *number <= ratio(-above, 1)) {
             return None;
         }
     }

@@ -9,10 +9,12 @@
 //! ```
 //!
 //! The last integrand is smooth between the corners and narrow places of the force, at which it is cut. `U` near either end is
-//! the mean of the force from there, so nothing cancels.
+//! the mean of the force from there, so nothing cancels. A force that is infinite in the middle of a symmetric motion, as `1/x` or
+//! `sgn(x)/sqrt(abs(x))`, is cut at distances of equal ratio towards it; each `U` is counted from the end on its own side, so that
+//! none goes through the middle, where that of `1/x` is infinite and `dt/dphi` zero.
 
 use std::cell::Cell;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use super::IntegrationError;
 use super::quadrature::{QuadratureError, integrate_within, nodes_and_weights};
@@ -187,6 +189,8 @@ pub(crate) struct Rates<'a> {
     pub(crate) knots: Vec<f64>,
     /// phi at the knots, from -pi/2 to pi/2.
     pub(crate) angles: Vec<f64>,
+    /// Whether the force is infinite in the middle.
+    infinite_middle: bool,
     /// `V(start) - V` at the knots, added up from either end.
     below_start: Vec<f64>,
     below_end: Vec<f64>,
@@ -200,10 +204,19 @@ impl<'a> Rates<'a> {
         start: f64,
         end: f64,
     ) -> Result<Self, PeriodError> {
-        let knots = resolved(force, force.knots(end, start))?;
+        let infinite_middle = start == -end && grows_towards_zero(force.value, start);
+        let knots = match infinite_middle {
+            false => force.knots(end, start),
+            true => graded(&force.knots(end, start)),
+        };
+        let knots = resolved(force, knots, infinite_middle)?;
         // A single piece needs no sums.
         let pieces = knots.windows(2).filter(|_| knots.len() > 2);
-        let pieces = pieces.map(|pair| integral(force.value, pair[0], pair[1], 0.0));
+        let pieces = pieces.map(|pair| match infinite_middle && pair.contains(&0.0) {
+            // Never asked for, as no energy is counted through the middle.
+            true => Ok(f64::NAN),
+            false => integral(force.value, pair[0], pair[1], 0.0),
+        });
         let works = pieces.collect::<Result<Vec<f64>, _>>()?;
         let (mut below_end, mut below_start) = (vec![0.0], vec![0.0]);
         for work in &works {
@@ -213,10 +226,12 @@ impl<'a> Rates<'a> {
             below_start.push(below_start[below_start.len() - 1] + work);
         }
         below_start.reverse();
-        // By the half angle, so that a knot close to an end keeps its distance from it.
+        // By the half angle, so that a knot close to an end keeps its distance from it; that of a knot in the middle is known as it is.
         let angle = |&knot: &f64| {
             let part = (knot - end) / (start - end);
-            if part < 0.5 {
+            if infinite_middle && part > 0.25 && part < 0.75 {
+                (knot / start).asin()
+            } else if part < 0.5 {
                 2.0 * part.max(0.0).sqrt().asin() - FRAC_PI_2
             } else {
                 FRAC_PI_2 - 2.0 * (1.0 - part).max(0.0).sqrt().asin()
@@ -227,15 +242,23 @@ impl<'a> Rates<'a> {
             weight,
             angles: knots.iter().map(angle).collect(),
             knots,
+            infinite_middle,
             below_start,
             below_end,
         })
     }
 
-    /// The relative tolerance of an integral of these rates.
-    pub(crate) fn tolerance(&self) -> f64 {
+    /// The relative tolerance of an integral of these rates over one of the pieces.
+    pub(crate) fn tolerance(&self, piece: usize) -> f64 {
+        /// A piece that adds next to nothing is known no better than this.
+        const ROUGH: f64 = 1e-2;
+        let ends = [self.knots[piece], self.knots[piece + 1]];
         if self.knots.len() == 2 {
             TOLERANCE
+        } else if self.infinite_middle && ends.contains(&0.0) {
+            // The motion is nowhere faster: the piece adds less to the period than its share of the angles.
+            let share = (self.angles[piece + 1] - self.angles[piece]) / std::f64::consts::PI;
+            (TOLERANCE_OF_PIECES / share).min(ROUGH)
         } else {
             TOLERANCE_OF_PIECES
         }
@@ -246,8 +269,9 @@ impl<'a> Rates<'a> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
         let mean_force = |from: f64, to: f64| integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0);
-        // From the nearer end: beside a pole the distance from it counts, not the position.
+        // From the nearer end: beside a pole the distance from it counts, not the position. Or from the middle, for the same reason.
         let x = match phi >= 0.0 {
+            _ if self.infinite_middle && phi.abs() < FRAC_PI_6 => start * phi.sin(),
             true => start - (start - end) * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2),
             false => end + (start - end) * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2),
         };
@@ -275,18 +299,51 @@ impl<'a> Rates<'a> {
     }
 }
 
+/// Whether a force grows without end towards zero, on both sides and as far as numbers go: `size` is how far from there the motion is.
+pub(crate) fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
+    [1.0, -1.0].into_iter().all(|side| {
+        let [near, far, farther] = [1e-200, 1e-100, 1e-50].map(|part| force(side * part * size).abs());
+        far > farther && near > far
+    })
+}
+
+/// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a force that is infinite at zero is smooth.
+fn graded(knots: &[f64]) -> Vec<f64> {
+    /// What lies closer than this, relatively, adds less to the period than its rounding.
+    const CLOSEST: f64 = 1e-15;
+    const RATIO: f64 = 0.25;
+    let (end, start) = (knots[0], knots[knots.len() - 1]);
+    let sizes = std::iter::successors(Some(RATIO * start), |size| Some(RATIO * size));
+    let mut found: Vec<f64> = knots.to_vec();
+    found.push(0.0);
+    found.extend(
+        sizes
+            .take_while(|size| size.abs() > CLOSEST * start.abs())
+            .flat_map(|size| [size, -size]),
+    );
+    found.sort_by(|one, other| match end < start {
+        true => one.total_cmp(other),
+        false => other.total_cmp(one),
+    });
+    // Both zeros are one.
+    found.dedup_by(|next, last| next == last);
+    found
+}
+
 /// Knots so close that the force between two of them is integrated by a few panels, where between these ones it waves too
-/// often for many: an integral of its own for every instant would then cost as much as the square of the waves.
+/// often for many: an integral of its own for every instant would then cost as much as the square of the waves. What ends at a
+/// zero at which the force is infinite is left as it is.
 ///
 /// # Errors
 /// More knots than can be waited for.
-fn resolved(force: &Force, knots: Vec<f64>) -> Result<Vec<f64>, PeriodError> {
+fn resolved(force: &Force, knots: Vec<f64>, infinite_middle: bool) -> Result<Vec<f64>, PeriodError> {
     const FEW_PANELS: i32 = 4;
     const MOST_KNOTS: usize = 1 << 14;
     const HALVINGS: u32 = 15;
     let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
     for pair in knots.windows(2) {
-        if settled(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some() {
+        let in_the_middle = infinite_middle && pair.contains(&0.0);
+        if in_the_middle || settled(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some() {
             found.push(pair[1]);
             continue;
         }

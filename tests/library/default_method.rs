@@ -284,6 +284,33 @@ fn a_force_like_one_over_x_has_its_period() {
     }
 }
 
+/// The same for `V = log|x (9 - x^2)|`, whose force is odd in letters and not in its last digit.
+#[test]
+fn a_force_that_rounding_makes_uneven_is_taken_through_its_pole() {
+    let equation = "x'' + 1/x + 1/(x - 3) + 1/(x + 3) = 0";
+    let (oscillator, solution) = (
+        Oscillator::parse(equation).expect(equation),
+        answered(equation, &Options::default()),
+    );
+    for amplitude in [1.0_f64, 0.7, 1.5] {
+        let rate = |u: f64| {
+            let x = amplitude * (-u * u).exp();
+            let fallen = u * u + ((9.0 - amplitude * amplitude) / (9.0 - x * x)).ln();
+            8.0 * x * u / (2.0 * fallen).sqrt()
+        };
+        // At the ends of the steps beside zero the integrand is even, and its value at zero a limit: middles of steps do without.
+        let period: f64 = (0..160).map(|step| 0.05 * rate((f64::from(step) + 0.5) * 0.05)).sum();
+        let at: Values = format!("A = {amplitude}").parse().expect("a value");
+        let judged = judge(&oscillator, &solution, &at, 1e-8).expect(equation);
+        let omega = std::f64::consts::TAU / period;
+        assert!(
+            (judged.true_frequency / omega - 1.0).abs() < 1e-10,
+            "{amplitude}: {omega}"
+        );
+        assert_eq!(judged.verdict, Verdict::Pass);
+    }
+}
+
 /// `c_k` of `1/x` along a motion by the midpoint rule, which is exact for the trigonometric polynomial that `cos(k theta)/x` nearly is.
 fn balance_of_one_over_x(coefficients: &[(usize, f64)], k: usize) -> f64 {
     const POINTS: usize = 4000;

@@ -523,13 +523,17 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
 /// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image of the start is then the
 /// turning point to the last digit, which no root finder gives near a separatrix.
 fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
+    /// The search for a turning point does not pass a place where the force is infinite: there symmetry may be lost in rounding.
+    const ROUNDING: f64 = 1e-12;
+    let infinite = grows_towards_zero(&|y| force.at(equilibrium + y), amplitude);
+    let rounding = if infinite { ROUNDING } else { 0.0 };
     let mut places: Vec<f64> = (1..=16).map(|k| amplitude * f64::from(k) / 16.0).collect();
     let knots = force.knots(equilibrium - amplitude, equilibrium + amplitude);
     places.extend(knots.iter().map(|knot| knot - equilibrium));
     places.extend(knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium));
     places.into_iter().filter(|&x| x != 0.0).all(|x| {
         let (here, there) = (force.at(equilibrium + x), force.at(equilibrium - x));
-        here == -there && here * x.signum() > 0.0
+        (here + there).abs() <= rounding * here.abs() && here * x.signum() > 0.0
     })
 }
 

@@ -82,7 +82,7 @@ mod tests {
             ("k*A^2*sin(A) - k*A*cos(A)", "k*A*(A*sin(A) - cos(A))"),
             // Nothing to take out, or longer with it.
             ("1 + sqrt(A) - A^2/8", "1 + sqrt(A) - A^2/8"),
-            ("A + 1/A", "A + 1/A"),
+            ("1/A + A", "1/A + A"),
             ("sin(A)/A^2", "sin(A)/A^2"),
         ] {
             let expr: Expr = text.parse().expect(text);

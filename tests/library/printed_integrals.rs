@@ -115,7 +115,7 @@ fn derived(equation: &str, method: Method) -> Option<(Oscillator, Solution)> {
 fn every_printed_integral_is_the_number_given_with_it() {
     /// Equation, `M` of its energy, and how many methods print integrals for it.
     type Case = (&'static str, fn(f64) -> f64, usize);
-    let cases: [Case; 9] = [
+    let cases: [Case; 10] = [
         ("x'' + x + x^3/(1 + x^4) = 0", |_| 1.0, 7),
         ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0, 6),
         ("x'' + atan(3*x) + x^5/(2 + cos(x)) = 0", |_| 1.0, 8),
@@ -124,14 +124,21 @@ fn every_printed_integral_is_the_number_given_with_it() {
         ("x'' + sin(x) - sin(x)*cos(x)/2 = 0", |_| 1.0, 2),
         ("x'' + x + x*x'^2 = 0", |x| (x * x).exp(), 3),
         // log M = 2 int g, g what stands before x'^2.
-        ("(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0", |x| 1.0 + x.powi(4), 4),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0", |x| 1.0 + x.powi(4), 3),
         ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4), 2),
         (
             "(2 + cos(x)^2)*x'' - sin(x)*cos(x)*x'^2 + 2*sin(x) = 0",
             |x| (2.0 + x.cos().powi(2)) / 3.0,
+            3,
+        ),
+        // The slope of M is typed in other waves than M, so that no formula is found for it.
+        (
+            "(1 + x^2 + sin(x)^4)*x'' + (x + sin(2*x)*(1 - cos(2*x))/2)*x'^2 + x = 0",
+            |x| 1.0 + x * x + x.sin().powi(4),
             4,
         ),
     ];
+    let mut counts = Vec::new();
     for (equation, mass, expected) in cases {
         let mut methods = 0;
         for method in Method::ALL {
@@ -181,8 +188,10 @@ fn every_printed_integral_is_the_number_given_with_it() {
                 .collect();
             equations_hold(&more, &mut numbers, &context, &name);
         }
-        assert_eq!(methods, expected, "{equation}");
+        counts.push((equation, methods, expected));
     }
+    let others: Vec<_> = counts.iter().filter(|(_, found, expected)| found != expected).collect();
+    assert!(others.is_empty(), "{others:?}");
 }
 
 /// Released on the other side, the motion turns on this one, and the printed period counts from there to A.

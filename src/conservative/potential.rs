@@ -5,7 +5,7 @@
 //! ```text
 //! V' = f:   x^n -> x^(n+1)/(n+1),   1/x -> log|x|,   sin(kx + p) -> -cos(kx + p)/k,   exp -> exp/k,   tan -> -log(cos)/k
 //! (kx + p)^n H(kx + p) -> (kx + p)^(n+1) H(kx + p)/(k (n+1)),   x/(a + b x^2) -> log(a + b x^2)/(2 b)
-//! log u -> (u log u - u)/k,   atan u -> (u atan u - log(1 + u^2)/2)/k,   1/u -> log(u)/k      with u = kx + p
+//! log u -> u log(u)/k - x,   atan u -> (u atan u - log(1 + u^2)/2)/k,   1/u -> log(u)/k      with u = kx + p
 //! h(g(x)) g'(x) -> W(g(x)),  W' = h:   sin(x) cos(x), x exp(x^2), tanh(x)/cosh(x)^2
 //! ```
 //!
@@ -267,7 +267,7 @@ fn with_power(factor: &Expr, exponent: u32, coordinate: Symbol) -> Option<Expr> 
                 Function::Tanh if power.is_one() && exponent == 0 => {
                     divided(call(Function::Log, &call(Function::Cosh, argument)?)?)
                 }
-                Function::Log if power.is_one() && exponent == 0 => divided(argument * &base - argument.clone()),
+                Function::Log if power.is_one() && exponent == 0 => Some(divided(argument * &base)? - x),
                 Function::Atan if power.is_one() && exponent == 0 => {
                     let circle = Expr::one() + argument.integer_power(2).ok()?;
                     let logarithm = call(Function::Log, &circle.expand().ok()?)?;

@@ -59,6 +59,25 @@ pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &Page) -> String
     text
 }
 
+/// Names and what is said of each, those of which the same is said together.
+fn reasons(heading: &str, entries: &[(String, String)], page: &Page) -> String {
+    let mut groups: Vec<(Vec<&str>, &str)> = Vec::new();
+    for (name, words) in entries {
+        match groups.iter_mut().find(|(_, known)| known == words) {
+            Some((names, _)) => names.push(name),
+            None => groups.push((vec![name], words)),
+        }
+    }
+    let groups = groups.iter().map(|(names, words)| match names.as_slice() {
+        [name] => entry(name, words, page.longest_title, page.width),
+        names => {
+            let names = wrapped(&format!("{}:", names.join(", ")), page.width, "  ", "  ");
+            format!("{names}\n{}\n", wrapped(words, page.width, "    ", "    "))
+        }
+    });
+    format!("{heading}\n") + &groups.collect::<String>()
+}
+
 /// Names and what is said of each.
 pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &Page) -> String {
     let entries = entries
@@ -72,7 +91,7 @@ pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
         let reason = refused.reason.reason(refused.method);
         (refused.method.title().to_owned(), reason)
     };
-    entries("Not applicable", &refused.iter().map(named).collect::<Vec<_>>(), page)
+    reasons("Not applicable", &refused.iter().map(named).collect::<Vec<_>>(), page)
 }
 
 pub(super) fn true_motion(lines: &[String], width: usize) -> String {

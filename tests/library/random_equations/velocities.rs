@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use lindstedt::Values;
 use lindstedt::method::{Options, solve};
+use lindstedt::solution::Method;
 use lindstedt::verify::{judge, motions};
-use lindstedt::{Oscillator, Symbol};
+use lindstedt::{Oscillator, Solution, Symbol};
 
 use super::families::number;
 use super::quadrature::{bisect, integrate};
@@ -150,8 +151,22 @@ pub fn inertia(random: &mut Random) -> (String, Option<String>) {
         values
             .insert("A".into(), amplitude.text().parse().expect("a number"))
             .expect("one value");
-        let motions = motions(&oscillator, &solution, &values).map_err(|error| error.to_string())?;
-        let motions = motions.ok_or("omega is not real")?;
+        // A law that is negative at this amplitude has no motion to judge: the true one beside the exact law is the same.
+        let at_amplitude = |symbol: Symbol| (symbol == Symbol::new("A")).then_some(amplitude.value());
+        let squared = solution.frequency_squared_at(&at_amplitude).ok_or("no law")?;
+        let judged = |solution: &Solution| motions(&oscillator, solution, &values).map_err(|error| error.to_string());
+        let motions = match (judged(&solution)?, squared > 0.0) {
+            (Some(motions), true) => motions,
+            (None, false) => {
+                let options = Options {
+                    method: Some(Method::Exact),
+                    ..Options::default()
+                };
+                let exact = solve(&oscillator, &options).map_err(|error| error.to_string())?;
+                judged(&exact)?.ok_or("the exact omega is not real")?
+            }
+            (motions, _) => return Err(format!("motion: {}, omega^2 = {squared}", motions.is_some())),
+        };
         let period = motions.truth.last().ok_or("no motion")?.0;
         // The error of a series through A^4 vanishes like A^6.
         let error = |a: f64| {

@@ -122,23 +122,25 @@ impl Force {
         }
     }
 
-    /// The work against the force from one distance to another; `None` where it has no value between.
-    pub fn work(&self, from: f64, to: f64) -> Option<f64> {
+    /// The work against the force from one distance to another, with a bound of its error; `None` where it has no value between.
+    pub fn work(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         const TOLERANCE: f64 = 1e-14;
         let mut ends = self.cuts(from, to);
         ends.extend([from.min(to), from.max(to)]);
         ends.sort_by(f64::total_cmp);
-        let mut sum = 0.0;
+        let (mut sum, mut error) = (0.0, 0.0);
         for pair in ends.windows(2) {
-            sum += match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
-                Ok((value, _)) => value,
+            let piece = match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
+                Ok(piece) => piece,
                 Err(QuadratureError::NotConverged {
                     value, error_estimate, ..
-                }) if error_estimate < 1e-9 * value.abs() => value,
+                }) if error_estimate < 1e-9 * value.abs() => (value, error_estimate),
                 Err(_) => return None,
             };
+            sum += piece.0;
+            error += piece.1;
         }
-        Some(if from <= to { sum } else { -sum })
+        Some((if from <= to { sum } else { -sum }, error))
     }
 
     /// How often the force or its slope was evaluated so far: a measure of work that is the same on every machine.
@@ -208,8 +210,9 @@ impl Force {
         })
     }
 
-    /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and no narrow place within four times the distance: of what
-    /// happens there the Taylor coefficients at rest may know nothing.
+    /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and within four times the distance
+    /// nothing that turns within less than that: of what happens there, as of a bump beyond its tail, the Taylor coefficients at
+    /// rest may know nothing.
     fn is_clear(&self, radius: f64, at_rest: f64) -> bool {
         let narrow = self
             .of
@@ -219,7 +222,7 @@ impl Force {
             let distance = (feature.place - self.equilibrium()).abs();
             let reach = if feature.width == 0.0 { radius } else { 4.0 * radius };
             let rounding = f64::max(at_rest, 4.0 * f64::EPSILON * self.equilibrium().abs());
-            distance <= rounding || distance > reach || feature.width > radius / 16.0
+            distance <= rounding || distance > reach || feature.width >= 4.0 * radius
         })
     }
 

@@ -65,8 +65,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-/// `f(c A)/(c A)`, `c = sqrt(3)/2`, in numbers.
-pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<f64> {
+/// `f(c A)/(c A)`, `c = sqrt(3)/2`, in numbers, which have no error but rounding.
+pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
     let place = 0.75_f64.sqrt() * amplitude;
-    Some(force.at(place) / place)
+    Some((force.at(place) / place, 0.0))
 }

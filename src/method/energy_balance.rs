@@ -151,8 +151,8 @@ pub(super) fn positive_amplitude(law: &Expr) -> Option<Expr> {
 }
 
 /// The law by the work of the force, which loses no digits where a difference of potentials would.
-pub(super) fn by_quadrature(force: &Force, amplitude: f64) -> Option<f64> {
-    let rise = force.work(amplitude / f64::sqrt(2.0), amplitude)?;
+pub(super) fn by_quadrature(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+    let (rise, error) = force.work(amplitude / f64::sqrt(2.0), amplitude)?;
     // Not over A^2 at once, which may leave the range of doubles.
-    Some(4.0 * (rise / amplitude) / amplitude)
+    Some((4.0 * (rise / amplitude) / amplitude, error / rise.abs()))
 }

@@ -59,7 +59,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-/// `f'(A/2)` in numbers.
-pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<f64> {
-    Some(force.slope(0.5 * amplitude))
+/// `f'(A/2)` in numbers, which have no error but rounding.
+pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+    Some((force.slope(0.5 * amplitude), 0.0))
 }

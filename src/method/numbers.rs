@@ -129,6 +129,15 @@ pub enum NoNumbers {
         /// The relative rounding error of omega^2.
         rounding: f64,
     },
+    /// The integral that defines the law goes up and down too often.
+    #[error(
+        "no digits: the integral that defines omega^2 is known at this amplitude to {} of itself only",
+        significant(*error, 2)
+    )]
+    Integral {
+        /// The relative error of omega^2.
+        error: f64,
+    },
     /// There is no motion whose frequency it could be.
     #[error(transparent)]
     Motion(#[from] PeriodError),
@@ -424,8 +433,9 @@ fn frequency_squared(
             .map(|(value, error)| error / value.abs());
         if error.is_none_or(|error| error.is_nan() || error > LOST_DIGITS)
             && let Some(better) = by_definition(oscillator, solution, numbers, known)
+            && error.is_none_or(|error| error.is_nan() || better.1 <= error)
         {
-            return Ok((better, 0.0));
+            return Ok(better);
         }
         rounding = rounding.max(error.unwrap_or(0.0));
     }
@@ -507,18 +517,18 @@ fn overflow(
     [amplitude, -amplitude].into_iter().find_map(found)
 }
 
-/// A law of one term by what defines it, without the differences of a closed form.
+/// A law of one term by what defines it, without the differences of a closed form; with a bound of its error, relative.
 fn by_definition(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     known: &Known,
-) -> Option<f64> {
+) -> Option<(f64, f64)> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
     if is_exact(solution) {
         return exact_motion(oscillator, solution, numbers, known)
             .ok()
-            .map(|found| found.0);
+            .map(|found| (found.0, 0.0));
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
@@ -527,7 +537,7 @@ fn by_definition(
         known.force(oscillator, solution, numbers)?
     };
     let definition = Entry::of(solution.method).definition?;
-    definition(&force, size).filter(|law| law.is_finite())
+    definition(&force, size).filter(|law| law.0.is_finite())
 }
 
 /// The relative error of the integral of a law of one term, as its quadrature estimates it; `None` for other laws.
@@ -787,7 +797,10 @@ fn solve(
         return Ok((found.frequency_squared, found.motion.sum(&shift), remark));
     }
     stays_defined(oscillator, solution, numbers, known)?;
-    let squared = by_definition(oscillator, solution, numbers, known).ok_or(NoNumbers::NoValue)?;
+    let (squared, error) = by_definition(oscillator, solution, numbers, known).ok_or(NoNumbers::NoValue)?;
+    if error > NO_DIGITS {
+        return Err(NoNumbers::Integral { error });
+    }
     let motion = FourierSeries::from_parts(Doubles, vec![0.0, amplitude], vec![]);
     Ok((squared, motion.sum(&shift), None))
 }

@@ -215,9 +215,10 @@ pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
     })
 }
 
-/// `c_1/A` of a force by numbers: what defines the methods whose law is the shared integral.
-pub(super) fn first_projection_over_amplitude(force: &Force, amplitude: f64) -> Option<f64> {
-    Some(coefficient(force, amplitude, 1).0 / amplitude)
+/// `c_1/A` of a force by numbers, with a bound of its error, relative: what defines the methods whose law is the shared integral.
+pub(super) fn first_projection_over_amplitude(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+    let (projection, error) = coefficient(force, amplitude, 1);
+    Some((projection / amplitude, error / projection.abs()))
 }
 
 /// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its error: the midpoint

@@ -26,8 +26,8 @@ pub struct Entry {
     /// the force is a polynomial.
     pub rounded_degree: fn(&Options, bool) -> Option<u32>,
     /// omega^2 of a motion `A cos(theta)` by what defines it, in numbers, for methods of one term: the force about the
-    /// equilibrium and the size of the amplitude.
-    pub definition: Option<fn(&Force, f64) -> Option<f64>>,
+    /// equilibrium and the size of the amplitude; with a bound of its error, relative.
+    pub definition: Option<fn(&Force, f64) -> Option<(f64, f64)>>,
     /// Whether its law knows the sign of the amplitude; one that does not is written for positive ones.
     pub signed: bool,
     /// How its motion becomes numbers.

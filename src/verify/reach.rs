@@ -137,14 +137,22 @@ pub(super) fn reach(
         evaluations: std::cell::Cell::new(0),
     };
     let signed = |size: f64| size.copysign(asked);
-    if points[0].1.abs() > tolerance {
-        // Even the smallest amplitude fails; smaller ones only if the error vanishes at rest.
-        let end = follow.crossing((0.0, 0.0), points[0]);
-        let tiny = 1e-3 * points[0].0;
-        return Some(match error(tiny) {
-            Some(value) if value.abs() <= tolerance => Reach::UpTo(signed(end)),
-            _ => Reach::Nowhere,
-        });
+    // From rest to the smallest of them the law may change at any scale.
+    const SMALLEST: f64 = 1e-6;
+    let first = points[0];
+    let scales = std::iter::successors(Some(SMALLEST * first.0), |size| Some(2.0 * size));
+    let smaller: Vec<(f64, f64)> = scales
+        .take_while(|size| *size < first.0)
+        .map_while(|size| Some((size, error(size)?)))
+        // So close to rest that a formula has no digits left.
+        .skip_while(|point| point.1.is_infinite())
+        .collect();
+    match smaller.first() {
+        Some(tiny) if tiny.1.abs() <= tolerance => {
+            points.splice(0..0, smaller);
+        }
+        _ if first.1.abs() > tolerance => return Some(Reach::Nowhere),
+        _ => {}
     }
     for pair in points.windows(2) {
         if let Some(end) = follow.first_crossing(pair[0], pair[1]) {
@@ -167,6 +175,9 @@ impl Follow<'_> {
         /// How many stretches may be halved in all, and how often one.
         const MOST: usize = 160;
         const DEEPEST: usize = 8;
+        /// Of the tolerance: where the error is larger, one look at the middle is not enough, for it may bend to both sides.
+        const CLOSE: f64 = 0.3;
+        const LOOKS: usize = 3;
         let mut open = vec![(from, to, 0)];
         while let Some((low, high, depth)) = open.pop() {
             let middle = 0.5 * (low.0 + high.0);
@@ -191,6 +202,7 @@ impl Follow<'_> {
             if value.abs() <= self.tolerance
                 && high.1.abs() <= self.tolerance
                 && bend < 0.5 * (self.tolerance - largest)
+                && (largest < CLOSE * self.tolerance || depth >= LOOKS)
             {
                 continue;
             }

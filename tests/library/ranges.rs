@@ -415,3 +415,72 @@ fn forces_that_wave_all_the_way_are_looked_at_less_far() {
     let error = judge(&oscillator, &solution, &"A = 1e6".parse().unwrap(), 0.01).unwrap_err();
     assert!(error.to_string().contains("changes too often"), "{error}");
 }
+
+/// The tail of a bump says nothing at rest of the bump itself: the exact period beside the energy, whose potential is
+/// `3.08 x^2 - (2330/100.2) exp(-50.1 (x - 1.41)^2)`, and the shared integral beside its sum.
+#[test]
+fn a_bump_whose_tail_vanishes_at_rest_is_no_tail_alone() {
+    const POINTS: u32 = 200_000;
+    let angles = || (0..POINTS).map(|k| (f64::from(k) + 0.5) * 0.5 * TAU / f64::from(POINTS));
+    let bell = |x: f64| (-50.1 * (x - 1.41).powi(2)).exp();
+    let equation = "x'' + 6.16*x + 2330*(x - 1.41)*exp(-50.1*(x - 1.41)^2) = 0";
+    let amplitude = 3.52_f64;
+    let potential = |x: f64| 3.08 * x * x - 2330.0 / 100.2 * bell(x);
+    let time = |angle: f64| {
+        let speed = (2.0 * (potential(amplitude) - potential(amplitude * angle.cos()))).sqrt();
+        amplitude * angle.sin() / speed
+    };
+    let period = TAU / f64::from(POINTS) * angles().map(time).sum::<f64>();
+    let exact = judged(equation, Method::Exact, None, "3.52");
+    assert!(
+        (exact.true_frequency * period / TAU - 1.0).abs() < 1e-9,
+        "{}",
+        exact.true_frequency
+    );
+    let force = |x: f64| 6.16 * x + 2330.0 * (x - 1.41) * bell(x);
+    let projection = |angle: f64| force(amplitude * angle.cos()) * angle.cos();
+    let squared = 2.0 / (amplitude * f64::from(POINTS)) * angles().map(projection).sum::<f64>();
+    let one_term = judged(equation, Method::Hamiltonian, None, "3.52");
+    let found = one_term.frequency.expect("a law");
+    assert!((found / squared.sqrt() - 1.0).abs() < 1e-12, "{found}");
+}
+
+/// A sine that waves thousands of times along the motion: a quadrature knows less of it than its closed form, which is `J1`.
+#[test]
+fn a_closed_form_is_not_given_up_for_a_worse_quadrature() {
+    const POINTS: u32 = 100_000;
+    let oscillator = Oscillator::parse("x'' + 3.2*sin(1.01*x) = 0").unwrap();
+    let options = Options {
+        method: Some(Method::Hamiltonian),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).unwrap();
+    let amplitude = 23_100.0;
+    let square = frequency_squared_of(&oscillator, &solution, &[("A".into(), amplitude)].into()).unwrap();
+    let sum: f64 = (0..POINTS)
+        .map(|k| (f64::from(k) + 0.5) * 0.5 * TAU / f64::from(POINTS))
+        .map(|angle| 3.2 * (1.01 * amplitude * angle.cos()).sin() * angle.cos())
+        .sum();
+    let expected = 2.0 / (amplitude * f64::from(POINTS)) * sum;
+    assert!((square / expected - 1.0).abs() < 1e-8, "{square} {expected}");
+}
+
+/// The range of a formula begins at rest, however far out the motion is that was asked for.
+#[test]
+fn a_range_ends_where_it_ends_for_a_smaller_motion() {
+    let end = |amplitude: &str| {
+        let equation = "x'' + 2.02*x - 0.562*x^2 + 1.81*x^3 = 0";
+        let verification = judged(equation, Method::Hamiltonian, None, amplitude);
+        let mut ends = verification
+            .ranges
+            .iter()
+            .filter_map(|range| range.text.split_once("within 1 % up to A = "));
+        let (_, end) = ends.next().expect("a formula that fails there");
+        end.parse::<f64>().expect("a number")
+    };
+    let near = end("-2");
+    for amplitude in ["-10", "-606", "-100000"] {
+        let far = end(amplitude);
+        assert!((far / near - 1.0).abs() < 2e-3, "A = {amplitude}: {far} {near}");
+    }
+}

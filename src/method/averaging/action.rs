@@ -105,7 +105,7 @@ fn action(force: &Force, start: f64) -> Option<f64> {
     let value = |k: usize| {
         let phase = std::f64::consts::PI * ((k as f64 + 0.5) / POINTS as f64 - 0.5);
         let (sine, cosine) = phase.sin_cos();
-        let depth = force.work(middle + half * sine, start)?;
+        let (depth, _) = force.work(middle + half * sine, start)?;
         Some(depth.max(0.0).sqrt() * cosine)
     };
     let sum: f64 = (0..POINTS).map(value).sum::<Option<f64>>()?;

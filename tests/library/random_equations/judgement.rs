@@ -164,7 +164,15 @@ fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
     }
     let beyond = (1..=20).map(|k| good(end * (1.0 + 0.002 * f64::from(k))));
     let errors: Option<Vec<f64>> = beyond.collect();
-    let early = !last && errors.is_some_and(|errors| errors.iter().all(|error| error.abs() < 0.99 * TOLERANCE));
+    let below = |error: &f64| error.abs() < 0.99 * TOLERANCE;
+    // A pole of the law may spoil next to nothing, so that coarse steps pass over it.
+    let close_by = || {
+        let offsets =
+            std::iter::successors(Some(1e-7), |offset| Some(1.03 * offset)).take_while(|offset| *offset < 1e-2);
+        let mut errors = offsets.filter_map(|offset| good(end * (1.0 + offset)));
+        errors.all(|error| below(&error))
+    };
+    let early = !last && errors.is_some_and(|errors| errors.iter().all(below)) && close_by();
     early.then(|| {
         format!(
             "{title}: the range ends at A = {}, but the error stays below 1 % beyond",

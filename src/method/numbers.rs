@@ -149,7 +149,14 @@ pub enum NoNumbers {
 impl NoNumbers {
     /// Whether there is no frequency because it would not be real.
     pub fn is_not_real(&self) -> bool {
-        matches!(self, Self::BranchEnds { .. } | Self::Undefined { .. } | Self::NotReal)
+        matches!(
+            self,
+            Self::BranchEnds { .. }
+                | Self::BranchEndsAbove { .. }
+                | Self::NoBranchAbove
+                | Self::Undefined { .. }
+                | Self::NotReal
+        )
     }
 }
 
@@ -420,6 +427,8 @@ fn frequency_squared(
         return match solution.branch_at(&value_of) {
             Some(Branch::At { squared, rounding }) => Ok((squared, rounding)),
             Some(Branch::Ends(amplitude)) => Err(NoNumbers::BranchEnds { amplitude }),
+            Some(Branch::EndsAbove(amplitude)) => Err(NoNumbers::BranchEndsAbove { amplitude }),
+            Some(Branch::NoneAbove) => Err(NoNumbers::NoBranchAbove),
             None => Err(NoNumbers::NoValue),
         };
     }

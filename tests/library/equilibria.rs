@@ -415,6 +415,45 @@ fn two_equilibria_close_together_are_seen_on_either_side() {
     }
 }
 
+/// The place about which a motion swings is no harmonic of it: an odd force is balanced by odd ones, wherever its equilibrium is.
+#[test]
+fn an_odd_force_is_balanced_alike_about_any_equilibrium() {
+    let at = |equation: &str, order: u32, small: &[(&str, f64)]| {
+        let equation = oscillator(equation);
+        let options = Options {
+            method: Some(Method::HarmonicBalance),
+            order: Some(order),
+            ..Options::default()
+        };
+        let solution = solve(&equation, &options).expect("a balance");
+        let mut values = numbers(small);
+        values.insert("A".into(), 1.5);
+        let found = evaluate(&equation, &solution, &values).expect("numbers");
+        let third = found.motion.expect("a motion").cosine(3).mean().0;
+        (found.frequency_squared, third)
+    };
+    for order in [2, 3] {
+        let (squared, third) = at("x'' + x + x^3 = 0", order, &[]);
+        for (moved, values) in [
+            ("x'' + (x - 1) + (x - 1)^3 = 0", vec![]),
+            ("x'' + (x - pi) + (x - pi)^3 = 0", vec![]),
+            ("x'' + (x - L) + (x - L)^3 = 0", vec![("L", 0.3)]),
+        ] {
+            let found = at(moved, order, &values);
+            assert!(
+                (found.0 / squared - 1.0).abs() < 1e-12,
+                "{moved}: {} for {squared}",
+                found.0
+            );
+            assert!(
+                (found.1 / third - 1.0).abs() < 1e-10,
+                "{moved}: {} for {third}",
+                found.1
+            );
+        }
+    }
+}
+
 #[test]
 fn what_is_no_equilibrium_has_no_formula() {
     for method in Method::ALL {

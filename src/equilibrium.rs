@@ -10,6 +10,9 @@
 //! these, `V = k log|x|`, in which the period stays finite while the speed at `x = 0` does not (R. E. Mickens, *Truly Nonlinear
 //! Oscillations*, World Scientific 2010, section 2.3.3). A motion that is pulled faster than that falls in.
 //!
+//! An unstable equilibrium is answered for only where it is asked for, and where motions run through it: those of an odd force over
+//! the wells on both sides ([`crate::conservative::passage`]).
+//!
 //! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
 //! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
 
@@ -31,7 +34,7 @@ use crate::oscillator::corner::{beside_corners, near_rest};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::solution::Definition;
-use crate::solution::note::CornerSide;
+use crate::solution::note::{CornerSide, CrossWell};
 use crate::symbol::{Symbol, fresh};
 use force::{Force, Pull};
 use search::Zero as SignChange;
@@ -54,6 +57,8 @@ pub struct Centred {
     pub sides: Vec<CornerSide>,
     /// Whether the force pulls towards it as `1/x` does: the potential there is minus infinity, the speed of every motion infinite.
     pub endless: bool,
+    /// The motions through it over the wells on both sides, where it is no bottom but a hilltop between them.
+    pub cross_well: Option<CrossWell>,
 }
 
 impl Centred {
@@ -66,11 +71,12 @@ impl Centred {
             numerical: false,
             sides: vec![],
             endless: false,
+            cross_well: None,
         }
     }
 }
 
-/// The oscillator about the equilibrium asked for, else about the stable one nearest to zero that no pole hides; `degree` is
+/// The oscillator about the equilibrium asked for (a stable one, or a hilltop of the potential that motions pass), else about the stable one nearest to zero that no pole hides; `degree` is
 /// that of a polynomial with rounded coefficients in place of the force, should the equilibrium be irrational.
 ///
 /// # Errors
@@ -127,9 +133,14 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         return match force.is_stable_at_zero() {
             true => Ok(Centred {
                 endless: pull == Some(Pull::Inverse),
+                // Letters may have made it a hilltop.
+                cross_well: match oscillator.of_position_alone() && !force.is_numerical() {
+                    true => force.cross_well(&Expr::zero()),
+                    false => None,
+                },
                 ..Centred::at_origin(oscillator)
             }),
-            false => Err(force.unstable()),
+            false => Err(force.unstable(oscillator.of_position_alone())),
         };
     }
     let falls_in = |uneven: bool| OscillatorError::FallsIn {
@@ -207,6 +218,7 @@ pub fn with_numbers_where_needed(
         position.evaluate(&BTreeMap::new()).ok()
     };
     let in_numbers = centred(&numerical, None)?;
+    let hilltop = |centred: &Centred| centred.cross_well.is_some() == in_numbers.cross_well.is_some();
     // A corner may be on its other side with these numbers.
     let beside = |centred: &Centred| {
         let Ok((_, taken)) = near_rest(&centred.oscillator.force, oscillator.coordinate) else {
@@ -218,7 +230,7 @@ pub fn with_numbers_where_needed(
             value.is_ok_and(|value| value > 0.0)
         })
     };
-    let same = in_symbols.filter(beside).is_some_and(|in_symbols| {
+    let same = in_symbols.filter(beside).filter(hilltop).is_some_and(|in_symbols| {
         let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
         matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
     });
@@ -238,9 +250,20 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
     let exact = value_at(still, oscillator.coordinate, asked).is_ok_and(|value| value.is_zero());
     if exact {
         let there = moved(still, oscillator.coordinate, asked)?;
-        let stable = Force::new(&there, oscillator.coordinate).is_stable_at_zero();
-        return match stable {
-            true => seen_from(oscillator, &Place::Exact(asked.clone()), degree),
+        let there = Force::new(&there, oscillator.coordinate);
+        let stable = there.is_stable_at_zero();
+        // Without a drive, which has been taken out of the force, and without what velocities add.
+        let conservative = oscillator.of_position_alone() && !oscillator.residual.contains(Symbol::new("t"));
+        let passed = || there.cross_well(asked);
+        let cross_well = match conservative && !(stable && there.is_numerical()) {
+            true => passed(),
+            false => None,
+        };
+        return match stable || cross_well.is_some() {
+            true => Ok(Centred {
+                cross_well,
+                ..seen_from(oscillator, &Place::Exact(asked.clone()), degree)?
+            }),
             false => Err(none_there()),
         };
     }
@@ -261,6 +284,17 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
     seen_from(oscillator, &force.exact_or_rounded(found.position), degree)
 }
 
+/// The refusal of an equilibrium that was asked for because it is no stable one.
+pub(crate) fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
+    let asked = oscillator.about.clone().unwrap_or_else(Expr::zero);
+    let stable = Force::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
+    OscillatorError::NoSuchEquilibrium {
+        coordinate: oscillator.coordinate,
+        asked,
+        stable,
+    }
+}
+
 /// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put in for these decide. `None` where there
 /// are none.
 pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
@@ -270,7 +304,7 @@ pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorErro
     }
     let force = Force::new(&still, oscillator.coordinate);
     let found = force.stable_equilibria();
-    (!force.is_numerical() && !found.positions.is_empty()).then(|| force.unstable())
+    (!force.is_numerical() && !found.positions.is_empty()).then(|| force.unstable(oscillator.of_position_alone()))
 }
 
 /// Where an equilibrium is.
@@ -581,7 +615,15 @@ mod tests {
         assert_eq!(about("x'' + sin(x)", "2*pi").unwrap(), "2*pi");
         assert_eq!(about("x'' - x + k*x^3", "1/sqrt(k)").unwrap(), "1/sqrt(k)");
         assert_eq!(about("x'' - 2*x + x^3", "1.4142").unwrap(), "sqrt(2)");
-        for (text, place) in [("x'' - x + x^3", "0"), ("x'' - x + x^3", "0.5"), ("x'' + sin(x)", "pi")] {
+        let none = [
+            ("x'' - x + x^3", "0.5"),
+            ("x'' + sin(x)", "pi"),
+            ("x'' - x + x^2/10 + x^3", "0"),
+            ("x'' + x'/10 - x + x^3", "0"),
+            ("x'' - x + x^3 = cos(t)", "0"),
+            ("x'' - x", "0"),
+        ];
+        for (text, place) in none {
             let error = about(text, place).unwrap_err();
             assert!(matches!(error, OscillatorError::NoSuchEquilibrium { .. }), "{error}");
         }

@@ -154,6 +154,8 @@ pub enum OscillatorError {
         coordinate: Symbol,
         /// Those that are stable.
         stable: Equilibria,
+        /// Whether motions run through it, over the wells on both sides.
+        passed: bool,
     },
     /// What was asked for is no stable equilibrium.
     #[error("{coordinate} = {asked} is no stable equilibrium{}", stable_ones(*coordinate, .stable))]
@@ -269,14 +271,24 @@ impl OscillatorError {
             Self::SymbolicEquilibrium(_) => {
                 Advice::words("give numbers for the parameters, or measure x from the equilibrium")
             }
-            Self::Unstable { coordinate, stable } | Self::BeyondPole { coordinate, stable, .. } => {
+            Self::Unstable { coordinate, stable, .. } | Self::BeyondPole { coordinate, stable, .. } => {
                 let positions = &stable.positions;
                 let positive = positions.iter().find(|position| !position.is_negative());
                 let setting = Setting::About {
                     coordinate: *coordinate,
                     position: positive.or(positions.first())?.clone(),
                 };
-                Advice::words("choose one with `").choose(setting).then("`")
+                let advice = Advice::words("choose one with `").choose(setting);
+                match self {
+                    Self::Unstable { passed: true, .. } => advice
+                        .then("`, or `")
+                        .choose(Setting::About {
+                            coordinate: *coordinate,
+                            position: Position::Exact(Expr::zero()),
+                        })
+                        .then("` for motions over the wells on both sides"),
+                    _ => advice.then("`"),
+                }
             }
             _ => return None,
         })

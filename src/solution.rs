@@ -462,7 +462,7 @@ impl Solution {
         if self.law.relation().is_some() {
             return match self.branch_at(value_of)? {
                 Branch::At { squared, .. } => Some(squared),
-                Branch::Ends(_) => None,
+                Branch::Ends(_) | Branch::EndsAbove(_) | Branch::NoneAbove => None,
             };
         }
         if let Some(form) = self.law.closed_form() {

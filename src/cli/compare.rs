@@ -21,7 +21,8 @@ pub struct Arguments {
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
-    /// The stable equilibrium to swing about, x=1 say; without it the one nearest to zero
+    /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or an unstable one between two wells
+    /// for motions over both
     #[arg(long, value_name = "NAME=VALUE")]
     about: Option<String>,
     #[command(flatten)]

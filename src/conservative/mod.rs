@@ -15,6 +15,7 @@ pub(crate) mod features;
 pub(crate) mod force;
 mod motion;
 pub(crate) mod parity;
+pub(crate) mod passage;
 pub(crate) mod potential;
 pub(crate) mod power;
 pub(crate) mod projection;

@@ -3,6 +3,8 @@
 
 use super::force::Force;
 use super::well::Well;
+use crate::decimal::rounded_to;
+use crate::exact::rational::to_f64;
 use crate::numeric::ode::energy::{self, PeriodError};
 
 impl Force {
@@ -65,7 +67,21 @@ impl Force {
         if !lost && !gone {
             return error;
         }
-        let end = Well::new(self, start).and_then(|well| well.on_side(start));
+        let well = Well::new(self, start);
+        if let Some(inner) = well.and_then(|well| well.inner) {
+            let (place, position) = (inner.place, self.equilibrium() + start);
+            return match start.abs() / inner.amplitude - 1.0 {
+                short if short.abs() <= ON => PeriodError::Separatrix { start: position, place },
+                short if short.abs() <= NEAR && lost => PeriodError::NearSeparatrix { start: position, place },
+                short if short < 0.0 => PeriodError::OneWell {
+                    start: position,
+                    equilibrium: self.equilibrium(),
+                    least: to_f64(&rounded_to(inner.amplitude, 6)),
+                },
+                _ => error,
+            };
+        }
+        let end = well.and_then(|well| well.on_side(start));
         let Some(end) = end.filter(|end| end.rim.separatrix) else {
             return error;
         };

@@ -10,6 +10,7 @@
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
 use super::force::Force;
+use super::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::root::find_root;
@@ -40,6 +41,17 @@ pub struct Well {
     pub low: Option<End>,
     /// On the positive side.
     pub high: Option<End>,
+    /// Where the motions begin, if not at rest.
+    pub inner: Option<Inner>,
+}
+
+/// The least amplitude of motions through an unstable equilibrium, over the wells on both sides of it: smaller ones stay in one well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inner {
+    /// Its size, which all motions exceed.
+    pub amplitude: f64,
+    /// The unstable equilibrium that the motion of this amplitude does not pass.
+    pub place: f64,
 }
 
 /// How far the search for the rims of a well goes, in units of the amplitude.
@@ -53,6 +65,9 @@ impl Well {
     /// The well of a force about its equilibrium, where it has an end; `amplitude` gives the scale of the search.
     pub fn new(force: &Force, amplitude: f64) -> Option<Self> {
         let (equilibrium, unit) = (force.equilibrium(), amplitude.abs());
+        if pushes_away(force, unit) {
+            return Self::over_hilltops(force, unit);
+        }
         let rim = |side: f64| rim(force, side, unit);
         let (left, right) = (rim(-1.0), rim(1.0));
         let end = |side: f64, own: Option<Rim>, other: Option<Rim>| {
@@ -87,8 +102,37 @@ impl Well {
         let well = Self {
             low: end(-1.0, left, right),
             high: end(1.0, right, left),
+            inner: None,
         };
         (well.low.is_some() || well.high.is_some()).then_some(well)
+    }
+
+    /// The motions of an odd force through an unstable equilibrium: those of the amplitude, or the next larger ones.
+    fn over_hilltops(force: &Force, amplitude: f64) -> Option<Self> {
+        let (passages, equilibrium) = (passages(force, amplitude), force.equilibrium());
+        let passage = passage_at(&passages, amplitude)?;
+        let end = |side: f64| {
+            passage.to.map(|rim| End {
+                amplitude: side * rim.place,
+                rim: Rim {
+                    place: equilibrium + side * rim.place,
+                    ..rim
+                },
+            })
+        };
+        Some(Self {
+            low: end(-1.0),
+            high: end(1.0),
+            inner: Some(Inner {
+                amplitude: passage.from,
+                place: equilibrium + passage.over,
+            }),
+        })
+    }
+
+    /// The size of the amplitude that periodic motions exceed.
+    pub fn smallest_amplitude(&self) -> f64 {
+        self.inner.map_or(0.0, |inner| inner.amplitude)
     }
 
     /// The end on the side of an amplitude.
@@ -106,6 +150,25 @@ impl Well {
             }
         };
         let number = |end: End| significant(end.amplitude, 6);
+        if let Some(inner) = self.inner {
+            let (least, hilltop) = (significant(inner.amplitude, 6), significant(inner.place, 6));
+            return match self.high {
+                None => format!(
+                    "periodic for |{name}| > {least}: the separatrix passes the unstable equilibrium {coordinate} = {hilltop}"
+                ),
+                Some(high) if high.rim.separatrix => format!(
+                    "periodic for {least} < |{name}| < {}: the separatrices pass the unstable equilibria {coordinate} = {hilltop} and \
+                     {coordinate} = {}",
+                    number(high),
+                    significant(high.rim.place, 6)
+                ),
+                Some(high) => format!(
+                    "periodic for {least} < |{name}| < {}: the separatrix passes the unstable equilibrium {coordinate} = {hilltop}, {}",
+                    number(high),
+                    because(high.rim)
+                ),
+            };
+        }
         match (self.low, self.high) {
             (Some(low), Some(high)) => {
                 let even = (low.amplitude / high.amplitude + 1.0).abs() < 1e-9;
@@ -129,7 +192,7 @@ impl Well {
 const MOST_PIECES: usize = 256;
 
 /// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond too many pieces.
-fn rise(force: &Force, to: f64) -> Option<f64> {
+pub(super) fn rise(force: &Force, to: f64) -> Option<f64> {
     let mut knots = vec![to.min(0.0)];
     knots.extend(force.cuts(0.0, to));
     knots.push(to.max(0.0));
@@ -241,7 +304,7 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
 }
 
 /// Where a force ends between a distance at which it has a value and one at which it has none, from outside.
-fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
+pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
     const HALVINGS: usize = 60;
     let (mut inside, mut outside) = (inside, outside);
     for _ in 0..HALVINGS {
@@ -256,7 +319,7 @@ fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
 }
 
 /// Where the force turns its sign between two distances, and whether through zero; `None` where it has only died away.
-fn sign_change(pull: &dyn Fn(f64) -> f64, from: f64, to: f64, strongest: f64) -> Option<(f64, bool)> {
+pub(super) fn sign_change(pull: &dyn Fn(f64) -> f64, from: f64, to: f64, strongest: f64) -> Option<(f64, bool)> {
     let (before, there) = (pull(from), pull(to));
     // A force that has died away to nothing has no zero there.
     if there == 0.0 && before.abs() < 1e-100 * strongest {

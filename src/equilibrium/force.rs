@@ -11,14 +11,16 @@ use super::Place;
 use super::inverse::inverted;
 use super::search::{Zero as SignChange, polynomial_zeros, zeros};
 use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved};
-use crate::conservative::is_odd;
+use crate::conservative::force::Force as AtNumbers;
+use crate::conservative::passage::{Passage, passages, pushes_away};
+use crate::conservative::{is_odd, potential};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::exact::real_roots::sign_changing_part;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::oscillator::{Equilibria, OscillatorError, Others};
 use crate::series::taylor::taylor;
-use crate::solution::note::Position;
+use crate::solution::note::{CrossWell, CrossWellEnd, Position};
 use crate::symbol::Symbol;
 
 /// How a force that is infinite at `x = 0` pulls towards it.
@@ -289,11 +291,90 @@ impl<'a> Force<'a> {
         samples.iter().any(is_stable).then(|| form.clone())
     }
 
-    pub(super) fn unstable(&self) -> OscillatorError {
+    /// The refusal of `x = 0`; with the motions through it as a way forward, where the force is all that there is and has such.
+    pub(super) fn unstable(&self, conservative: bool) -> OscillatorError {
         OscillatorError::Unstable {
             coordinate: self.coordinate,
             stable: self.stable_equilibria(),
+            passed: conservative && self.cross_well(&Expr::zero()).is_some(),
         }
+    }
+
+    /// The motions through zero that run over the wells on both sides of it, where it is a hilltop between them; `position` is
+    /// where zero is. With letters it is one where it is for positive ones of all sizes.
+    pub(super) fn cross_well(&self, position: &Expr) -> Option<CrossWell> {
+        /// How far a closed form may be from the number found: that is good to the quadrature of the energy.
+        const AGREEMENT: f64 = 1e-7;
+        let samples = match self.value {
+            Some(_) => vec![BTreeMap::new()],
+            None => self.samples(),
+        };
+        let unit = self
+            .stable()
+            .iter()
+            .map(|found| found.position.abs())
+            .fold(f64::INFINITY, f64::min);
+        let unit = if unit.is_finite() { unit } else { 1.0 };
+        let rest = Expr::zero();
+        let at = |sample: &BTreeMap<Symbol, f64>| AtNumbers::new(self.force, self.coordinate, &rest, sample, unit);
+        let away = |sample: &BTreeMap<Symbol, f64>| at(sample).is_some_and(|force| pushes_away(&force, unit));
+        if !samples.iter().all(away) || !is_odd(self.force, self.coordinate).unwrap_or(false) {
+            return None;
+        }
+        let ranges = |sample: &BTreeMap<Symbol, f64>| Some(*passages(&at(sample)?, unit).first()?);
+        let found: Vec<(&BTreeMap<Symbol, f64>, Passage)> = samples
+            .iter()
+            .filter_map(|sample| Some((sample, ranges(sample)?)))
+            .collect();
+        let first = found.first()?.1;
+        let fits = |form: &Expr| {
+            found.iter().all(|(sample, range)| {
+                let value = form.evaluate(sample);
+                value.is_ok_and(|value| (value - range.from).abs() <= AGREEMENT * range.from)
+            })
+        };
+        let from = self.edges(first.from).into_iter().find(fits).map(Position::Exact);
+        let from = from.or_else(|| self.value.is_some().then_some(Position::Number(first.from)));
+        let to = match (first.to, self.value.is_some()) {
+            (Some(rim), true) => CrossWellEnd::At(match exact_zero(self.force, self.coordinate, rim.place) {
+                Some(exact) if rim.separatrix => Position::Exact(exact),
+                _ => Position::Number(rim.place),
+            }),
+            (None, true) => CrossWellEnd::Never,
+            (_, false) if found.iter().any(|entry| entry.1.to.is_some()) => CrossWellEnd::Somewhere,
+            (_, false) => CrossWellEnd::Never,
+        };
+        let mut positive: Vec<Symbol> = self.force.symbols().into_iter().collect();
+        positive.retain(|name| *name != self.coordinate);
+        Some(CrossWell {
+            coordinate: self.coordinate,
+            equilibrium: position.clone(),
+            from,
+            to,
+            positive,
+        })
+    }
+
+    /// What the amplitude may be at which the potential is again that at zero: `near` is its value for numbers.
+    fn edges(&self, near: f64) -> Vec<Expr> {
+        let x = self.coordinate;
+        let risen = || {
+            let potential = potential(self.force, x)?;
+            let at_zero = potential.substitute(x, &Expr::zero()).ok()?;
+            (potential - at_zero).expand().ok()
+        };
+        let Some(risen) = risen() else { return vec![] };
+        let mut forms: Vec<Expr> = match self.value {
+            Some(_) => exact_zero(&risen, x, near).into_iter().collect(),
+            None => vec![],
+        };
+        let squared = Expr::from(x)
+            .integer_power(2)
+            .and_then(|squared| Expr::divide(&risen, &squared));
+        if let Ok(quotient) = squared.and_then(|quotient| quotient.expand()) {
+            forms.extend(closed_forms(&quotient, x));
+        }
+        forms
     }
 
     /// The stable equilibria: the nearest few, and the period with which they come back.

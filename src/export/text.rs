@@ -403,7 +403,11 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbo
     }
     // An error that is large now does not vanish in rounding when the small parameter is halved.
     let large = verification.relative_error.is_some_and(|error| error.abs() > LARGE);
-    let unknown = if large { "not measured" } else { "hidden by rounding" };
+    let unknown = match (verification.over_several_wells, large) {
+        (true, _) => "not measured: motions over both wells do not become small",
+        (false, true) => "not measured",
+        (false, false) => "hidden by rounding",
+    };
     let slope = |slope: Option<f64>| slope.map_or(unknown.to_owned(), |slope| format!("{slope:.2}"));
     let slope = match &verification.followed {
         None => slope(verification.slope),

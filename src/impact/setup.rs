@@ -16,7 +16,7 @@ use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
 use super::units::Units;
-use crate::equilibrium::{centred, with_numbers_where_needed};
+use crate::equilibrium::{centred, no_bottom, with_numbers_where_needed};
 use crate::exact::rational::ratio;
 use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function};
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -332,6 +332,9 @@ impl Setup {
         let numerical = with_numbers_where_needed(&swing, &known)?;
         let in_numbers = swing.with_values(&known)?;
         let centred = centred(&in_numbers, None).ok();
+        if centred.as_ref().is_some_and(|centred| centred.cross_well.is_some()) {
+            return Err(no_bottom(&in_numbers).into());
+        }
         let position = centred.as_ref().map(|centred| &centred.position);
         let equilibrium = position
             .and_then(|position| position.evaluate(&[].into()).ok())

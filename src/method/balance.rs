@@ -12,7 +12,8 @@
 //! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish, or, for a force without
 //! linear part such as `x^3`, keep the values that belong to its lowest power. Where that branch turns back before it reaches
 //! the amplitude asked for, there may be others, about several wells or about this one: they are followed down from amplitudes so
-//! large that the highest power alone decides. Where there are none either, the balance is refused in words.
+//! large that the highest power alone decides. Where there are none either, the balance is refused in words. Motions through an
+//! unstable equilibrium have no branch from rest: theirs is followed from an amplitude at which they are nearly of one term.
 //!
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
 //! between the instants at which the motion crosses a corner, a jump or a narrow place of the force; where a force waves more often
@@ -25,6 +26,7 @@ use std::rc::Rc;
 use nalgebra::{DMatrix, DVector};
 
 use crate::conservative::force::Force;
+use crate::conservative::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::exact::Doubles;
 use crate::numeric::ode::quadrature::nodes_and_weights;
@@ -58,6 +60,18 @@ pub enum Lost {
     /// There is no motion to start from.
     #[error("no balance: at small amplitudes these harmonics have no motion to start from")]
     NoStart,
+    /// The branch of motions through an unstable equilibrium never reaches the amplitude.
+    #[error(
+        "no balance: followed from A = {}, the motion of these harmonics over both wells ends at A = {}; another order may reach farther",
+        significant(*from, 6),
+        significant(*amplitude, 6)
+    )]
+    EndsOnTheWay {
+        /// Where it was taken up.
+        from: f64,
+        /// The last amplitude reached.
+        amplitude: f64,
+    },
     /// The sums for the harmonics of the force do not agree, however fine.
     #[error("no balance: the force changes too often along this motion for its harmonics to be summed")]
     Unsettled,
@@ -79,6 +93,17 @@ pub struct Continuation {
 }
 
 impl Continuation {
+    /// The motion of the known amplitude nearest to this one, on its side.
+    fn nearest(&self, amplitude: f64) -> Option<State> {
+        let goal = amplitude.abs().ln();
+        let known = self.states.borrow();
+        let distance = |state: &State| (state.logarithm() - goal).abs();
+        let reached = known.iter().filter(|state| state.side() == amplitude.signum());
+        reached
+            .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+            .cloned()
+    }
+
     /// The motion of the largest amplitude known that is no larger than this one, which is on this side.
     fn below(&self, amplitude: f64) -> Option<State> {
         let goal = amplitude.abs().ln();
@@ -485,6 +510,9 @@ impl<'a> Problem<'a> {
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from rest ends. Where it is the sums that
     /// are too coarse to go on, they are made finer.
     fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
+        if pushes_away(self.force, self.amplitude) {
+            return self.over_the_hilltop(known).map(|found| (found, None));
+        }
         const FINER: usize = 4;
         const FINEST: usize = 64;
         /// Of ln A: less is no way ahead.
@@ -513,6 +541,51 @@ impl<'a> Problem<'a> {
         let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut Vec::new()).ok());
         let found = outer.filter(fits).map(|found| (found, Some(amplitude)));
         found.ok_or(Lost::Ends { amplitude })
+    }
+
+    /// The branch of motions through an unstable equilibrium, over the wells on both sides, from what is known of it or from an amplitude
+    /// nearby at which one term is nearly all.
+    fn over_the_hilltop(&self, known: &Continuation) -> Result<State, Lost> {
+        /// Starts that are tried, and how far they are from the amplitude: to four times, where there is no end before.
+        const STARTS: usize = 12;
+        const PER_DOUBLING: i32 = 8;
+        let passages = passages(self.force, self.amplitude);
+        let range = passage_at(&passages, self.amplitude).ok_or(Lost::NoStart)?;
+        let end = range.to.map_or(f64::INFINITY, |rim| rim.place);
+        let goal = self.amplitude.abs().ln();
+        let reached = |start: State| {
+            let way = (goal - start.logarithm()).signum();
+            let mut passed = Vec::new();
+            let found = self.followed_from(start, way, &mut passed);
+            known.states.borrow_mut().append(&mut passed);
+            found
+        };
+        let nearest = known.nearest(self.amplitude).and_then(|state| self.near(&state, 0.05));
+        if let Some(Ok(found)) = nearest.map(&reached) {
+            return Ok(found);
+        }
+        let sizes =
+            (-8 * PER_DOUBLING..=2 * PER_DOUBLING).map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
+        let sizes = sizes.map(|factor| factor * self.amplitude.abs());
+        let mut alone: Vec<(State, f64)> = sizes
+            .filter(|&size| size > range.from && size < end)
+            .filter_map(|size| self.of_one_term(size * self.side()))
+            .collect();
+        alone.sort_by(|one, other| one.1.total_cmp(&other.1));
+        let mut lost = Lost::NoStart;
+        let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
+        for start in starts.take(STARTS) {
+            let from = start.logarithm().exp() * self.side();
+            match reached(start) {
+                Ok(found) => return Ok(found),
+                Err(last) if lost == Lost::NoStart => {
+                    let amplitude = last.logarithm().exp() * self.side();
+                    lost = Lost::EndsOnTheWay { from, amplitude };
+                }
+                Err(_) => {}
+            }
+        }
+        Err(lost)
     }
 
     /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing where there is no motion at rest.

@@ -9,7 +9,7 @@
 //! conservative, without an expansion     an order asked for: so many harmonics balanced;
 //!                                        exact, where its law is closed; Lindstedt-Poincare in the amplitude, where a letter alone
 //!                                        stood in the way; Hamiltonian, where its law is closed and the force odd; else exact, by
-//!                                        quadrature
+//!                                        quadrature; the same through an unstable equilibrium that is asked for
 //! ```
 //!
 //! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
@@ -162,6 +162,11 @@ fn about_equilibrium(oscillator: &Oscillator, is_so: impl Fn(&Oscillator, &Parts
     parts.is_ok_and(|parts| is_so(&centred.oscillator, &parts))
 }
 
+/// Whether the motions are those over the wells on both sides of an unstable equilibrium.
+fn swings_over_a_hilltop(oscillator: &Oscillator) -> bool {
+    centred(oscillator, None).is_ok_and(|centred| centred.cross_well.is_some())
+}
+
 /// Slow equations in powers of the amplitude, where that is asked to be small, or where quadratic terms are left out of the first order of
 /// averaging.
 fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
@@ -233,8 +238,9 @@ fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Optio
     if !conservative || !has_no_expansion(error) || options.small.is_some() {
         return None;
     }
-    // A linear force that pushes away is a reason of its own: rest is unstable.
-    if matches!(error, OscillatorError::NoRestoringForce(linear) if !linear.is_zero()) {
+    // A linear force that pushes away is a reason of its own, unless that equilibrium is asked for: rest is unstable.
+    let passed = || oscillator.about.is_some() && swings_over_a_hilltop(oscillator);
+    if matches!(error, OscillatorError::NoRestoringForce(linear) if !linear.is_zero()) && !passed() {
         return None;
     }
     let by = |method: Method| solve_by(method, oscillator, options).ok();

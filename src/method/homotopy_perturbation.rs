@@ -67,9 +67,12 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         Some(degree) if options.taylor.is_none() => degree + if moving { 2 } else { 0 },
         _ => options.taylor.unwrap_or(2 * order + 1),
     };
-    let force = match needed {
+    let force = oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
+    // Through an unstable equilibrium, which is answered for where it is asked for, omega0^2 is negative: the recursion does not mind.
+    let passed = oscillator.about.is_some() && !force.linear.is_zero();
+    let force = match needed && !passed {
         true => oscillator.expand(SmallParameter::Amplitude, degree.saturating_sub(1))?,
-        false => oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?,
+        false => force,
     };
     let (amplitude, omega) = (Symbol::new("A"), Symbol::new("omega"));
     let terms = embedded(&force.terms, amplitude, omega);
@@ -101,7 +104,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     let mut validity = vec![Note::Cut(Cut::TruncatedRelation {
         bookkeeping: fresh("p", &oscillator.names()),
         order,
-        linear_frequency: oscillator.linear_frequency_name(&force.linear),
+        linear_frequency: Some(oscillator.linear_frequency_name(&force.linear)),
     })];
     if oscillator.polynomial_degree()?.is_none() {
         validity.push(Note::TaylorPolynomial { degree });

@@ -160,7 +160,7 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
     solution.derivation = lines;
     solution.validity.push(Note::Cut(Cut::Passes {
         passes,
-        linear_frequency: solution.linear_frequency_name(),
+        linear_frequency: Some(solution.linear_frequency_name()),
     }));
     Ok(solution)
 }

@@ -160,9 +160,12 @@ fn turning_backs(oscillator: &Oscillator, quotient: &Expr, force: &Expr) -> Opti
     places.dedup();
     let mut found = Vec::new();
     let (mut before, mut place_before) = (f64::NAN, 0.0);
+    // A force that pushes away at rest has its well beyond the place where it begins to pull back.
+    let mut pulls = false;
     for x in places {
         let rate = slope(x);
-        if value(x) <= 0.0 || !value(x).is_finite() || found.len() > MOST_PIECES {
+        pulls |= value(x) > 0.0;
+        if (pulls && value(x) <= 0.0) || !value(x).is_finite() || found.len() > MOST_PIECES {
             break;
         }
         // Near rest the slope is lost in rounding: it counts once f/x has moved by more than that.

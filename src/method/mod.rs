@@ -270,6 +270,12 @@ pub enum Unsuited {
         /// Whether averaging takes the equation all the same, or would without the drive.
         averaged: bool,
     },
+    /// A linear force that pushes away from the equilibrium that motions over several wells pass.
+    #[error("expands about a linear force that pulls back, but `{term}` pushes away")]
+    PushesAway {
+        /// The linear force.
+        term: Quotation,
+    },
     /// A driving frequency far from every resonance that is known.
     #[error(
         "needs a drive near a resonance, but Omega : omega0 = {} is far from {}:{}, the nearest that it finds",
@@ -446,6 +452,10 @@ impl Unsuited {
                 "in numbers `lindstedt simulate` follows the motion from any start; without the term try ",
             )
             .choose(Setting::Method(Method::Exact)),
+            Self::PushesAway { .. } => Advice::words("take the force as it is: try ")
+                .choose(Setting::Method(Method::Exact))
+                .then(" or ")
+                .choose(Setting::Method(Method::HarmonicBalance)),
             Self::FarFromResonance { nearest, .. } => Advice::words(
                 "in numbers `lindstedt response` finds the steady states at any frequency; the formulas of a resonance are those of ",
             )
@@ -505,6 +515,7 @@ impl Refusal {
                     | Unsuited::NotOddAbout { term, .. }
                     | Unsuited::NoProjection { term }
                     | Unsuited::NoLinearForce { term, .. }
+                    | Unsuited::PushesAway { term }
                     | Unsuited::FirstOrderOfPower { term }
                     | Unsuited::NoInertiaAtRest { term }
                     | Unsuited::PolynomialOnly { term },
@@ -584,9 +595,19 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
     let Refusal::Oscillator(OscillatorError::NoRestoringForce(force)) = &refusal else {
         return refusal;
     };
+    let asked = oscillator.about.is_some();
     // Two wells, say: with positive letters it pushes away here, and back elsewhere.
-    if let (true, Some(unstable)) = (force.has_leading_minus(), stable_elsewhere(oscillator)) {
+    if let (true, false, Some(unstable)) = (force.has_leading_minus(), asked, stable_elsewhere(oscillator)) {
         return unstable.into();
+    }
+    if let (true, Ok(centred)) = (asked && !force.is_zero(), centred(oscillator, None))
+        && centred.cross_well.is_some()
+    {
+        let method = options.method.unwrap_or(Method::LindstedtPoincare);
+        let refusal = Unsuited::PushesAway {
+            term: force.clone().into(),
+        };
+        return quotation::as_typed(refusal.to(method), oscillator, &centred);
     }
     let Ok(parts) = oscillator.parts() else {
         return refusal;
@@ -687,6 +708,14 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
             coordinate: oscillator.coordinate,
         });
     }
+    if let Some(motions) = &centred.cross_well {
+        // A relation has no root that comes from an unstable rest.
+        solution
+            .validity
+            .iter_mut()
+            .for_each(Note::take_root_from_large_amplitudes);
+        solution.validity.push(Note::CrossWell(motions.clone()));
+    }
     if centred.position.is_zero() {
         // The question is the equation as it was typed, whatever a method made of its force.
         solution.equation = oscillator.equation();
@@ -759,10 +788,12 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
         (None | Some(_), Some(number)) => Position::Number(number),
         (_, None) => Position::WhereReal(centred.position.clone()),
     };
-    solution.validity.push(Note::Equilibrium {
-        coordinate: x,
-        position,
-    });
+    if centred.cross_well.is_none() {
+        solution.validity.push(Note::Equilibrium {
+            coordinate: x,
+            position,
+        });
+    }
     if let Some(definition) = &centred.definition {
         solution.definitions.insert(0, definition.clone());
     }

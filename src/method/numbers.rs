@@ -85,6 +85,15 @@ pub enum NoNumbers {
         /// Where.
         amplitude: f64,
     },
+    /// The same of a branch that comes down from large amplitudes.
+    #[error("not real: the root that comes down from large amplitudes ends at A = {}", significant(*amplitude, 6))]
+    BranchEndsAbove {
+        /// Where.
+        amplitude: f64,
+    },
+    /// There is no such branch.
+    #[error("not real: no root was found at large amplitudes, from where motions over both wells are followed")]
+    NoBranchAbove,
     /// omega^2 is not positive.
     #[error("not real: omega^2 <= 0")]
     NotReal,
@@ -354,6 +363,20 @@ fn balanced(
         .into_iter()
         .filter_map(named)
         .collect()
+}
+
+/// Whether a balance is that of an odd force: the place about which it swings, where that is not zero, is no harmonic of its own.
+fn balances_odd_ones_alone(solution: &Solution) -> bool {
+    let known = |name: &Symbol| {
+        let defined = solution.definitions.iter().any(|definition| definition.symbol == *name);
+        defined || solution.parameters.contains(name) || name.name() == "pi"
+    };
+    let own = |(k, cosine, _): &(usize, Polynomial, Polynomial)| *k > 0 || !cosine.symbols().iter().all(known);
+    let harmonics = solution.displacement.harmonics();
+    harmonics
+        .iter()
+        .filter(|entry| own(entry))
+        .all(|entry| entry.0 % 2 == 1)
 }
 
 fn contains(solution: &Solution, symbol: Symbol) -> bool {
@@ -790,8 +813,7 @@ fn solve(
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
     if Entry::of(solution.method).motion == Motion::Balance {
-        let odd = solution.displacement.harmonics().iter().all(|entry| entry.0 % 2 == 1);
-        let harmonics = harmonic_balance::harmonics(solution.order, odd);
+        let harmonics = harmonic_balance::harmonics(solution.order, balances_odd_ones_alone(solution));
         let degree = oscillator.polynomial_degree().ok().flatten();
         let found = balance::balance(&force, degree, &harmonics, amplitude, &known.balance)?;
         let remark = found.rest_ends_at.map(|end| {

@@ -68,6 +68,7 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
         | Unsuited::ResonanceWithoutDamping { term }
         | Unsuited::NoProjection { term }
         | Unsuited::NoLinearForce { term, .. }
+        | Unsuited::PushesAway { term }
         | Unsuited::FirstOrderOfPower { term }
         | Unsuited::NoInertiaAtRest { term }
         | Unsuited::PolynomialOnly { term } => {

@@ -11,6 +11,9 @@
 //! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
 //! ```
 //!
+//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass, the branch is followed down from large amplitudes: the
+//! same in 1/A.
+//!
 //! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots, at
 //! its end and, along the tangent there, back at its beginning: a prediction alone may fall beside another root by chance.
 //! Mantissa and binary exponent are kept apart ([`Scaled`]): at order 20 the terms span far more than the range of doubles.
@@ -36,14 +39,59 @@ pub enum Branch {
     },
     /// The branch goes no farther than this amplitude: it turns back there, or its frequency reaches zero.
     Ends(f64),
+    /// The same where rest is unstable, and the branch comes down from large amplitudes.
+    EndsAbove(f64),
+    /// Rest is unstable, and at large amplitudes there is no positive root to come down from.
+    NoneAbove,
 }
 
 /// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively; `None` where it has no
 /// start, or a value is not finite.
 pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
+    if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
+        return None;
+    }
+    if starts_above(terms) {
+        let inverse = |term: &Term| Term {
+            amplitude: -term.amplitude,
+            ..*term
+        };
+        let inverted: Vec<Term> = terms.iter().map(inverse).collect();
+        return Some(match follow_up(&inverted, 1.0 / amplitude, precision) {
+            Some(Branch::Ends(end)) => Branch::EndsAbove(1.0 / end),
+            Some(found) => found,
+            None => Branch::NoneAbove,
+        });
+    }
+    follow_up(terms, amplitude, precision)
+}
+
+/// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass: they have no branch from rest.
+/// In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` what stands second is the force of one term.
+fn starts_above(terms: &[Term]) -> bool {
+    let highest = terms.iter().map(|term| term.frequency).max().unwrap_or(0);
+    let lowest = |frequency: i32| {
+        let terms = || {
+            let used = terms.iter().filter(|term| term.coefficient.mantissa != 0.0);
+            used.filter(move |term| term.frequency == frequency)
+        };
+        let power = terms().map(|term| term.amplitude).min()?;
+        let values: Vec<Scaled> = terms()
+            .filter(|term| term.amplitude == power)
+            .map(|term| term.coefficient)
+            .collect();
+        let unit = values.iter().map(|value| value.exponent).max()?;
+        Some(values.iter().map(|value| value.in_units(unit)).sum::<f64>())
+    };
+    let signs = lowest(highest).zip(lowest(highest - 1));
+    signs.is_some_and(|(first, second)| first * second > 0.0)
+}
+
+/// As [`follow`], from small amplitudes.
+fn follow_up(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
     const LONGEST: f64 = 0.5;
     const SHORTEST: f64 = 1e-11;
-    if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
+    if !amplitude.is_finite() {
         return None;
     }
     let relation = Relation {
@@ -312,6 +360,37 @@ mod tests {
             term(-c, 4, 0),
             term(-c, 6, 0),
         ]
+    }
+
+    /// `(z - 2 A^2 + 1)(z - A^2/4)`: the branch of large amplitudes is the first, though the second is larger below A^2 = 4/7.
+    #[test]
+    fn the_branch_above_an_unstable_rest_comes_down_from_large_amplitudes() {
+        let term = |coefficient: f64, amplitude, frequency| Term {
+            coefficient: Scaled::new(coefficient),
+            amplitude,
+            frequency,
+        };
+        let terms = [
+            term(1.0, 0, 2),
+            term(1.0, 0, 1),
+            term(-2.25, 2, 1),
+            term(0.5, 4, 0),
+            term(-0.25, 2, 0),
+        ];
+        for amplitude in [0.8, -1.2, 3.0, 1e3, 1e12] {
+            let expected = 2.0 * amplitude * amplitude - 1.0;
+            match follow(&terms, amplitude, f64::EPSILON) {
+                Some(Branch::At { squared, .. }) => assert!((squared / expected - 1.0).abs() < 1e-10, "{amplitude}"),
+                other => panic!("{amplitude}: {other:?}"),
+            }
+        }
+        // z^2 + (1 - A^2) z + 1 = 0 has real roots for A^2 >= 3 alone.
+        let ending = [term(1.0, 0, 2), term(1.0, 0, 1), term(-1.0, 2, 1), term(1.0, 0, 0)];
+        let found = follow(&ending, 1.0, f64::EPSILON);
+        assert!(
+            matches!(found, Some(Branch::EndsAbove(end)) if (end - 3.0_f64.sqrt()).abs() < 1e-7),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -179,6 +179,8 @@ pub enum Note {
         /// Its value there.
         position: Position,
     },
+    /// Motions through an unstable equilibrium, over the wells on both sides of it.
+    CrossWell(CrossWell),
     /// The coefficients are rounded to fifteen digits.
     RoundedCoefficients,
     /// As a document states it.
@@ -208,15 +210,15 @@ pub enum Cut {
         bookkeeping: Symbol,
         /// The highest power kept.
         order: u32,
-        /// The linear frequency, where the root starts.
-        linear_frequency: Symbol,
+        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at large amplitudes.
+        linear_frequency: Option<Symbol>,
     },
     /// A relation after so many passes of an iteration.
     Passes {
         /// How many.
         passes: u32,
-        /// The linear frequency, where the root starts.
-        linear_frequency: Symbol,
+        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at large amplitudes.
+        linear_frequency: Option<Symbol>,
     },
     /// After so many corrections of the first frequency.
     Corrections {
@@ -334,6 +336,65 @@ pub enum Position {
     WhereReal(Expr),
 }
 
+/// Motions of an odd force through an unstable equilibrium, over the wells on both sides of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrossWell {
+    /// The coordinate.
+    pub coordinate: Symbol,
+    /// The unstable equilibrium.
+    pub equilibrium: Expr,
+    /// The amplitude that they exceed; `None` where it has no closed form in the letters.
+    pub from: Option<Position>,
+    /// Where they end.
+    pub to: CrossWellEnd,
+    /// The letters that are taken to be positive.
+    pub positive: Vec<Symbol>,
+}
+
+/// Where the motions over several wells end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CrossWellEnd {
+    /// Nowhere.
+    Never,
+    /// At this amplitude.
+    At(Position),
+    /// Somewhere, as values of letters decide.
+    Somewhere,
+}
+
+impl fmt::Display for CrossWell {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "motions through the unstable equilibrium {} = {}, over the wells on both sides: ",
+            self.coordinate, self.equilibrium
+        )?;
+        match (&self.from, &self.to) {
+            (Some(from), CrossWellEnd::At(to)) => write!(formatter, "{from} < |A| < {to}")?,
+            (Some(from), CrossWellEnd::Never) => write!(formatter, "|A| > {from}")?,
+            (Some(from), CrossWellEnd::Somewhere) => write!(formatter, "|A| > {from}, up to the next unstable one")?,
+            (None, CrossWellEnd::Somewhere) => formatter.write_str(
+                "where the potential energy at A is above that of the equilibrium, up to the next unstable one",
+            )?,
+            (None, _) => formatter.write_str("where the potential energy at A is above that of the equilibrium")?,
+        }
+        match self.positive.is_empty() {
+            true => Ok(()),
+            false => write!(formatter, "; for positive {}", listed(&self.positive)),
+        }
+    }
+}
+
+impl Note {
+    /// The same of motions that do not begin at rest: the root of a relation is then the one from large amplitudes.
+    pub(crate) fn take_root_from_large_amplitudes(&mut self) {
+        if let Self::Cut(Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. }) = self
+        {
+            *linear_frequency = None;
+        }
+    }
+}
+
 const SLOPE_AT_HALF: &str = "one line: exact for linear forces, and to first order for cubic ones alone";
 const MOTION_OF_SERIES: &str = "the motion is that of Lindstedt-Poincare to its first correction";
 const CORNERS: &str = "the force has corners: the expansion holds for motions that stay before the nearest";
@@ -442,6 +503,7 @@ impl fmt::Display for Note {
                 formatter,
                 "averaged along the exact motion without damping, of any amplitude; its harmonics are rounded, and cut after the {harmonic}th"
             ),
+            Self::CrossWell(motions) => motions.fmt(formatter),
             Self::SlopeAtHalf => formatter.write_str(SLOPE_AT_HALF),
             Self::MotionOfSeries => formatter.write_str(MOTION_OF_SERIES),
             Self::Corners => formatter.write_str(CORNERS),
@@ -639,11 +701,16 @@ fn truncated(formatter: &mut fmt::Formatter<'_>, small: &[Symbol], order: u32, m
     }
 }
 
-fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Symbol) -> fmt::Result {
-    write!(
-        formatter,
-        "the frequency is the root that continues {linear_frequency}^2 from A = 0"
-    )
+fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Option<Symbol>) -> fmt::Result {
+    match linear_frequency {
+        Some(name) => write!(
+            formatter,
+            "the frequency is the root that continues {name}^2 from A = 0"
+        ),
+        None => {
+            formatter.write_str("the frequency is the root that comes down from large amplitudes, the largest there")
+        }
+    }
 }
 
 impl fmt::Display for FirstStep {

@@ -87,6 +87,11 @@ impl<'a> TrueBackbone<'a> {
         end.map_or(f64::INFINITY, |end| end.amplitude.abs())
     }
 
+    /// The size of the amplitude that periodic motions exceed: zero where they begin at rest.
+    pub(super) fn smallest_amplitude(&self) -> f64 {
+        self.well.map_or(0.0, |well| well.smallest_amplitude())
+    }
+
     /// The end of what is looked at.
     pub(super) fn farthest(&self) -> f64 {
         f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
@@ -159,9 +164,18 @@ impl<'a> TrueBackbone<'a> {
             .collect();
         sizes.extend((1..=LINEAR).map(|k| farthest * k as f64 / LINEAR as f64));
         sizes.extend((1..=LINEAR).map(|k| asked * k as f64 / LINEAR as f64));
+        let inner = self.smallest_amplitude();
+        if inner > 0.0 {
+            // The frequency falls to zero there, as the inverse of a logarithm.
+            let above = [
+                1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0,
+            ];
+            sizes.extend(above.map(|part| inner * (1.0 + part)));
+            sizes.extend((1..LINEAR).map(|k| inner + (farthest - inner) * k as f64 / LINEAR as f64));
+        }
         sizes.extend(&self.places);
         sizes.push(asked);
-        sizes.retain(|size| *size > 0.0 && *size <= farthest);
+        sizes.retain(|size| *size > inner && *size <= farthest);
         sizes.sort_by(f64::total_cmp);
         sizes.dedup_by(|second, first| *second != asked && *first != asked && *second - *first < 1e-9 * *first);
         sizes

@@ -448,9 +448,18 @@ pub fn backbones(
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
     // To the escape, or to twice the amplitude asked for.
     let last = f64::min(truth.largest_amplitude() * 0.995, 2.0 * asked);
-    let amplitudes: Vec<f64> = (1..=POINTS).map(|k| last * k as f64 / POINTS as f64).collect();
+    // Motions over several wells begin at the separatrix.
+    let inner = truth.smallest_amplitude();
+    let amplitudes: Vec<f64> = (1..=POINTS)
+        .map(|k| inner + (last - inner) * k as f64 / POINTS as f64)
+        .collect();
     let curve = |of: &dyn Fn(f64) -> Option<f64>| -> Vec<(f64, f64)> {
-        amplitudes
+        // A formula may have its first real frequency above.
+        let without = amplitudes
+            .iter()
+            .take_while(|&&amplitude| inner > 0.0 && of(amplitude).is_none())
+            .count();
+        amplitudes[without..]
             .iter()
             .map_while(|&amplitude| Some((amplitude, of(amplitude)?)))
             .collect()

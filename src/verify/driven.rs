@@ -251,6 +251,7 @@ pub(super) fn judge(
         max_deviation: judged.and_then(|judged| judged.max_deviation),
         residual: moving.and_then(|judged| question.residual(judged.state)),
         slope: moving.and_then(|judged| slope(oscillator, &question, judged)),
+        over_several_wells: false,
         ranges: vec![],
         chosen: vec![],
         values: symbols.values,

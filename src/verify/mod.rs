@@ -107,8 +107,10 @@ pub struct Verification {
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
     /// Measured exponent of the frequency error; of a motion followed from its start that of `max_deviation`, over times that grow as
-    /// what is small becomes less. `None` where rounding hides it.
+    /// what is small becomes less. `None` where rounding hides it, and for motions over several wells, which do not become small.
     pub slope: Option<f64>,
+    /// Whether the motion runs over several wells through an unstable equilibrium: such motions have a least amplitude.
+    pub over_several_wells: bool,
     /// Where the formula holds, in words and numbers; what lies outside is marked.
     pub ranges: Vec<validity::Range>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
@@ -357,6 +359,7 @@ pub(crate) fn judge_to(
         max_deviation,
         residual: residual.filter(|value| value.is_finite()),
         slope: ranged.then(|| slope(oscillator, solution, &numbers)).flatten(),
+        over_several_wells: validity::is_over_several_wells(oscillator, solution, &numbers),
         ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
@@ -689,6 +692,10 @@ fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) 
 /// matter, and the slopes between halvings, which approach their limit linearly, are carried on to zero.
 fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     const HALVINGS: i32 = 12;
+    // Motions over several wells do not become small.
+    if validity::is_over_several_wells(oscillator, solution, numbers) {
+        return None;
+    }
     let varied = with_small_parameter(oscillator, solution, numbers);
     let (oscillator, solution, numbers) = match &varied {
         Some((oscillator, solution, numbers)) => (oscillator, solution, numbers),

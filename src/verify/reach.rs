@@ -49,14 +49,24 @@ pub enum Reach {
     Everywhere(f64),
     /// Up to this amplitude.
     UpTo(f64),
+    /// Between two amplitudes, of motions over several wells, which do not begin at rest.
+    Between {
+        /// From this one on.
+        from: f64,
+        /// Up to this one, or as far as was looked at.
+        to: f64,
+        /// Whether no crossing was found up there.
+        open: bool,
+    },
     /// At no amplitude.
     Nowhere,
 }
 
 impl Reach {
-    /// Whether it ends before an amplitude.
-    pub fn ends_before(self, amplitude: f64) -> bool {
+    /// Whether an amplitude is outside.
+    pub fn leaves_out(self, amplitude: f64) -> bool {
         match self {
+            Self::Between { from, to, open } => amplitude.abs() < from.abs() || (!open && amplitude.abs() > to.abs()),
             Self::Everywhere(_) => false,
             Self::UpTo(end) => amplitude.abs() > end.abs(),
             Self::Nowhere => true,
@@ -66,9 +76,12 @@ impl Reach {
     /// The end of the range, where there is one.
     pub fn end(self) -> Option<f64> {
         match self {
-            Self::UpTo(end) => Some(end),
+            Self::UpTo(end)
+            | Self::Between {
+                to: end, open: false, ..
+            } => Some(end),
             Self::Nowhere => Some(0.0),
-            Self::Everywhere(_) => None,
+            Self::Everywhere(_) | Self::Between { open: true, .. } => None,
         }
     }
 
@@ -80,6 +93,15 @@ impl Reach {
                 significant(searched, 4)
             ),
             Self::UpTo(end) => format!("within {percent} % up to {amplitude} = {}", significant(end, 4)),
+            Self::Between { from, to, open } => {
+                let [from, to] = [from, to].map(|end| significant(end, 4));
+                match open {
+                    true => {
+                        format!("within {percent} % from {amplitude} = {from} on, looked at up to {amplitude} = {to}")
+                    }
+                    false => format!("within {percent} % from {amplitude} = {from} to {amplitude} = {to}"),
+                }
+            }
             Self::Nowhere => format!("within {percent} % at no amplitude"),
         }
     }
@@ -109,9 +131,14 @@ pub(super) fn reach(
         // It is the truth wherever there is one.
         let good = error(asked.abs())?.abs() <= tolerance;
         let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
-        return last
-            .filter(|_| good)
-            .map(|last| Reach::Everywhere(last.copysign(asked)));
+        return last.filter(|_| good).map(|last| match truth.smallest_amplitude() {
+            inner if inner > 0.0 => Reach::Between {
+                from: inner.copysign(asked),
+                to: last.copysign(asked),
+                open: true,
+            },
+            _ => Reach::Everywhere(last.copysign(asked)),
+        });
     }
     amplitudes.extend(places_of_law(
         solution,
@@ -120,6 +147,10 @@ pub(super) fn reach(
     ));
     amplitudes.retain(|size| *size <= truth.farthest());
     amplitudes.sort_by(f64::total_cmp);
+    if truth.smallest_amplitude() > 0.0 {
+        amplitudes.retain(|size| *size > truth.smallest_amplitude());
+        return about_the_amplitude(&error, &amplitudes, asked, tolerance);
+    }
     let mut points = Vec::new();
     for size in amplitudes {
         match error(size) {
@@ -160,6 +191,52 @@ pub(super) fn reach(
         }
     }
     Some(Reach::Everywhere(signed(last)))
+}
+
+/// The range about the amplitude asked for in which the frequency of motions over several wells stays within the tolerance, or, where
+/// it is not within it there, the outermost.
+fn about_the_amplitude(
+    error: &dyn Fn(f64) -> Option<f64>,
+    amplitudes: &[f64],
+    asked: f64,
+    tolerance: f64,
+) -> Option<Reach> {
+    // Close to the separatrix the truth may have no digits.
+    let points: Vec<(f64, f64)> = amplitudes
+        .iter()
+        .filter_map(|&size| Some((size, error(size)?)))
+        .collect();
+    let good = |point: &(f64, f64)| point.1.abs() <= tolerance;
+    let own = points.iter().position(|point| point.0 == asked.abs() && good(point));
+    let Some(start) = own.or_else(|| points.iter().rposition(good)) else {
+        return (!points.is_empty()).then_some(Reach::Nowhere);
+    };
+    let follow = |pairs: Vec<[(f64, f64); 2]>| {
+        let follow = Follow {
+            error,
+            tolerance,
+            evaluations: std::cell::Cell::new(0),
+        };
+        pairs.into_iter().find_map(|[near, far]| match good(&far) {
+            true => follow.first_crossing(near, far),
+            false => Some(follow.crossing(near, far)),
+        })
+    };
+    let outwards = follow(points[start..].windows(2).map(|pair| [pair[0], pair[1]]).collect());
+    let inwards = follow(
+        points[..=start]
+            .windows(2)
+            .rev()
+            .map(|pair| [pair[1], pair[0]])
+            .collect(),
+    );
+    let last = points.last().map_or(asked, |point| point.0);
+    let signed = |size: f64| size.copysign(asked);
+    Some(Reach::Between {
+        from: signed(inwards.unwrap_or(points[0].0)),
+        to: signed(outwards.unwrap_or(last)),
+        open: outwards.is_none(),
+    })
 }
 
 /// A search for the first crossing of a tolerance.

@@ -114,6 +114,7 @@ pub(super) fn judge(
         max_deviation: errors.deviation,
         residual: judged.residual(oscillator, numbers),
         slope: slopes.deviation,
+        over_several_wells: false,
         ranges: ranges.filter(|range| range.outside).into_iter().collect(),
         chosen: vec![],
         values: symbols.values,

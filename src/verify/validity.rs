@@ -69,14 +69,17 @@ pub(super) fn ranges(
     ranges.extend(integral_error(oscillator, solution, numbers));
     ranges.extend(bounds(oscillator, solution, numbers));
     let truth = backbone(oscillator, solution, numbers);
-    ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude()));
+    match truth.smallest_amplitude() {
+        inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
+        _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
+    }
     if Entry::of(solution.method).sees == Sees::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
     if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {
         ranges.push(Range {
             text: reach.in_words(tolerance, solution.amplitude.symbol()),
-            outside: reach.ends_before(amplitude),
+            outside: reach.leaves_out(amplitude),
         });
     }
     ranges
@@ -92,7 +95,8 @@ pub(super) fn of_equation(
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let beyond = well
         .on_side(amplitude)
-        .is_some_and(|end| amplitude.abs() >= end.amplitude.abs());
+        .is_some_and(|end| amplitude.abs() >= end.amplitude.abs())
+        || amplitude.abs() < well.smallest_amplitude();
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
     let over_all = beyond && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers).is_ok();
@@ -124,6 +128,15 @@ pub(super) fn backbone<'a>(
     TrueBackbone::new(oscillator, &meant(oscillator, solution, numbers), numbers, well)
 }
 
+/// Whether the motions that an answer is meant for do not begin at rest, but run over several wells.
+pub(super) fn is_over_several_wells(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> bool {
+    well_of(oscillator, solution, numbers).is_some_and(|well| well.inner.is_some())
+}
+
 /// The well of the motion that an answer is meant for.
 fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Well> {
     if !oscillator.of_position_alone() || solution.amplitude != AmplitudeConvention::Initial {
@@ -131,6 +144,38 @@ fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symb
     }
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     Well::new(&force_of(oscillator, solution, numbers)?, amplitude)
+}
+
+/// The largest amplitude of motions over several wells, up to four times that asked for, below which the law's omega^2 is not positive.
+fn positive_from(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    truth: &TrueBackbone,
+) -> Option<Range> {
+    const STEPS: usize = 256;
+    if solution.method == Method::Exact || solution.law.is_solved_by_numbers() {
+        return None;
+    }
+    let symbol = solution.amplitude.symbol();
+    let amplitude = *numbers.get(&symbol)?;
+    let (inner, outer) = (
+        truth.smallest_amplitude(),
+        f64::min(truth.largest_amplitude(), 4.0 * amplitude.abs()),
+    );
+    let squared = |size: f64| {
+        let numbers = truth.numbers_at(size);
+        frequency_squared_of(oscillator, solution, &numbers).unwrap_or(f64::NAN)
+    };
+    let place = |k: usize| inner + (outer - inner) * k as f64 / STEPS as f64;
+    let values: Vec<f64> = (0..=STEPS).map(|k| squared(place(k))).collect();
+    let last = values.windows(2).rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
+    let zero = find_root(squared, place(last), place(last + 1)).ok()?;
+    let at = significant(zero.copysign(amplitude), 6);
+    Some(Range {
+        text: format!("omega^2 of the formula is positive from {symbol} = {at} on"),
+        outside: amplitude.abs() <= zero,
+    })
 }
 
 /// The first amplitude, on the side asked for, at which the law's omega^2 reaches zero or has a pole.

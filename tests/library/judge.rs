@@ -212,7 +212,7 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
             let reach = row.reach.unwrap();
             let good = row.relative_error.is_some_and(|error| error.abs() <= 0.01);
             assert_eq!(
-                !reach.ends_before(asked),
+                !reach.leaves_out(asked),
                 good,
                 "{equation} {}: {reach:?}",
                 row.solution.title()
@@ -281,7 +281,7 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
         for row in &table.rows {
             let (title, reach) = (row.solution.title(), row.reach.unwrap());
             assert_eq!(
-                !reach.ends_before(asked),
+                !reach.leaves_out(asked),
                 row.verdict == Some(Verdict::Pass),
                 "{equation} {title}"
             );

@@ -13,6 +13,7 @@ mod friction_response;
 mod fuzz;
 mod high_orders;
 mod hill;
+mod hilltop;
 mod homotopy;
 mod hostile;
 mod inertia;

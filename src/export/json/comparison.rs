@@ -108,6 +108,9 @@ pub struct RefusedRow {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Reach {
+    /// The size of the amplitude from which on the error stays within the tolerance, for motions over several wells, which begin at the
+    /// separatrix; null for those that begin at rest.
+    pub from: Option<f64>,
     /// The size of the amplitude at which the error first crosses the tolerance, in the unit of the coordinate, 0 where it does so
     /// at once; null where no crossing was found.
     pub up_to: Option<f64>,
@@ -175,9 +178,15 @@ fn refused(refused: &Refused) -> MethodRow {
 fn reach(reach: validity::Reach) -> Reach {
     let searched = match reach {
         validity::Reach::Everywhere(searched) => Some(searched),
-        validity::Reach::UpTo(_) | validity::Reach::Nowhere => None,
+        validity::Reach::Between { to, open: true, .. } => Some(to),
+        validity::Reach::Between { .. } | validity::Reach::UpTo(_) | validity::Reach::Nowhere => None,
+    };
+    let from = match reach {
+        validity::Reach::Between { from, .. } => Some(from),
+        _ => None,
     };
     Reach {
+        from,
         up_to: reach.end(),
         searched,
     }

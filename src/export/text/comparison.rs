@@ -101,7 +101,11 @@ pub(super) fn true_motion(lines: &[String], width: usize) -> String {
 
 /// Header and rows, without the formulas.
 fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
-    let within = format!("{} % up to", significant(100.0 * tolerance, 3));
+    let over_several_wells = rows
+        .iter()
+        .any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
+    let range = if over_several_wells { "for" } else { "up to" };
+    let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
     let header = ["method", "omega", "error", "deviation", "verdict", &within].map(str::to_owned);
     // All rows start where the first one does, whatever their formulas measure.
     let amplitude = rows.first().map(|first| first.row.solution.amplitude.symbol());
@@ -214,6 +218,11 @@ fn reach(reach: Option<(Reach, Symbol)>) -> String {
         None => "-".to_owned(),
         Some((Reach::Nowhere, _)) => "nowhere".to_owned(),
         Some((Reach::UpTo(end), amplitude)) => format!("{amplitude} = {}", significant(end, 3)),
+        Some((Reach::Between { from, to, open }, amplitude)) => {
+            let [from, to] = [from, to].map(|end| significant(end, 3));
+            let past = if open { "past " } else { "" };
+            format!("{amplitude} = {from} to {past}{to}")
+        }
         Some((Reach::Everywhere(searched), amplitude)) => format!("past {amplitude} = {}", significant(searched, 3)),
     }
 }

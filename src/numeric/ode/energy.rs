@@ -50,6 +50,18 @@ pub enum PeriodError {
         /// The equilibrium.
         equilibrium: f64,
     },
+    /// Too small a motion to pass the unstable equilibrium that it is asked about.
+    #[error(
+        "no motion through x = {equilibrium}: released at rest from x = {start} it stays in one well, and it needs an amplitude above {least}"
+    )]
+    OneWell {
+        /// The release point.
+        start: f64,
+        /// The unstable equilibrium.
+        equilibrium: f64,
+        /// The least amplitude, to six digits.
+        least: f64,
+    },
     /// No second turning point.
     #[error(
         "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}"
@@ -125,6 +137,11 @@ impl PeriodError {
             | Self::OtherWell {
                 start,
                 equilibrium: other,
+            }
+            | Self::OneWell {
+                start,
+                equilibrium: other,
+                ..
             }
             | Self::Escapes { start, searched: other }
             | Self::Separatrix { start, place: other }

@@ -48,6 +48,17 @@ impl Question<'_> {
         }
     }
 
+    /// By how much of itself a given omega^2 misses `omega0^2 = omega^2 + a_1 + ... + a_n`, whatever the sign of the linear force.
+    pub fn defect_of_homotopy(&self, order: usize, degree: usize, squared: f64) -> Option<f64> {
+        let g = self.scaled_taylor(degree)?;
+        let wave = Waves::for_degree(degree, order);
+        let force: Vec<f64> = (0..=degree).map(|k| if k < 2 { 0.0 } else { g[k] }).collect();
+        let relation = |omega: f64| omega + homotopy_corrections(&wave, &force, omega, order) - g[1];
+        let h = 1e-6 * squared;
+        let slope = (relation(squared + h) - relation(squared - h)) / (2.0 * h);
+        Some((relation(squared) / slope / squared).abs()).filter(|defect| defect.is_finite())
+    }
+
     /// `omega = w_0 + ... + w_(n-1)` of Liao's deformation equations, `n` at least one.
     pub fn homotopy_analysis(&self, order: usize, degree: usize, hbar: f64) -> Answer {
         let Some(g) = self.scaled_taylor(degree) else {

@@ -142,6 +142,8 @@ fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
     };
     let title = row.solution.title();
     let (end, last) = match row.reach? {
+        // These families swing about bottoms.
+        Reach::Between { .. } => return Some("a range that does not begin at rest".to_owned()),
         Reach::Everywhere(searched) => (searched / unit, true),
         Reach::UpTo(end) => (end / unit, false),
         Reach::Nowhere => {

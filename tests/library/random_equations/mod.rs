@@ -14,12 +14,14 @@
 //!
 //! `LINDSTEDT_RANDOM_FAMILY=barrier` asks for the families with this in their name, and an empty one for all; where it is set,
 //! the judge's true frequencies, deviations and ranges are looked at as well, which takes longer.
+//! Motions over two wells, through an unstable equilibrium, are compared in `hilltop.rs`.
 //! Equation number `i` comes from seed `seed + i` alone: a failure names its own seed, to be run with a count of one and the same families.
 
 mod balance;
 mod definitions;
 mod families;
 mod force;
+mod hilltop;
 mod homotopy;
 mod judgement;
 mod motion;

@@ -349,8 +349,6 @@ pub fn backbone_figure(
     marked: Option<f64>,
     caption: &str,
 ) -> Result<String, FigureError> {
-    /// Errors in per cent below which rounding of truth and formula shows.
-    const LEAST_ERROR: f64 = 1e-10;
     let drawn: Vec<&Backbone> = curves.iter().filter(|backbone| backbone.points.len() > 1).collect();
     let mut caption = caption.to_owned();
     let label = |backbone: &&Backbone| match backbone.methods.as_slice() {
@@ -368,11 +366,7 @@ pub fn backbone_figure(
     let labels: Vec<String> = drawn.iter().map(label).collect();
     let errors: Vec<Vec<(f64, f64)>> = drawn
         .iter()
-        .map(|backbone| {
-            let pairs = backbone.points.iter().zip(&truth.points);
-            let error = pairs.map(|(formula, truth)| (formula.0, 100.0 * (formula.1 / truth.1 - 1.0).abs()));
-            error.filter(|point| point.1 > LEAST_ERROR).collect()
-        })
+        .map(|backbone| errors_in_percent(&backbone.points, &truth.points))
         .collect();
     let style = |index: usize| CurveStyle::SERIES[index % CurveStyle::SERIES.len()];
     let mut frequencies = vec![curve("true motion", &truth.points, CurveStyle::RUNGE_KUTTA)];
@@ -414,6 +408,18 @@ const MOST_POINTS: usize = 2000;
 /// [`FigureError`], which names the panel and the curve.
 pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
     arranged(panels, caption, Arrangement::Abreast)
+}
+
+/// How far a curve is from the truth, in per cent, at the amplitudes that both have: either may begin later than the other.
+fn errors_in_percent(formula: &[(f64, f64)], truth: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    /// Errors in per cent below which rounding of truth and formula shows.
+    const LEAST_ERROR: f64 = 1e-10;
+    let error = |&(amplitude, frequency): &(f64, f64)| {
+        let truth = truth.iter().find(|point| point.0 == amplitude)?.1;
+        Some((amplitude, 100.0 * (frequency / truth - 1.0).abs()))
+    };
+    let errors = formula.iter().filter_map(error);
+    errors.filter(|point| point.1 > LEAST_ERROR).collect()
 }
 
 /// Sets panels one below the other, each across the page.
@@ -622,6 +628,14 @@ mod tests {
         let first = impact();
         assert_eq!(first, impact());
         assert!(first.contains("url(#clip-2)") && !first.contains("kuva"));
+    }
+
+    #[test]
+    fn an_error_is_that_at_its_amplitude_wherever_the_curves_begin() {
+        let truth = [(1.0, 1.0), (2.0, 2.0), (3.0, 4.0), (4.0, 8.0)];
+        let late = [(3.0, 2.0), (4.0, 8.0), (5.0, 9.0)];
+        assert_eq!(errors_in_percent(&late, &truth), [(3.0, 50.0)]);
+        assert_eq!(errors_in_percent(&truth, &late), [(3.0, 100.0)]);
     }
 
     #[test]

@@ -76,8 +76,9 @@ impl Centred {
     }
 }
 
-/// The oscillator about the equilibrium asked for (a stable one, or a hilltop of the potential that motions pass), else about the stable one nearest to zero that no pole hides; `degree` is
-/// that of a polynomial with rounded coefficients in place of the force, should the equilibrium be irrational.
+/// The oscillator about the equilibrium asked for (a stable one, or a hilltop of the potential that motions pass), else about the stable one
+/// nearest to zero that no pole hides; `degree` is that of a polynomial with rounded coefficients in place of the force, should the
+/// equilibrium be irrational.
 ///
 /// # Errors
 /// An unstable `x = 0`, or an equilibrium asked for that is none (the stable ones are named); no equilibrium, or one that
@@ -247,25 +248,9 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
         asked: asked.clone(),
         stable: force.stable_equilibria(),
     };
-    let exact = value_at(still, oscillator.coordinate, asked).is_ok_and(|value| value.is_zero());
-    if exact {
-        let there = moved(still, oscillator.coordinate, asked)?;
-        let there = Force::new(&there, oscillator.coordinate);
-        let stable = there.is_stable_at_zero();
-        // Without a drive, which has been taken out of the force, and without what velocities add.
-        let conservative = oscillator.of_position_alone() && !oscillator.residual.contains(Symbol::new("t"));
-        let passed = || there.cross_well(asked);
-        let cross_well = match conservative && !(stable && there.is_numerical()) {
-            true => passed(),
-            false => None,
-        };
-        return match stable || cross_well.is_some() {
-            true => Ok(Centred {
-                cross_well,
-                ..seen_from(oscillator, &Place::Exact(asked.clone()), degree)?
-            }),
-            false => Err(none_there()),
-        };
+    if value_at(still, oscillator.coordinate, asked).is_ok_and(|value| value.is_zero()) {
+        let found = about_zero_of_force(oscillator, still, asked, degree)?;
+        return found.ok_or_else(none_there);
     }
     if let Some(form) = force.stable_form_of(asked) {
         return seen_from(oscillator, &Place::Exact(form), degree);
@@ -273,15 +258,48 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
     let Ok(near) = asked.evaluate(&BTreeMap::new()) else {
         return Err(none_there());
     };
-    let close = |found: &&SignChange| found.stable && (found.position - near).abs() <= ROUNDING * near.abs();
     let distance = |found: &SignChange| (found.position - near).abs();
     let signs = force.signs();
-    let nearest = signs
-        .iter()
-        .filter(close)
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let Some(found) = nearest else { return Err(none_there()) };
-    seen_from(oscillator, &force.exact_or_rounded(found.position), degree)
+    let nearest = |stable: bool| {
+        let close = signs
+            .iter()
+            .filter(|found| found.stable == stable && distance(found) <= ROUNDING * near.abs());
+        close.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    if let Some(found) = nearest(true) {
+        return seen_from(oscillator, &force.exact_or_rounded(found.position), degree);
+    }
+    // About a place known by its number alone no force is odd.
+    if let Some(Place::Exact(hilltop)) = nearest(false).map(|found| force.exact_or_rounded(found.position)) {
+        let found = about_zero_of_force(oscillator, still, &hilltop, degree)?;
+        return found.ok_or_else(none_there);
+    }
+    Err(none_there())
+}
+
+/// The oscillator about a place where its force vanishes, if that is stable or motions pass it over the wells on both sides.
+fn about_zero_of_force(
+    oscillator: &Oscillator,
+    still: &Expr,
+    place: &Expr,
+    degree: Option<u32>,
+) -> Result<Option<Centred>, OscillatorError> {
+    let there = moved(still, oscillator.coordinate, place)?;
+    let there = Force::new(&there, oscillator.coordinate);
+    let stable = there.is_stable_at_zero();
+    // Without a drive, which has been taken out of the force, and without what velocities add.
+    let conservative = oscillator.of_position_alone() && !oscillator.residual.contains(Symbol::new("t"));
+    let cross_well = match conservative && !(stable && there.is_numerical()) {
+        true => there.cross_well(place),
+        false => None,
+    };
+    if !stable && cross_well.is_none() {
+        return Ok(None);
+    }
+    Ok(Some(Centred {
+        cross_well,
+        ..seen_from(oscillator, &Place::Exact(place.clone()), degree)?
+    }))
 }
 
 /// The refusal of an equilibrium that was asked for because it is no stable one.
@@ -615,6 +633,7 @@ mod tests {
         assert_eq!(about("x'' + sin(x)", "2*pi").unwrap(), "2*pi");
         assert_eq!(about("x'' - x + k*x^3", "1/sqrt(k)").unwrap(), "1/sqrt(k)");
         assert_eq!(about("x'' - 2*x + x^3", "1.4142").unwrap(), "sqrt(2)");
+        assert_eq!(about("x'' - cos(x)*(1 - 2*sin(x))", "1.5708").unwrap(), "pi/2");
         let none = [
             ("x'' - x + x^3", "0.5"),
             ("x'' + sin(x)", "pi"),

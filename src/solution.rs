@@ -418,7 +418,7 @@ impl Solution {
             }
             Shown::Closed(form) => form.to_string(),
             Shown::Quadrature(_) | Shown::System(_) if self.method.counts() == Counts::Harmonics => {
-                let harmonics = self.displacement.harmonics();
+                let harmonics = self.balanced_harmonics();
                 let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
                 return format!("harmonics {} balanced, solved by numbers", kept.join(", "));
             }
@@ -524,6 +524,16 @@ impl Solution {
         };
         let (value, size) = self.evaluate_with_size(law, value_of).ok()?;
         Some(power * self.precision() * size / value.abs())
+    }
+
+    /// The harmonics that a balance solves for, each with the name of its coefficient; the place about which the motion swings is none.
+    pub fn balanced_harmonics(&self) -> Vec<(usize, Symbol)> {
+        let known = |name: &Symbol| self.defines(*name) || self.parameters.contains(name) || name.name() == "pi";
+        let named = |(k, cosine, _): (usize, Polynomial, Polynomial)| {
+            let name = cosine.symbols().into_iter().find(|name| !known(name))?;
+            Some((k, name))
+        };
+        self.displacement.harmonics().into_iter().filter_map(named).collect()
     }
 
     /// The motion as a numerical Fourier series in `theta`.

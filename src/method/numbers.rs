@@ -352,31 +352,11 @@ fn balanced(
         return vec![];
     }
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
-    let named = |(k, cosine, _): (usize, Polynomial, Polynomial)| {
-        let name = cosine.symbols().into_iter().next()?;
+    let valued = |(k, name): (usize, Symbol)| {
         let value = motion.cosine(k).mean().0;
-        Some((name, if k == 0 { value - equilibrium } else { value }))
+        (name, if k == 0 { value - equilibrium } else { value })
     };
-    solution
-        .displacement
-        .harmonics()
-        .into_iter()
-        .filter_map(named)
-        .collect()
-}
-
-/// Whether a balance is that of an odd force: the place about which it swings, where that is not zero, is no harmonic of its own.
-fn balances_odd_ones_alone(solution: &Solution) -> bool {
-    let known = |name: &Symbol| {
-        let defined = solution.definitions.iter().any(|definition| definition.symbol == *name);
-        defined || solution.parameters.contains(name) || name.name() == "pi"
-    };
-    let own = |(k, cosine, _): &(usize, Polynomial, Polynomial)| *k > 0 || !cosine.symbols().iter().all(known);
-    let harmonics = solution.displacement.harmonics();
-    harmonics
-        .iter()
-        .filter(|entry| own(entry))
-        .all(|entry| entry.0 % 2 == 1)
+    solution.balanced_harmonics().into_iter().map(valued).collect()
 }
 
 fn contains(solution: &Solution, symbol: Symbol) -> bool {
@@ -813,7 +793,8 @@ fn solve(
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
     if Entry::of(solution.method).motion == Motion::Balance {
-        let harmonics = harmonic_balance::harmonics(solution.order, balances_odd_ones_alone(solution));
+        let odd = solution.balanced_harmonics().iter().all(|entry| entry.0 % 2 == 1);
+        let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
         let found = balance::balance(&force, degree, &harmonics, amplitude, &known.balance)?;
         let remark = found.rest_ends_at.map(|end| {

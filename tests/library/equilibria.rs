@@ -430,6 +430,14 @@ fn an_odd_force_is_balanced_alike_about_any_equilibrium() {
         values.insert("A".into(), 1.5);
         let found = evaluate(&equation, &solution, &values).expect("numbers");
         let third = found.motion.expect("a motion").cosine(3).mean().0;
+        // Coefficients are solved for, the place is not.
+        let names: Vec<&str> = found.chosen.iter().map(|(name, _)| name.name()).collect();
+        assert_eq!(names, &["a1", "a3", "a5"][..order as usize]);
+        let kept = if order == 2 { "1, 3" } else { "1, 3, 5" };
+        assert_eq!(
+            solution.formula(),
+            format!("harmonics {kept} balanced, solved by numbers")
+        );
         (found.frequency_squared, third)
     };
     for order in [2, 3] {

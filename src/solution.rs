@@ -454,7 +454,8 @@ impl Solution {
     }
 
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that continues omega0^2
-    /// from amplitude zero; `None` where a value is missing or the branch ends before.
+    /// from amplitude zero or, about an unstable equilibrium, that of the first order; `None` where a value is missing or the branch ends
+    /// before.
     pub fn frequency_squared_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         if let Some(law) = self.law.frequency_squared() {
             return self.evaluate(law, value_of).ok();
@@ -462,7 +463,7 @@ impl Solution {
         if self.law.relation().is_some() {
             return match self.branch_at(value_of)? {
                 Branch::At { squared, .. } => Some(squared),
-                Branch::Ends(_) | Branch::EndsAbove(_) | Branch::NoneAbove => None,
+                Branch::Ends(_) | Branch::NoneOfFirstOrder => None,
             };
         }
         if let Some(form) = self.law.closed_form() {
@@ -483,7 +484,8 @@ impl Solution {
         expression.evaluate(&values).ok()
     }
 
-    /// The branch of the relation that starts at the linear frequency, at given values; `None` where there is no relation, a
+    /// The branch of the relation that starts at the linear frequency or, about an unstable equilibrium, at the first order, at given
+    /// values; `None` where there is no relation, a
     /// value is missing, or the branch has no start.
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
         let relation = self.law.relation()?;

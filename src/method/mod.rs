@@ -710,10 +710,7 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
     }
     if let Some(motions) = &centred.cross_well {
         // A relation has no root that comes from an unstable rest.
-        solution
-            .validity
-            .iter_mut()
-            .for_each(Note::take_root_from_large_amplitudes);
+        solution.validity.iter_mut().for_each(Note::take_root_of_first_order);
         solution.validity.push(Note::CrossWell(motions.clone()));
     }
     if centred.position.is_zero() {

@@ -85,15 +85,9 @@ pub enum NoNumbers {
         /// Where.
         amplitude: f64,
     },
-    /// The same of a branch that comes down from large amplitudes.
-    #[error("not real: the root that comes down from large amplitudes ends at A = {}", significant(*amplitude, 6))]
-    BranchEndsAbove {
-        /// Where.
-        amplitude: f64,
-    },
-    /// There is no such branch.
-    #[error("not real: no root was found at large amplitudes, from where motions over both wells are followed")]
-    NoBranchAbove,
+    /// About an unstable equilibrium no root of an implicit relation continues that of its first order.
+    #[error("not real: no root continues the frequency of order 1 at this amplitude")]
+    NoneOfFirstOrder,
     /// omega^2 is not positive.
     #[error("not real: omega^2 <= 0")]
     NotReal,
@@ -160,11 +154,7 @@ impl NoNumbers {
     pub fn is_not_real(&self) -> bool {
         matches!(
             self,
-            Self::BranchEnds { .. }
-                | Self::BranchEndsAbove { .. }
-                | Self::NoBranchAbove
-                | Self::Undefined { .. }
-                | Self::NotReal
+            Self::BranchEnds { .. } | Self::NoneOfFirstOrder | Self::Undefined { .. } | Self::NotReal
         )
     }
 }
@@ -430,8 +420,7 @@ fn frequency_squared(
         return match solution.branch_at(&value_of) {
             Some(Branch::At { squared, rounding }) => Ok((squared, rounding)),
             Some(Branch::Ends(amplitude)) => Err(NoNumbers::BranchEnds { amplitude }),
-            Some(Branch::EndsAbove(amplitude)) => Err(NoNumbers::BranchEndsAbove { amplitude }),
-            Some(Branch::NoneAbove) => Err(NoNumbers::NoBranchAbove),
+            Some(Branch::NoneOfFirstOrder) => Err(NoNumbers::NoneOfFirstOrder),
             None => Err(NoNumbers::NoValue),
         };
     }

@@ -11,8 +11,12 @@
 //! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
 //! ```
 //!
-//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass, the branch is followed down from large amplitudes: the
-//! same in 1/A.
+//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass, there is no branch from
+//! rest. The root is then followed at one amplitude from that of the first order, all beyond which is made small and let in again:
+//!
+//! ```text
+//! F(z, d) = c_n z^n + c_(n-1) z^(n-1) + d c_(n-2) z^(n-2) + d^2 c_(n-3) z^(n-3) + ... = 0,   d = 0 ... 1
+//! ```
 //!
 //! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots, at
 //! its end and, along the tangent there, back at its beginning: a prediction alone may fall beside another root by chance.
@@ -39,10 +43,8 @@ pub enum Branch {
     },
     /// The branch goes no farther than this amplitude: it turns back there, or its frequency reaches zero.
     Ends(f64),
-    /// The same where rest is unstable, and the branch comes down from large amplitudes.
-    EndsAbove(f64),
-    /// Rest is unstable, and at large amplitudes there is no positive root to come down from.
-    NoneAbove,
+    /// Rest is unstable, and no positive root at this amplitude continues that of the first order.
+    NoneOfFirstOrder,
 }
 
 /// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively; `None` where it has no
@@ -51,24 +53,26 @@ pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<B
     if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
         return None;
     }
-    if starts_above(terms) {
-        let inverse = |term: &Term| Term {
-            amplitude: -term.amplitude,
-            ..*term
+    if rest_is_unstable(terms) {
+        let highest = terms.iter().map(|term| term.frequency).max()?;
+        let size = Scaled::new(amplitude);
+        let graded = |term: &Term| Term {
+            coefficient: term.coefficient.product(size.power(term.amplitude)),
+            amplitude: i32::max(highest - 1 - term.frequency, 0),
+            frequency: term.frequency,
         };
-        let inverted: Vec<Term> = terms.iter().map(inverse).collect();
-        return Some(match follow_up(&inverted, 1.0 / amplitude, precision) {
-            Some(Branch::Ends(end)) => Branch::EndsAbove(1.0 / end),
-            Some(found) => found,
-            None => Branch::NoneAbove,
+        let graded: Vec<Term> = terms.iter().map(graded).collect();
+        return Some(match follow_up(&graded, 1.0, precision) {
+            Some(found @ Branch::At { .. }) => found,
+            _ => Branch::NoneOfFirstOrder,
         });
     }
     follow_up(terms, amplitude, precision)
 }
 
-/// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass: they have no branch from rest.
+/// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass.
 /// In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` what stands second is the force of one term.
-fn starts_above(terms: &[Term]) -> bool {
+fn rest_is_unstable(terms: &[Term]) -> bool {
     let highest = terms.iter().map(|term| term.frequency).max().unwrap_or(0);
     let lowest = |frequency: i32| {
         let terms = || {
@@ -362,9 +366,10 @@ mod tests {
         ]
     }
 
-    /// `(z - 2 A^2 + 1)(z - A^2/4)`: the branch of large amplitudes is the first, though the second is larger below A^2 = 4/7.
+    /// `z (z - s) + d q = 0` about an unstable rest, `s = A^2 (1 - A^2/20)^2 - 1`: motions between two separatrices and outside of a third
+    /// have their own roots, each that of the first order as it is changed by `d`.
     #[test]
-    fn the_branch_above_an_unstable_rest_comes_down_from_large_amplitudes() {
+    fn the_branch_above_an_unstable_rest_continues_the_first_order() {
         let term = |coefficient: f64, amplitude, frequency| Term {
             coefficient: Scaled::new(coefficient),
             amplitude,
@@ -373,24 +378,24 @@ mod tests {
         let terms = [
             term(1.0, 0, 2),
             term(1.0, 0, 1),
-            term(-2.25, 2, 1),
-            term(0.5, 4, 0),
-            term(-0.25, 2, 0),
+            term(-1.0, 2, 1),
+            term(0.1, 4, 1),
+            term(-0.0025, 6, 1),
+            term(1e-3, 4, 0),
         ];
-        for amplitude in [0.8, -1.2, 3.0, 1e3, 1e12] {
-            let expected = 2.0 * amplitude * amplitude - 1.0;
+        for amplitude in [0.5, 1.05, 1.2, -2.0, 3.5, 4.47, 6.0, 1e3, 1e12] {
+            let square = amplitude * amplitude;
+            let first = square * (1.0 - square / 20.0) * (1.0 - square / 20.0) - 1.0;
+            let under = first * first - 4e-3 * square * square;
             match follow(&terms, amplitude, f64::EPSILON) {
-                Some(Branch::At { squared, .. }) => assert!((squared / expected - 1.0).abs() < 1e-10, "{amplitude}"),
+                Some(Branch::At { squared, .. }) => {
+                    let expected = 0.5 * (first + under.sqrt());
+                    assert!((squared / expected - 1.0).abs() < 1e-10, "{amplitude}");
+                }
+                Some(Branch::NoneOfFirstOrder) => assert!(first <= 0.0 || under <= 0.0, "{amplitude}"),
                 other => panic!("{amplitude}: {other:?}"),
             }
         }
-        // z^2 + (1 - A^2) z + 1 = 0 has real roots for A^2 >= 3 alone.
-        let ending = [term(1.0, 0, 2), term(1.0, 0, 1), term(-1.0, 2, 1), term(1.0, 0, 0)];
-        let found = follow(&ending, 1.0, f64::EPSILON);
-        assert!(
-            matches!(found, Some(Branch::EndsAbove(end)) if (end - 3.0_f64.sqrt()).abs() < 1e-7),
-            "{found:?}"
-        );
     }
 
     #[test]

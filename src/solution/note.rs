@@ -210,14 +210,14 @@ pub enum Cut {
         bookkeeping: Symbol,
         /// The highest power kept.
         order: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at large amplitudes.
+        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at the first order.
         linear_frequency: Option<Symbol>,
     },
     /// A relation after so many passes of an iteration.
     Passes {
         /// How many.
         passes: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at large amplitudes.
+        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at the first order.
         linear_frequency: Option<Symbol>,
     },
     /// After so many corrections of the first frequency.
@@ -386,8 +386,8 @@ impl fmt::Display for CrossWell {
 }
 
 impl Note {
-    /// The same of motions that do not begin at rest: the root of a relation is then the one from large amplitudes.
-    pub(crate) fn take_root_from_large_amplitudes(&mut self) {
+    /// The same of motions that do not begin at rest: the root of a relation is then the one that continues the first order.
+    pub(crate) fn take_root_of_first_order(&mut self) {
         if let Self::Cut(Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. }) = self
         {
             *linear_frequency = None;
@@ -707,9 +707,7 @@ fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Option<Symbol>) ->
             formatter,
             "the frequency is the root that continues {name}^2 from A = 0"
         ),
-        None => {
-            formatter.write_str("the frequency is the root that comes down from large amplitudes, the largest there")
-        }
+        None => formatter.write_str("the frequency is the root that continues the one of order 1"),
     }
 }
 

@@ -329,6 +329,31 @@ fn ranges_begin_and_end_where_the_error_crosses_the_tolerance() {
     assert!(seen[0] > 6 && seen[1] > 3, "{seen:?}");
 }
 
+/// Between the separatrix at rest and that of an outer hilltop a relation has a root of its own, whatever becomes of it at amplitudes beyond.
+#[test]
+fn motions_between_two_separatrices_have_their_own_root() {
+    let oscillator = about_zero("x'' - x + x^3 - x^5/10 + x^7/1000 = 0");
+    for method in [Method::HomotopyPerturbation, Method::ParameterExpansion] {
+        for (order, amplitudes) in [(2, ["1.7", "2", "2.5", "-3"]), (3, ["1.9", "2", "2.5", "-3"])] {
+            let solution = by(&oscillator, method, Some(order));
+            for amplitude in amplitudes {
+                let judged = judge(&oscillator, &solution, &at(&format!("A = {amplitude}")), 0.01).expect("a motion");
+                assert_eq!(
+                    judged.verdict,
+                    Verdict::Pass,
+                    "{method:?} {order} at {amplitude}: {judged:?}"
+                );
+            }
+        }
+    }
+    // (1 - 3 A^2/4)^2 is less than 3 A^4/32 there.
+    let well = about_zero("x'' - x + x^3 = 0");
+    let solution = by(&well, Method::HomotopyPerturbation, None);
+    let numbers = [(Symbol::new("A"), 1.45)].into();
+    let found = evaluate(&well, &solution, &numbers);
+    assert!(matches!(found, Err(NoNumbers::NoneOfFirstOrder)), "{found:?}");
+}
+
 #[test]
 fn a_formula_that_is_not_real_at_first_says_from_where_on() {
     let oscillator = about_zero("x'' - x + x^7 = 0");

@@ -43,7 +43,7 @@
 //! | [`catalog`] | classical oscillators |
 //! | [`audit`] | claims of publications, computed again, each with a verdict |
 //! | [`report`] | what a report of a result says, for every format |
-//! | [`export`] | text, LaTeX, JSON, pictures |
+//! | [`export`] | text, LaTeX, JSON, programs, pictures |
 //!
 //! | feature | what it adds |
 //! | --- | --- |

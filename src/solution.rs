@@ -8,6 +8,7 @@
 
 mod advice;
 mod branch;
+mod closed_root;
 pub mod convergence;
 mod degrees;
 pub mod law;
@@ -510,6 +511,13 @@ impl Solution {
         };
         let terms: Vec<branch::Term> = relation.terms().map(term).collect();
         branch::follow(&terms, value_of(amplitude).unwrap_or(0.0), self.precision())
+    }
+
+    /// The closed root of the relation, where that is the branch from rest wherever it is real and positive.
+    pub fn closed_branch(&self) -> Option<&ClosedForm> {
+        let relation = self.law.relation()?;
+        let form = self.law.closed_form()?;
+        closed_root::is_the_branch(relation, self.amplitude.symbol()).then_some(form)
     }
 
     /// How far the coefficients are rounded, relatively: to fifteen digits, or as any double.

@@ -15,6 +15,7 @@ const PAPER: &str = include_str!("../../examples/audit/paper.toml");
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
+#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
@@ -26,6 +27,7 @@ pub struct Arguments {
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
+#[command(mut_arg("format", super::without_table))]
 pub struct PaperArguments {
     #[command(flatten)]
     own: Own,
@@ -71,6 +73,7 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
         Format::Latex => latex::audit(&audit),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::audit(&audit))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     Ok(Outcome {
         result: whole(text),

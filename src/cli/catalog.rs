@@ -7,6 +7,7 @@ use super::{Common, Failure, Format, Outcome, json_text, whole};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
+#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     #[command(flatten)]
     pub common: Common,
@@ -24,6 +25,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => catalog::latex(),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::catalog())?,
+        Format::Code(language) => super::no_program(language)?,
     };
     Ok(Outcome {
         result: whole(text),

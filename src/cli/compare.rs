@@ -12,6 +12,7 @@ use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, files, json_text, tolerance, whole};
 
 #[derive(Args)]
+#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
@@ -61,6 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => latex::comparison(&comparison),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::comparison(&comparison))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let picture = arguments
         .common

@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
-use lindstedt::export::{json, latex, text};
+use lindstedt::export::{code, json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal, Unsuited};
@@ -20,6 +20,7 @@ use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, tolerance, whole};
 
 #[derive(Args)]
+#[command(mut_arg("format", super::with_programs))]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
@@ -175,6 +176,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::solution(&solution, verification.as_ref()))?,
+        Format::Code(language) => {
+            let program = code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
+            program.map_err(|reason| Failure::advised(&reason, reason.help()))?
+        }
     };
     let picture = match (&arguments.common.plot, &verification) {
         (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at))),

@@ -40,6 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => latex::friction(&study),
         Format::Csv => friction::csv(&study),
         Format::Json => json_text(&json::friction(&study))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let picture = arguments
         .common

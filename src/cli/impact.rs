@@ -12,6 +12,7 @@ use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
 
 #[derive(Args, Default)]
+#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input; without it the paper's swing
     pub problem: Option<String>,
@@ -57,6 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => latex::impact(&impact, tolerance),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::impact(&impact, tolerance))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let picture = arguments
         .common
@@ -103,6 +105,7 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         Format::Latex => latex::impact_comparison(&table, tolerance),
         Format::Csv => return super::no_table(),
         Format::Json => json_text(&json::impact_comparison(&table, tolerance))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
     Ok(Outcome {

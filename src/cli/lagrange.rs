@@ -14,6 +14,7 @@ use super::{Common, Failure, Format, Outcome, json_text, no_table, whole};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
+#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
@@ -57,6 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Text => text::mechanism(&study, width(common.output.as_deref())),
         Format::Latex => latex::mechanism(&study),
         Format::Json => json_text(&json::lagrangian(&study))?,
+        Format::Code(language) => super::no_program(language)?,
         Format::Csv => no_table()?,
     };
     Ok(Outcome {

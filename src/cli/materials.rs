@@ -60,6 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => latex::materials(&study),
         Format::Csv => materials::csv(&study),
         Format::Json => json_text(&json::materials(&study))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&study)));
     let broken = study.rows.iter().find(|row| !row.course.stop.is_complete());

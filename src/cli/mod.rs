@@ -33,7 +33,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use lindstedt::export::code::Language;
 use lindstedt::problem::LARGEST_FILE;
 use lindstedt::solution::{Advice, Setting};
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
@@ -89,7 +91,7 @@ enum Command {
 #[derive(Args, Clone, Default)]
 struct Common {
     /// What to print
-    #[arg(long, value_enum, default_value_t = Format::Text)]
+    #[arg(long, default_value = "text", value_parser = formats([Format::Csv]))]
     format: Format,
     /// Write the result to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
@@ -110,13 +112,56 @@ fn no_verdict(tolerance: clap::Arg) -> clap::Arg {
     tolerance.hide(true)
 }
 
-#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+/// What a result is written in.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum Format {
     #[default]
     Text,
     Latex,
     Json,
     Csv,
+    Code(Language),
+}
+
+impl Format {
+    /// Those of every command that has a result.
+    const OF_ALL: [Self; 3] = [Self::Text, Self::Latex, Self::Json];
+
+    /// All of them.
+    fn all() -> impl Iterator<Item = Self> {
+        let programs = Language::ALL.map(Self::Code);
+        Self::OF_ALL.into_iter().chain([Self::Csv]).chain(programs)
+    }
+
+    /// The name on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::Latex => "latex",
+            Self::Json => "json",
+            Self::Csv => "csv",
+            Self::Code(language) => language.name(),
+        }
+    }
+}
+
+/// Reads a format. Help lists those of every command and these; a command refuses all others with the reason.
+fn formats(listed: impl IntoIterator<Item = Format>) -> impl TypedValueParser<Value = Format> {
+    let listed: Vec<Format> = Format::OF_ALL.into_iter().chain(listed).collect();
+    let values = Format::all().map(|format| PossibleValue::new(format.name()).hide(!listed.contains(&format)));
+    let unknown = || "no format of this name".to_owned();
+    PossibleValuesParser::new(values)
+        .try_map(move |name| Format::all().find(|format| format.name() == name).ok_or_else(unknown))
+}
+
+/// The option of a command that has no table.
+fn without_table(format: clap::Arg) -> clap::Arg {
+    format.value_parser(formats([]))
+}
+
+/// The option of a command that writes programs.
+fn with_programs(format: clap::Arg) -> clap::Arg {
+    format.value_parser(formats(Language::ALL.map(Format::Code)))
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -233,6 +278,15 @@ impl Command {
         }
     }
 
+    /// Refuses a format that it does not have, before any work is done for it.
+    fn takes(&self, format: Format) -> Result<(), Failure> {
+        match (self, format) {
+            (Self::Derive(_), _) => Ok(()),
+            (_, Format::Code(language)) => no_program(language),
+            _ => Ok(()),
+        }
+    }
+
     /// How long to wait for what there is, once the time is up. Only a simulation, a search, branches and an expansion have parts worth waiting
     /// for; to add up what a long one did takes a while.
     fn patience(&self) -> fn() -> Duration {
@@ -287,7 +341,10 @@ pub fn run() -> ExitCode {
         .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
     let common = command.common();
     let judged = common.tolerance.is_some() || command.is_judged();
-    match files::check(&common, command.input()) {
+    match command
+        .takes(common.format)
+        .and_then(|()| files::check(&common, command.input()))
+    {
         Err(Failure::Refused(message)) => return fail(1, &message),
         Err(Failure::Usage(message)) => return fail(2, &message),
         Ok(()) => {}
@@ -423,6 +480,14 @@ fn no_table<T>() -> Result<T, Failure> {
         "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `response`, `stability`, `friction`, `materials` or `optimize`"
             .to_owned(),
     ))
+}
+
+/// Refuses `--format python` and its like where there is no formula of a motion.
+fn no_program<T>(language: Language) -> Result<T, Failure> {
+    Err(Failure::Usage(format!(
+        "there is no program here: --format {} belongs to `lindstedt derive`",
+        language.name()
+    )))
 }
 
 /// The text of a file, or of standard input for `-`; never more than a problem may have.

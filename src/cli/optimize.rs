@@ -99,6 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => latex::optimization(&study),
         Format::Csv => optimization::csv(&study),
         Format::Json => json_text(&json::optimization(&study))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&study)));
     let note = match (record.trouble(), study.complete) {

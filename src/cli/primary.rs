@@ -69,6 +69,7 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     let text = match common.format {
         Format::Csv => primary::csv(&report),
         Format::Json => json_text(&json::primary(&report))?,
+        Format::Code(language) => super::no_program(language)?,
         Format::Text | Format::Latex => text::document(&report::primary(&report), width(common.output.as_deref())),
     };
     let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&report)));
@@ -121,6 +122,7 @@ fn many(problem: &Problem, asked: &Asked, axis: &Axis) -> Result<Outcome, Failur
     let text = match common.format {
         Format::Csv => primary::sweep_csv(&rows),
         Format::Json => json_text(&json::primary_sweep(&rows, &file.units))?,
+        Format::Code(language) => super::no_program(language)?,
         Format::Text | Format::Latex => text::document(
             &report::primary_sweep(&rows, &file.units),
             width(common.output.as_deref()),

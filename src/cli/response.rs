@@ -85,6 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Latex => latex::document(&document()),
         Format::Csv => export::response::csv(&response),
         Format::Json => json_text(&json::response(&response))?,
+        Format::Code(language) => super::no_program(language)?,
     };
     let picture = arguments
         .common

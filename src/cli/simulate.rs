@@ -246,6 +246,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let text = match arguments.common.format {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
+        Format::Code(language) => super::no_program(language)?,
         Format::Text => text(&report),
         Format::Latex => latex(&report),
     };
@@ -417,6 +418,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let write = match arguments.common.format {
         Format::Csv => sweep_csv,
         Format::Json => json::sweep,
+        Format::Code(language) => super::no_program(language)?,
         Format::Text | Format::Latex => sweep_text,
     };
     let axes = arguments.sweep.clone();

@@ -85,6 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         (Format::Text, _) => text::document(&report::stability(&report), width(arguments.common.output.as_deref())),
         (Format::Latex, _) => latex::document(&report::stability(&report)),
         (Format::Json, _) => json_text(&json::stability(&report))?,
+        (Format::Code(language), _) => super::no_program(language)?,
         (Format::Csv, Some((by, charts))) => stability::csv(&curves, *by, charts),
         (Format::Csv, None) => super::no_table()?,
     };

@@ -77,6 +77,7 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     let text = match common.format {
         Format::Csv => trajectory::csv(&report),
         Format::Json => json_text(&json::motion(&report))?,
+        Format::Code(language) => super::no_program(language)?,
         Format::Text | Format::Latex => text::document(&report::trajectory(&report), width(common.output.as_deref())),
     };
     let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&report)));
@@ -298,6 +299,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     let text = match common.format {
         Format::Csv => trajectory::sweep_csv(&report),
         Format::Json => json_text(&json::motion_sweep(&report))?,
+        Format::Code(language) => super::no_program(language)?,
         Format::Text | Format::Latex => text::document(&report::motion_sweep(&report), width(common.output.as_deref())),
     };
     let note = stopped_early(&motions, total);

@@ -1,11 +1,12 @@
-//! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an article, `figure` (feature `plot`)
-//! to look at.
+//! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an article, [`code`] to
+//! compute with, `figure` (feature `plot`) to look at.
 //!
 //! In come documents of [`report`](crate::report); JSON, pictures, tables of comma-separated values and simulations take the
 //! results themselves. Out goes text in
 //! one format. What is shown was chosen before: a format chooses only its layout.
 
 pub mod catalog;
+pub mod code;
 #[cfg(feature = "plot")]
 pub mod figure;
 pub mod friction;

@@ -371,6 +371,17 @@ fn by_size(solution: &Solution) -> bool {
         || is_first_order(solution)
 }
 
+/// Whether the law of an answer is one of the size of the amplitude.
+pub(crate) fn law_takes_size(oscillator: &Oscillator, solution: &Solution) -> bool {
+    // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
+    by_size(solution) && (!is_exact(solution) || is_odd_equation(oscillator))
+}
+
+/// Whether the motion of an answer is written for the size of the amplitude; polynomials in the amplitude know its sign.
+pub(crate) fn motion_takes_size(oscillator: &Oscillator, solution: &Solution) -> bool {
+    by_size(solution) && !matches!(oscillator.polynomial_degree(), Ok(Some(_)))
+}
+
 /// Whether an expansion stopped at the projection of a force that is no polynomial.
 fn is_first_order(solution: &Solution) -> bool {
     // The series itself always has omega beside omega^2.
@@ -410,8 +421,7 @@ fn frequency_squared(
         let turns = force.turning_point(start);
         turns.map_err(|error| force.why_no_period(start, error))?;
     }
-    // The quadratic force alone has an exact law that knows the sign of A, by eps*A.
-    let sized = by_size(solution) && (!is_exact(solution) || odd_equation(oscillator));
+    let sized = law_takes_size(oscillator, solution);
     let value_of = |name| {
         let value = numbers.get(&name).copied()?;
         Some(if sized && name == symbol { value.abs() } else { value })
@@ -558,7 +568,7 @@ pub(crate) fn error_of_integral(
 }
 
 /// Whether the equation changes its sign with the coordinate.
-fn odd_equation(oscillator: &Oscillator) -> bool {
+pub(crate) fn is_odd_equation(oscillator: &Oscillator) -> bool {
     is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false)
 }
 
@@ -589,7 +599,7 @@ fn formula_motion(
         return Some(motion);
     }
     let motion = motion.by_harmonic(half_a_period);
-    if odd_equation(oscillator) {
+    if is_odd_equation(oscillator) {
         return Some(motion);
     }
     // Every harmonic comes with a cos(theta) that lets the motion start at the amplitude; half a period later the even ones,
@@ -599,12 +609,12 @@ fn formula_motion(
     Some(motion.sum(&FourierSeries::from_parts(Doubles, vec![0.0, missing], vec![])))
 }
 
-/// Whether the motion is that of the size of the amplitude, half a period later; polynomials in the amplitude know its sign.
+/// Whether the motion is that of the size of the amplitude, half a period later.
 fn is_turned(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
     let negative = numbers
         .get(&solution.amplitude.symbol())
         .is_some_and(|value| *value < 0.0);
-    by_size(solution) && negative && !matches!(oscillator.polynomial_degree(), Ok(Some(_)))
+    negative && motion_takes_size(oscillator, solution)
 }
 
 /// The coefficient of harmonic `k` half a period later.

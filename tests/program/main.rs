@@ -11,6 +11,7 @@ mod optimize;
 mod options;
 #[cfg(feature = "plot")]
 mod pictures;
+mod programs;
 mod simulate_cli;
 mod unread;
 mod words;

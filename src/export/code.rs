@@ -1,0 +1,264 @@
+//! A derived formula as a program: a small source file with the frequency, the displacement and the velocity as functions.
+//!
+//! In: an answer, judged or not. Out: source text in one of the [`Language`]s. What a program consists of is decided once, in
+//! `program.rs`; how an expression is written, and where a line is broken, in `writer.rs`; a language is a `Syntax`, a file of
+//! its own in this folder: spellings, and the functions that its library does not have.
+//!
+//! A program computes what [`evaluate`](crate::method::numbers::evaluate) does, by the law that is judged. What cannot be written
+//! as a formula is refused; at given values its numbers can be written.
+
+mod c;
+mod julia;
+mod matlab;
+mod program;
+mod python;
+mod rust;
+mod writer;
+
+use crate::expr::{Expr, Function};
+use crate::oscillator::Oscillator;
+use crate::solution::{Advice, Setting, Solution};
+use crate::symbol::Symbol;
+use crate::verify::Verification;
+
+/// A programming language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Rust, with the standard library.
+    Rust,
+    /// C99, with the functions of `math.h`.
+    C,
+    /// Python 3, with the module `math`.
+    Python,
+    /// Julia, with the functions of `Base`.
+    Julia,
+    /// MATLAB and GNU Octave; everything takes arrays.
+    Matlab,
+}
+
+impl Language {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Rust, Self::C, Self::Python, Self::Julia, Self::Matlab];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        self.syntax().name
+    }
+
+    fn syntax(self) -> &'static Syntax {
+        match self {
+            Self::Rust => &rust::SYNTAX,
+            Self::C => &c::SYNTAX,
+            Self::Python => &python::SYNTAX,
+            Self::Julia => &julia::SYNTAX,
+            Self::Matlab => &matlab::SYNTAX,
+        }
+    }
+}
+
+/// Why an answer is no program.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoCode {
+    /// The frequency is solved for.
+    #[error("no program: {0}")]
+    SolvedByNumbers(&'static str),
+    /// It has no frequency at the values.
+    #[error("no program: the formula has no motion at these values{}", .0.as_ref().map_or(String::new(), |reason| format!(": {reason}")))]
+    NoMotion(Option<String>),
+    /// The amplitude changes.
+    #[error("no program: the amplitude changes with time, and programs are written for periodic motions")]
+    Slow,
+    /// A drive holds the motion.
+    #[error("no program: a drive holds the motion, and programs are written for free ones")]
+    Driven,
+    /// A coefficient that no double can hold.
+    #[error("no program: a coefficient of the formula is beyond the range of double precision, 1.8e308")]
+    Beyond,
+}
+
+impl NoCode {
+    /// A way forward.
+    pub fn help(&self) -> Option<Advice> {
+        match self {
+            Self::SolvedByNumbers(_) => {
+                let values = Advice::words("with values, by ").choose(Setting::Values);
+                Some(values.then(", the program has the numbers that were found there"))
+            }
+            Self::Slow | Self::Driven => Some(Advice::words(
+                "JSON has the formulas, and examples/read_slow_json.py makes the motion of them",
+            )),
+            Self::NoMotion(_) | Self::Beyond => None,
+        }
+    }
+}
+
+/// The source text of an answer for `oscillator`: what is known of it as a comment, then `angular_frequency`, `displacement` and
+/// `velocity`. Where only numbers solve the law they are those at the values of the verification; `tolerance` is that of its
+/// verdict.
+///
+/// # Errors
+/// [`NoCode`], where the answer is no formula for a periodic motion.
+///
+/// ```
+/// use lindstedt::export::code::{self, Language};
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// let text = code::solution(&pendulum, &solution, None, 0.01, Language::Python)?;
+/// assert!(text.contains("omega_squared = 1 - A**2/8"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solution(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    verification: Option<&Verification>,
+    tolerance: f64,
+    language: Language,
+) -> Result<String, NoCode> {
+    let program = program::of_solution(oscillator, solution, verification, tolerance)?;
+    writer::source(&program, language.syntax())
+}
+
+/// A language: how everything looks in it.
+struct Syntax {
+    /// Its name on the command line.
+    name: &'static str,
+    /// What begins a comment.
+    comment: &'static str,
+    /// Names that no variable may have, beside those of the functions that a program calls.
+    reserved: &'static [&'static str],
+    /// What stands behind a whole number, such as `.0` where a number without a point is an integer.
+    point: &'static str,
+    /// pi.
+    pi: &'static str,
+    /// Product and quotient.
+    operators: [&'static str; 2],
+    /// The same between values, of which arrays may be made.
+    between_values: [&'static str; 2],
+    /// A power.
+    power: fn(&Base, Exponent) -> String,
+    /// A function of the table; a leading point makes a method of it: `.cos`.
+    function: fn(Function) -> &'static str,
+    /// The text of a function that the library of the language does not have.
+    helper: fn(Function) -> Option<&'static str>,
+    /// What stands before and after the value of a variable; whether that is made of numbers written out alone.
+    variable: fn(&str, bool) -> [String; 2],
+    /// What stands before and after a result.
+    result: [&'static str; 2],
+    /// The size of a variable in place of itself.
+    size: fn(&str) -> String,
+    /// Ends a function without a value where a variable is not positive, for a reason in words.
+    positive: fn(&str, &str) -> String,
+    /// How an expression is broken that is longer than a line.
+    breaks: Break,
+    /// What stands before the functions: what a program needs of the library, and what makes it a whole.
+    beginning: fn(&Used) -> String,
+    /// A whole function.
+    routine: fn(&Text) -> String,
+}
+
+/// The base of a power.
+struct Base {
+    /// Where something is around it.
+    inside: String,
+    /// As an operand.
+    operand: String,
+    /// Whether it is made of numbers written out alone.
+    literal: bool,
+}
+
+/// The exponent of a power.
+#[derive(Clone, Copy)]
+enum Exponent<'a> {
+    /// A whole number above one.
+    Whole(&'a str),
+    /// One half.
+    Half,
+    /// A fraction with an odd denominator, to which every real number has a power; whether its numerator is odd.
+    OddRoot(&'a str, bool),
+    /// Anything else: no power of a negative number.
+    Real(&'a str),
+}
+
+/// How an expression is broken.
+enum Break {
+    /// Before a sign.
+    BeforeSigns,
+    /// Before a sign, in parentheses.
+    InParentheses,
+    /// After a sign, with this at the end of the line.
+    AfterSigns(&'static str),
+}
+
+/// What stands below the beginning of a program.
+struct Used<'a> {
+    /// Its text.
+    text: &'a str,
+    /// The functions that it consists of.
+    routines: &'a [&'static str],
+}
+
+impl Used<'_> {
+    /// Whether this word stands in the text.
+    fn has(&self, word: &str) -> bool {
+        let inside = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        self.text.match_indices(word).any(|(place, _)| {
+            let before = self.text[..place].chars().next_back();
+            let after = self.text[place + word.len()..].chars().next();
+            !before.is_some_and(inside) && !after.is_some_and(inside)
+        })
+    }
+}
+
+/// A function as text.
+struct Text<'a> {
+    name: &'a str,
+    about: &'a str,
+    arguments: &'a [String],
+    /// Its lines: variables, conditions and the result.
+    lines: &'a [String],
+}
+
+/// A program, whatever its language.
+struct Program {
+    /// What is said before it, line by line.
+    header: Vec<String>,
+    routines: Vec<Routine>,
+}
+
+/// A function of numbers.
+struct Routine {
+    name: &'static str,
+    /// What it is, in words.
+    about: String,
+    arguments: Vec<Symbol>,
+    body: Vec<Statement>,
+    result: Value,
+}
+
+/// What a function does before its result.
+enum Statement {
+    /// A variable.
+    Variable(Symbol, Value),
+    /// From here on the size of an argument stands for it.
+    Size(Symbol),
+    /// Without this being positive there is no value, for the reason given.
+    Positive(Symbol, &'static str),
+}
+
+/// What is computed.
+#[derive(Clone)]
+enum Value {
+    /// An expression.
+    Expression(Expr),
+    /// Terms in this order.
+    Sum(Vec<Value>),
+    /// The same, each on a line of its own where there is more than one line.
+    Lines(Vec<Value>),
+    /// Factors in this order.
+    Product(Vec<Value>),
+    /// A function of the program.
+    Call(&'static str, Vec<Symbol>),
+}

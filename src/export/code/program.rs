@@ -1,0 +1,556 @@
+//! What the program of an answer consists of, whatever the language: `angular_frequency` by the law that is judged,
+//! `displacement` and its derivative `velocity`, and what is said of them.
+
+use std::collections::BTreeSet;
+
+use num_traits::Zero as _;
+
+use super::{NoCode, Program, Routine, Statement, Value};
+use crate::exact::rational::from_f64;
+use crate::exact::{Doubles, Polynomial, Rational};
+use crate::expr::{Expr, Function, fresh};
+use crate::method::numbers::{is_odd_equation, law_takes_size, motion_takes_size};
+use crate::method::table::{Entry, Motion};
+use crate::oscillator::Oscillator;
+use crate::report::{self, Block, Document};
+use crate::series::FourierSeries;
+use crate::solution::{Definition, Solution};
+use crate::symbol::Symbol;
+use crate::verify::Verification;
+
+const FREQUENCY: &str = "angular_frequency";
+const DISPLACEMENT: &str = "displacement";
+const VELOCITY: &str = "velocity";
+
+/// Letters in a line of the header.
+const WIDTH: usize = 96;
+
+/// The program of an answer.
+pub(super) fn of_solution(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    verification: Option<&Verification>,
+    tolerance: f64,
+) -> Result<Program, NoCode> {
+    if solution.response.is_some() {
+        return Err(NoCode::Driven);
+    }
+    if solution.slow().is_some() {
+        return Err(NoCode::Slow);
+    }
+    let names = Names::of(solution);
+    let mut header = header(solution, verification, tolerance);
+    let mut remarks: Vec<String> = Vec::new();
+    let formula = formula(solution);
+    let is_exact = Entry::of(solution.method).motion == Motion::Exact;
+    let mut routines = Vec::new();
+    match (&formula, verification) {
+        (Ok(law), _) => {
+            let frequency = frequency(oscillator, solution, &names, law);
+            let arguments = frequency.arguments.clone();
+            routines.push(frequency);
+            if !solution.displacement.is_zero() {
+                routines.extend(motion(oscillator, solution, &names, &arguments));
+            }
+            remarks.extend(at_rest(solution, law));
+        }
+        (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason)),
+        (Err(_), Some(verification)) => routines.push(constant_frequency(verification)?),
+    }
+    let by_numbers = formula.is_err() || is_exact;
+    match verification {
+        Some(verification) if by_numbers => {
+            let numbers = verification.motion.as_ref().zip(verification.frequency);
+            let no_motion = || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
+            let (motion, frequency) = numbers.ok_or_else(no_motion)?;
+            routines.extend(motion_in_numbers(&names, motion, frequency));
+            let at: Vec<String> = verification
+                .at
+                .iter()
+                .map(|(name, value)| format!("{name} = {value}"))
+                .collect();
+            let what = if formula.is_err() { "Everything" } else { "The motion" };
+            remarks.push(format!("{what} is in numbers, which hold at {} alone.", at.join(", ")));
+        }
+        None if is_exact => {
+            remarks.push(
+                "The motion follows by quadrature of the energy: at given values it is here in numbers.".to_owned(),
+            );
+        }
+        _ => {}
+    }
+    if !remarks.is_empty() {
+        header.push(String::new());
+        header.extend(remarks);
+    }
+    Ok(Program { header, routines })
+}
+
+/// What a report says of the answer, without the formulas.
+fn header(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> Vec<String> {
+    let document = report::solution(solution, verification, tolerance);
+    let is_formula = |block: &Block| {
+        let words = matches!(
+            block,
+            Block::Question(_)
+                | Block::Title { .. }
+                | Block::Heading(_)
+                | Block::Note(_)
+                | Block::Remark(_)
+                | Block::CycleAmplitude { .. }
+                | Block::Judged { .. }
+        );
+        !words
+    };
+    let sections = document
+        .sections
+        .into_iter()
+        .filter(|section| !section.iter().any(is_formula));
+    let text = crate::export::text::document(
+        &Document {
+            sections: sections.collect(),
+        },
+        WIDTH,
+    );
+    let lines = text.trim_end().lines();
+    lines.flat_map(wrapped).collect()
+}
+
+/// A line in lines of a certain width, the next ones farther in.
+fn wrapped(line: &str) -> Vec<String> {
+    let margin = line.len() - line.trim_start().len();
+    let mut lines = vec![String::new()];
+    for (index, word) in line.split(' ').enumerate() {
+        let last = lines.last_mut().map_or(0, |last| last.len());
+        if last + 1 + word.len() > WIDTH && last > margin + 4 {
+            lines.push(format!("{}{word}", " ".repeat(margin + 4)));
+        } else if let Some(last) = lines.last_mut() {
+            if index > 0 {
+                last.push(' ');
+            }
+            last.push_str(word);
+        }
+    }
+    lines
+}
+
+/// The names of variables that a program introduces.
+struct Names {
+    amplitude: Symbol,
+    time: Symbol,
+    theta: Symbol,
+    omega: Symbol,
+    omega_squared: Symbol,
+    /// The displacement by the size of the amplitude.
+    shape: Symbol,
+    /// dx/dtheta.
+    slope: Symbol,
+    /// The sign of the amplitude.
+    sign: Symbol,
+}
+
+impl Names {
+    fn of(solution: &Solution) -> Self {
+        let taken = solution.names();
+        Self {
+            amplitude: solution.amplitude.symbol(),
+            time: Symbol::new("t"),
+            theta: Symbol::new("theta"),
+            omega: Symbol::new("omega"),
+            omega_squared: fresh("omega_squared", &taken),
+            shape: fresh("shape", &taken),
+            slope: fresh("slope", &taken),
+            sign: fresh("direction", &taken),
+        }
+    }
+}
+
+/// A law that can be computed.
+struct Law {
+    value: Value,
+    expression: Expr,
+    squared: bool,
+}
+
+/// The law that is judged, or why it is no formula.
+fn formula(solution: &Solution) -> Result<Law, &'static str> {
+    let polynomial = |law: &Polynomial, squared| Law {
+        value: ordered(solution, law),
+        expression: Expr::from(law),
+        squared,
+    };
+    let law = &solution.law;
+    if let Some(squared) = law.frequency_squared() {
+        return Ok(polynomial(squared, true));
+    }
+    let closed = match law.relation() {
+        Some(_) => solution.closed_branch(),
+        None => law.closed_form(),
+    };
+    if let Some(form) = closed {
+        return Ok(Law {
+            value: Value::Expression(form.value.clone()),
+            expression: form.value.clone(),
+            squared: form.squared,
+        });
+    }
+    match law.frequency() {
+        Some(frequency) => Ok(polynomial(frequency, false)),
+        None if law.relation().is_some() => {
+            Err("the frequency is a root of a relation, which numbers follow from A = 0 to the amplitude")
+        }
+        None if law.system().is_some() => Err("the frequency is a root of several equations, which numbers solve"),
+        None => Err("the frequency is given by integrals, which numbers solve"),
+    }
+}
+
+/// A polynomial, its terms in the order in which they are read.
+fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
+    let sum = solution.ordered(polynomial);
+    let term = |(monomial, number): (&_, &Rational)| {
+        let term: Polynomial = Polynomial::term(Clone::clone(monomial), number.clone());
+        Value::Expression(Expr::from(&term))
+    };
+    Value::Sum(sum.terms().map(term).collect())
+}
+
+/// What the symbols of a formula are: the definitions behind them, and the arguments, the amplitude first.
+fn resolved<'a>(
+    solution: &'a Solution,
+    names: &Names,
+    symbols: BTreeSet<Symbol>,
+) -> (Vec<&'a Definition>, Vec<Symbol>) {
+    let definitions = solution.definitions_behind(symbols.clone());
+    let mut all = symbols;
+    all.extend(definitions.iter().flat_map(|definition| definition.meaning.symbols()));
+    for definition in &definitions {
+        all.remove(&definition.symbol);
+    }
+    let own = [names.omega, names.theta, names.time, Symbol::new("pi")];
+    all.retain(|symbol| !own.contains(symbol));
+    let amplitude = all.take(&names.amplitude);
+    (definitions, amplitude.into_iter().chain(all).collect())
+}
+
+fn variables(definitions: Vec<&Definition>) -> impl Iterator<Item = Statement> + '_ {
+    let variable =
+        |definition: &Definition| Statement::Variable(definition.symbol, Value::Expression(definition.meaning.clone()));
+    definitions.into_iter().map(variable)
+}
+
+/// Whether an expression, with its definitions written out, keeps or changes its sign with the amplitude.
+fn flips(solution: &Solution, expression: &Expr, negated: bool) -> bool {
+    let amplitude = solution.amplitude.symbol();
+    let written_out = |expression: &Expr| {
+        let definitions = solution.definitions.iter().rev();
+        definitions.fold(Some(expression.clone()), |whole, definition| {
+            whole?.substitute(definition.symbol, &definition.meaning).ok()
+        })
+    };
+    let turned = || {
+        let whole = written_out(expression)?;
+        let turned = whole.substitute(amplitude, &-Expr::from(amplitude)).ok()?;
+        let turned = turned.expand().ok()?;
+        let whole = whole.expand().ok()?;
+        Some(turned == if negated { -whole } else { whole })
+    };
+    turned().unwrap_or(false)
+}
+
+fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &Law) -> Routine {
+    let (definitions, arguments) = resolved(solution, names, law.expression.symbols());
+    let mut body = Vec::new();
+    let by_size = arguments.contains(&names.amplitude) && law_takes_size(oscillator, solution);
+    if by_size && !flips(solution, &law.expression, false) {
+        body.push(Statement::Size(names.amplitude));
+    }
+    body.extend(variables(definitions));
+    let value = Value::clone(&law.value);
+    let result = match law.squared {
+        true => {
+            body.push(Statement::Variable(names.omega_squared, value));
+            body.push(Statement::Positive(
+                names.omega_squared,
+                "omega^2 is not positive: there is no frequency",
+            ));
+            let squared = Expr::from(names.omega_squared);
+            squared.sqrt().unwrap_or(squared)
+        }
+        false => {
+            body.push(Statement::Variable(names.omega, value));
+            body.push(Statement::Positive(
+                names.omega,
+                "omega is not positive: there is no frequency",
+            ));
+            Expr::from(names.omega)
+        }
+    };
+    Routine {
+        name: FREQUENCY,
+        about: match law.squared {
+            true => "The angular frequency in radians per unit of time, the root of omega^2".to_owned(),
+            false => "The angular frequency in radians per unit of time".to_owned(),
+        },
+        arguments,
+        body,
+        result: Value::Expression(result),
+    }
+}
+
+/// The same of what is known in numbers alone.
+fn constant_frequency(verification: &Verification) -> Result<Routine, NoCode> {
+    let no_motion = || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
+    let frequency = verification.frequency.ok_or_else(no_motion)?;
+    Ok(Routine {
+        name: FREQUENCY,
+        about: "The angular frequency in radians per unit of time".to_owned(),
+        arguments: vec![],
+        body: vec![],
+        result: number(frequency),
+    })
+}
+
+fn number(value: f64) -> Value {
+    Value::Expression(Expr::number(from_f64(value).unwrap_or_default()))
+}
+
+/// `cos(k*theta)`, or the sine.
+fn wave(function: Function, k: usize, theta: Symbol) -> Value {
+    let angle = Expr::from(i64::try_from(k).unwrap_or(i64::MAX)) * Expr::from(theta);
+    let wave = Expr::function(function, vec![angle]);
+    Value::Expression(wave.unwrap_or_else(|_| Expr::zero()))
+}
+
+/// A harmonic: `k`, what stands before the cosine and what before the sine; nothing where that is zero.
+struct Harmonic {
+    k: usize,
+    cosine: Option<Value>,
+    sine: Option<Value>,
+}
+
+/// The terms of a motion.
+fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
+    let mut terms = Vec::new();
+    for harmonic in harmonics {
+        for (coefficient, function) in [(harmonic.cosine, Function::Cos), (harmonic.sine, Function::Sin)] {
+            match (coefficient, harmonic.k) {
+                (None, _) => {}
+                (Some(Value::Sum(parts)), 0) => terms.extend(parts),
+                (Some(coefficient), 0) => terms.push(coefficient),
+                (Some(coefficient), k) => terms.push(Value::Product(vec![coefficient, wave(function, k, theta)])),
+            }
+        }
+    }
+    terms
+}
+
+/// What a function of the motion does before its result, and of what it is one.
+struct Beginning {
+    arguments: Vec<Symbol>,
+    body: Vec<Statement>,
+}
+
+fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_frequency: &[Symbol]) -> [Routine; 2] {
+    let harmonics = solution.displacement.harmonics();
+    let moving = harmonics.iter().filter(|entry| entry.0 > 0);
+    let sign = sign_of_motion(oscillator, solution, names);
+    let beginning = |symbols: BTreeSet<Symbol>| {
+        let mut symbols = symbols;
+        symbols.extend(of_frequency);
+        if !matches!(sign, Sign::Any) {
+            symbols.insert(names.amplitude);
+        }
+        let (definitions, mut arguments) = resolved(solution, names, symbols);
+        arguments.insert(0, names.time);
+        let mut body = Vec::new();
+        match sign {
+            Sign::Any => {}
+            Sign::Opposite => {
+                let sign = Expr::function(Function::Sign, vec![Expr::from(names.amplitude)]);
+                let sign = sign.unwrap_or_else(|_| Expr::one());
+                body.push(Statement::Variable(names.sign, Value::Expression(sign)));
+                body.push(Statement::Size(names.amplitude));
+            }
+            Sign::Positive => {
+                body.push(Statement::Positive(names.amplitude, "the formula is written for A > 0"));
+            }
+        }
+        body.extend(variables(definitions));
+        body.push(Statement::Variable(
+            names.omega,
+            Value::Call(FREQUENCY, of_frequency.to_vec()),
+        ));
+        body.push(angle(names));
+        Beginning { arguments, body }
+    };
+    let symbols = |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
+    let beginnings = [
+        beginning(harmonics.iter().flat_map(symbols).flatten().collect()),
+        beginning(moving.clone().flat_map(symbols).flatten().collect()),
+    ];
+    let times = |polynomial: &Polynomial, factor: i64| {
+        let factor = Rational::from_integer(factor.into());
+        let scaled: Polynomial = polynomial.map(|number| number * &factor);
+        (!scaled.is_zero()).then(|| ordered(solution, &scaled))
+    };
+    let displaced = harmonics.iter().map(|(k, cosine, sine)| Harmonic {
+        k: *k,
+        cosine: times(cosine, 1),
+        sine: times(sine, 1),
+    });
+    let moving = moving.map(|(k, cosine, sine)| {
+        let factor = i64::try_from(*k).unwrap_or(i64::MAX);
+        Harmonic {
+            k: *k,
+            cosine: times(sine, factor),
+            sine: times(cosine, -factor),
+        }
+    });
+    let before = match sign {
+        Sign::Opposite => Some(names.sign),
+        _ => None,
+    };
+    both(names, beginnings, before, displaced.collect(), moving.collect())
+}
+
+/// `theta = omega*t`.
+fn angle(names: &Names) -> Statement {
+    let angle = Expr::from(names.omega) * Expr::from(names.time);
+    Statement::Variable(names.theta, Value::Expression(angle))
+}
+
+/// Displacement and velocity; `before` stands before either.
+fn both(
+    names: &Names,
+    beginnings: [Beginning; 2],
+    before: Option<Symbol>,
+    displaced: Vec<Harmonic>,
+    moving: Vec<Harmonic>,
+) -> [Routine; 2] {
+    let before = before.map(|sign| Value::Expression(sign.into()));
+    let times = |factors: Vec<Value>| Value::Product(before.clone().into_iter().chain(factors).collect());
+    let [mut displacement, mut velocity] = beginnings;
+    let terms_of_displacement = Value::Lines(terms(displaced, names.theta));
+    let result = match before {
+        None => terms_of_displacement,
+        Some(_) => {
+            let variable = Statement::Variable(names.shape, terms_of_displacement);
+            displacement.body.push(variable);
+            times(vec![Value::Expression(names.shape.into())])
+        }
+    };
+    let displacement = Routine {
+        name: DISPLACEMENT,
+        about: "The displacement at the time t, equilibrium included".to_owned(),
+        arguments: displacement.arguments,
+        body: displacement.body,
+        result,
+    };
+    let mut slopes = terms(moving, names.theta);
+    let omega = Value::Expression(names.omega.into());
+    let result = match slopes.len() {
+        1 => times(vec![omega, slopes.remove(0)]),
+        _ => {
+            velocity
+                .body
+                .push(Statement::Variable(names.slope, Value::Lines(slopes)));
+            times(vec![omega, Value::Expression(names.slope.into())])
+        }
+    };
+    let velocity = Routine {
+        name: VELOCITY,
+        about: "Its derivative, the velocity at the time t".to_owned(),
+        arguments: velocity.arguments,
+        body: velocity.body,
+        result,
+    };
+    [displacement, velocity]
+}
+
+/// How a motion whose formula is written for the size of the amplitude is that of a negative one.
+enum Sign {
+    /// By the formula itself.
+    Any,
+    /// With the opposite sign.
+    Opposite,
+    /// Not at all.
+    Positive,
+}
+
+fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -> Sign {
+    let harmonics = solution.displacement.harmonics();
+    let amplitude: Polynomial = Polynomial::symbol(names.amplitude);
+    let of_one_term = harmonics.iter().all(|(k, cosine, sine)| match k {
+        0 => {
+            !Expr::from(cosine).contains(names.amplitude)
+                && cosine
+                    .symbols()
+                    .iter()
+                    .all(|symbol| !is_of_amplitude(solution, *symbol, names))
+        }
+        1 => *cosine == amplitude && sine.is_zero(),
+        _ => false,
+    });
+    if of_one_term || !motion_takes_size(oscillator, solution) {
+        return Sign::Any;
+    }
+    let turns = |polynomial: &Polynomial| flips(solution, &Expr::from(polynomial), true);
+    let is_odd = is_odd_equation(oscillator) && solution.equilibrium.is_zero();
+    match is_odd {
+        true if harmonics.iter().all(|entry| turns(&entry.1) && turns(&entry.2)) => Sign::Any,
+        true => Sign::Opposite,
+        false => Sign::Positive,
+    }
+}
+
+/// Whether a symbol is defined by way of the amplitude.
+fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &Names) -> bool {
+    let behind = solution.definitions_behind(BTreeSet::from([symbol]));
+    behind
+        .iter()
+        .any(|definition| definition.meaning.contains(names.amplitude))
+}
+
+/// The motion at given values.
+fn motion_in_numbers(names: &Names, motion: &FourierSeries<Doubles>, frequency: f64) -> [Routine; 2] {
+    /// Beside the largest: less is lost in rounding.
+    const SMALLEST: f64 = 1e-18;
+    let coefficients: Vec<(usize, f64, f64)> = (0..=motion.highest_harmonic())
+        .map(|k| (k, motion.cosine(k).mean().0, motion.sine(k).mean().0))
+        .collect();
+    let sizes = coefficients.iter().flat_map(|entry| [entry.1.abs(), entry.2.abs()]);
+    let least = SMALLEST * sizes.fold(0.0, f64::max);
+    let value = |coefficient: f64| (coefficient.abs() > least).then(|| number(coefficient));
+    let displaced = coefficients.iter().map(|&(k, cosine, sine)| Harmonic {
+        k,
+        cosine: value(cosine),
+        sine: value(sine),
+    });
+    let moving = coefficients
+        .iter()
+        .filter(|entry| entry.0 > 0)
+        .map(|&(k, cosine, sine)| Harmonic {
+            k,
+            cosine: value(sine).map(|_| number(k as f64 * sine)),
+            sine: value(cosine).map(|_| number(-(k as f64) * cosine)),
+        });
+    let beginning = || Beginning {
+        arguments: vec![names.time],
+        body: vec![Statement::Variable(names.omega, number(frequency)), angle(names)],
+    };
+    both(
+        names,
+        [beginning(), beginning()],
+        None,
+        displaced.collect(),
+        moving.collect(),
+    )
+}
+
+/// What is said of a formula that has no value at rest.
+fn at_rest(solution: &Solution, law: &Law) -> Option<String> {
+    let amplitude = solution.amplitude.symbol();
+    let limit = law.expression.substitute(amplitude, &Expr::zero());
+    (law.expression.contains(amplitude) && limit.is_err())
+        .then(|| format!("At {amplitude} = 0 the formula has no value, and close to it rounding takes digits."))
+}

@@ -1,0 +1,142 @@
+//! Python 3, with the module `math`. A number that does not exist is a `ValueError`.
+
+use super::{Base, Break, Exponent, Syntax, Text, Used};
+use crate::expr::Function;
+
+pub(super) const SYNTAX: Syntax = Syntax {
+    name: "python",
+    comment: "#",
+    reserved: &[
+        "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "def", "del",
+        "elif", "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is", "lambda", "nonlocal",
+        "not", "or", "pass", "raise", "return", "try", "while", "with", "yield", "abs", "copysign", "max", "min", "pi",
+        "pow", "sqrt",
+    ],
+    point: "",
+    pi: "pi",
+    operators: ["*", "/"],
+    between_values: ["*", "/"],
+    power: |Base { inside, operand, .. }, exponent| match exponent {
+        Exponent::Whole(number) => format!("{operand}**{number}"),
+        Exponent::Half => format!("sqrt({inside})"),
+        Exponent::OddRoot(number, true) => format!("copysign(pow(abs({inside}), {number}), {inside})"),
+        Exponent::OddRoot(number, false) => format!("pow(abs({inside}), {number})"),
+        Exponent::Real(number) => format!("pow({inside}, {number})"),
+    },
+    function,
+    helper,
+    variable: |name, _| [format!("{name} = "), String::new()],
+    result: ["return ", ""],
+    size: |name| format!("{name} = abs({name})"),
+    positive: |name, reason| format!("if not {name} > 0:\n    raise ValueError(\"{reason}\")"),
+    breaks: Break::InParentheses,
+    beginning,
+    routine,
+};
+
+fn function(function: Function) -> &'static str {
+    match function {
+        Function::Absolute => "abs",
+        Function::Sign => "sign",
+        Function::Step => "heaviside",
+        Function::BesselJ0 => "bessel_j0",
+        Function::BesselJ1 => "bessel_j1",
+        Function::BesselI0 => "bessel_i0",
+        Function::BesselI1 => "bessel_i1",
+        Function::EllipticK => "elliptic_k",
+        Function::Gamma => "gamma",
+        other => other.name(),
+    }
+}
+
+/// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a complex number.
+fn beginning(used: &Used) -> String {
+    const MODULE: [&str; 17] = [
+        "acos", "asin", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log", "pi", "pow", "sin", "sinh",
+        "sqrt", "tan", "tanh",
+    ];
+    let imported: Vec<&str> = MODULE.into_iter().filter(|name| used.has(name)).collect();
+    match imported.is_empty() {
+        true => String::new(),
+        false => format!("from math import {}\n\n", imported.join(", ")),
+    }
+}
+
+fn routine(text: &Text) -> String {
+    let head = format!("def {}({}):\n", text.name, text.arguments.join(", "));
+    let about = format!("    \"\"\"{}.\"\"\"\n", text.about);
+    let lines = text.lines.iter().map(|line| format!("    {line}\n"));
+    [head, about]
+        .into_iter()
+        .chain(lines)
+        .chain(["\n".to_owned()])
+        .collect()
+}
+
+fn helper(function: Function) -> Option<&'static str> {
+    Some(match function {
+        Function::Sign => {
+            r#"def sign(u):
+    """-1, 0 or 1."""
+    return (u > 0) - (u < 0)
+
+"#
+        }
+        Function::Step => {
+            r#"def heaviside(u):
+    """1 where u is positive, 0 elsewhere."""
+    return 1 if u > 0 else 0
+
+"#
+        }
+        Function::BesselJ0 => {
+            r#"def bessel_j0(u):
+    """The Bessel function of the first kind, a mean over half a turn."""
+    count = 32 + ceil(abs(u))
+    angles = (pi*(k + 0.5)/count for k in range(count))
+    return sum(cos(u*sin(angle)) for angle in angles)/count
+
+"#
+        }
+        Function::BesselJ1 => {
+            r#"def bessel_j1(u):
+    """The Bessel function of the first kind and of order one, a mean over half a turn."""
+    count = 32 + ceil(abs(u))
+    angles = (pi*(k + 0.5)/count for k in range(count))
+    return sum(sin(angle)*sin(u*sin(angle)) for angle in angles)/count
+
+"#
+        }
+        Function::BesselI0 => {
+            r#"def bessel_i0(u):
+    """The modified Bessel function of the first kind, a mean over half a turn."""
+    count = 32 + ceil(abs(u))
+    angles = (pi*(k + 0.5)/count for k in range(count))
+    return sum(cosh(u*cos(angle)) for angle in angles)/count
+
+"#
+        }
+        Function::BesselI1 => {
+            r#"def bessel_i1(u):
+    """The modified Bessel function of the first kind and of order one, a mean over half a turn."""
+    count = 32 + ceil(abs(u))
+    angles = (pi*(k + 0.5)/count for k in range(count))
+    return sum(cos(angle)*sinh(u*cos(angle)) for angle in angles)/count
+
+"#
+        }
+        Function::EllipticK => {
+            r#"def elliptic_k(m):
+    """The complete elliptic integral of the first kind, m = k^2 < 1, by the arithmetic-geometric mean."""
+    if not m < 1:
+        raise ValueError("K(m) has no value for m >= 1")
+    a, b = 1.0, sqrt(1 - m)
+    for _ in range(40):
+        a, b = (a + b)/2, sqrt(a*b)
+    return pi/(a + b)
+
+"#
+        }
+        _ => return None,
+    })
+}

@@ -149,8 +149,9 @@ struct Syntax {
     result: [&'static str; 2],
     /// The size of a variable in place of itself.
     size: fn(&str) -> String,
-    /// Ends a function without a value where a variable is not positive, for a reason in words.
-    positive: fn(&str, &str) -> String,
+    /// Ends a function without a value where a variable is not positive, for a reason in words; between them the variable that is
+    /// spoilt where all of it is computed at once.
+    positive: fn(&str, &str, &str) -> String,
     /// How an expression is broken that is longer than a line.
     breaks: Break,
     /// What stands before the functions: what a program needs of the library, and what makes it a whole.
@@ -244,8 +245,8 @@ enum Statement {
     Variable(Symbol, Value),
     /// From here on the size of an argument stands for it.
     Size(Symbol),
-    /// Without this being positive there is no value, for the reason given.
-    Positive(Symbol, &'static str),
+    /// Without this being positive there is no value, for the reason given; what the value is computed with is the second.
+    Positive(Symbol, Symbol, &'static str),
 }
 
 /// What is computed.

@@ -87,7 +87,15 @@ impl Case {
         let near = |found: f64, value: f64, size: f64, what: &str| {
             assert!((found - value).abs() <= size, "{name}: {what} {found} and {value}");
         };
-        near(found[0], self.omega, 1e-12 * self.omega, "omega");
+        // At a small amplitude terms may cancel: then there is a value to half of the digits, or none.
+        let cancels = self.texts[0].contains("rounding takes the digits")
+            && ["A", "a"]
+                .iter()
+                .any(|name| self.values.get(*name).is_some_and(|value| value.abs() < 0.1));
+        let tolerance = if cancels { 1e-6 } else { 1e-12 };
+        if !(cancels && found[0].is_nan()) {
+            near(found[0], self.omega, tolerance * self.omega, "omega");
+        }
         let Some(motion) = &self.motion else { return };
         let size = TIMES.iter().map(|t| motion(*t).abs()).fold(0.0, f64::max);
         for (t, found) in TIMES.into_iter().zip(found[1..].chunks(4)) {
@@ -95,7 +103,10 @@ impl Case {
                 assert!(found.iter().all(|value| value.is_nan()), "{name}: {found:?}");
                 continue;
             }
-            near(found[0], motion(t), 1e-12 * size * (1.0 + self.omega * t), "x");
+            if cancels && found.iter().all(|value| value.is_nan()) {
+                continue;
+            }
+            near(found[0], motion(t), tolerance * size * (1.0 + self.omega * t), "x");
             let difference = (found[3] - found[2]) / (2.0 * STEP);
             near(
                 found[1],
@@ -190,10 +201,14 @@ fn examples() -> Vec<Case> {
 }
 
 /// Equations and values at which every method that has an answer is run, and how many must have one.
-const EQUATIONS: [(&str, &str, usize); 10] = [
+const EQUATIONS: [(&str, &str, usize); 14] = [
     ("x'' + x + eps*x^3 = 0", "A = 3/2, eps = 1/2", 14),
     ("x'' + k*x + eps*x^3 = 0", "A = 3/2, eps = -1/20, k = 2", 14),
     ("x'' + sin(x) = 0", "A = 6/5", 13),
+    ("x'' + sin(x) = 0", "A = -6/5", 13),
+    ("x'' + sin(x) = 0", "A = 1/25", 13),
+    ("x'' + sin(x) = 0", "A = 1/10000", 13),
+    ("x'' + exp(x) - 1 = 0", "A = 1/1000", 7),
     ("x'' + x + x^2 + x^3 - 1/5 = 0", "A = -3/10", 9),
     ("x'' + x + x*abs(x) = 0", "A = -1/2", 10),
     (
@@ -305,7 +320,8 @@ fn run_all(language: Language, cases: &[Case], folder: &Path) -> Option<Vec<f64>
             if !is_here("python3") {
                 return None;
             }
-            driver += "import runpy\ndef show(name, *values):\n    try:\n        print(repr(float(case[name](*values))))\n    except ValueError:\n        print('nan')\n";
+            driver += "import runpy\n\
+def show(name, *values):\n    try:\n        print(repr(float(case[name](*values))))\n    except ValueError:\n        print('nan')\n";
             for k in 0..cases.len() {
                 let _ = writeln!(
                     driver,

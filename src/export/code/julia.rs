@@ -70,7 +70,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("{name} = "), String::new()],
     result: ["return ", ""],
     size: |name| format!("{name} = abs({name})"),
-    positive: |name, reason| format!("{name} > 0 || throw(DomainError({name}, \"{reason}\"))"),
+    positive: |name, _, reason| format!("{name} > 0 || throw(DomainError({name}, \"{reason}\"))"),
     breaks: Break::AfterSigns(""),
     beginning: |_: &Used| String::new(),
     routine,

@@ -62,7 +62,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("{name} = "), ";".to_owned()],
     result: ["value = ", ";"],
     size: |name| format!("{name} = abs({name});"),
-    positive: |name, reason| format!("{name}(~({name} > 0)) = NaN;  % {reason}"),
+    positive: |name, spoilt, reason| format!("{spoilt}(~({name} > 0)) = NaN;  % {reason}"),
     breaks: Break::AfterSigns(" ..."),
     beginning,
     routine,
@@ -92,7 +92,8 @@ fn beginning(used: &Used) -> String {
         .routines
         .iter()
         .map(|name| format!("    motion.{name} = @{name};\n"));
-    let head = "% Save this as oscillator.m: motion = oscillator(); then motion.displacement(t, ...), and so on.\nfunction motion = oscillator()\n";
+    let head = "% Save this as oscillator.m: motion = oscillator(); then motion.displacement(t, ...), and so on.\n\
+                function motion = oscillator()\n";
     let head = match used.routines.contains(&"displacement") {
         true => head.to_owned(),
         false => head.replace("displacement(t, ...), and so on", "angular_frequency(...)"),
@@ -140,30 +141,30 @@ end
 "
         }
         Function::BesselJ0 => {
-            "% The Bessel function of the first kind.
+            "% The Bessel function of the first kind; of negative numbers it comes as a complex one.
 function value = bessel_j0(u)
-    value = besselj(0, u);
+    value = real(besselj(0, u));
 end
 "
         }
         Function::BesselJ1 => {
             "% The Bessel function of the first kind and of order one.
 function value = bessel_j1(u)
-    value = besselj(1, u);
+    value = real(besselj(1, u));
 end
 "
         }
         Function::BesselI0 => {
             "% The modified Bessel function of the first kind.
 function value = bessel_i0(u)
-    value = besseli(0, u);
+    value = real(besseli(0, u));
 end
 "
         }
         Function::BesselI1 => {
             "% The modified Bessel function of the first kind and of order one.
 function value = bessel_i1(u)
-    value = besseli(1, u);
+    value = real(besseli(1, u));
 end
 "
         }

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use num_traits::Zero as _;
+use num_traits::{Signed as _, Zero as _};
 
 use super::{NoCode, Program, Routine, Statement, Value};
 use crate::exact::rational::from_f64;
 use crate::exact::{Doubles, Polynomial, Rational};
-use crate::expr::{Expr, Function, fresh};
+use crate::expr::{Expr, Function, Node, fresh};
 use crate::method::numbers::{is_odd_equation, law_takes_size, motion_takes_size};
 use crate::method::table::{Entry, Motion};
 use crate::oscillator::Oscillator;
@@ -52,6 +52,7 @@ pub(super) fn of_solution(
             if !solution.displacement.is_zero() {
                 routines.extend(motion(oscillator, solution, &names, &arguments));
             }
+            remarks.extend(unseen(oscillator, solution).map(str::to_owned));
             remarks.extend(at_rest(solution, law));
         }
         (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason)),
@@ -81,7 +82,7 @@ pub(super) fn of_solution(
     }
     if !remarks.is_empty() {
         header.push(String::new());
-        header.extend(remarks);
+        header.extend(remarks.iter().flat_map(|remark| wrapped(remark)));
     }
     Ok(Program { header, routines })
 }
@@ -145,6 +146,8 @@ struct Names {
     shape: Symbol,
     /// dx/dtheta.
     slope: Symbol,
+    /// Positive where enough of the digits are left.
+    digits: Symbol,
     /// The sign of the amplitude.
     sign: Symbol,
 }
@@ -160,6 +163,7 @@ impl Names {
             omega_squared: fresh("omega_squared", &taken),
             shape: fresh("shape", &taken),
             slope: fresh("slope", &taken),
+            digits: fresh("digits", &taken),
             sign: fresh("direction", &taken),
         }
     }
@@ -242,9 +246,9 @@ fn variables(definitions: Vec<&Definition>) -> impl Iterator<Item = Statement> +
 fn flips(solution: &Solution, expression: &Expr, negated: bool) -> bool {
     let amplitude = solution.amplitude.symbol();
     let written_out = |expression: &Expr| {
-        let definitions = solution.definitions.iter().rev();
-        definitions.fold(Some(expression.clone()), |whole, definition| {
-            whole?.substitute(definition.symbol, &definition.meaning).ok()
+        let mut definitions = solution.definitions.iter().rev();
+        definitions.try_fold(expression.clone(), |whole, definition| {
+            whole.substitute(definition.symbol, &definition.meaning).ok()
         })
     };
     let turned = || {
@@ -269,7 +273,9 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
     let result = match law.squared {
         true => {
             body.push(Statement::Variable(names.omega_squared, value));
+            body.extend(digits(names, [&law.expression], names.omega_squared, &Expr::one()));
             body.push(Statement::Positive(
+                names.omega_squared,
                 names.omega_squared,
                 "omega^2 is not positive: there is no frequency",
             ));
@@ -278,7 +284,9 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
         }
         false => {
             body.push(Statement::Variable(names.omega, value));
+            body.extend(digits(names, [&law.expression], names.omega, &Expr::one()));
             body.push(Statement::Positive(
+                names.omega,
                 names.omega,
                 "omega is not positive: there is no frequency",
             ));
@@ -372,13 +380,25 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
                 body.push(Statement::Size(names.amplitude));
             }
             Sign::Positive => {
-                body.push(Statement::Positive(names.amplitude, "the formula is written for A > 0"));
+                body.push(Statement::Positive(
+                    names.amplitude,
+                    names.amplitude,
+                    "the formula is written for A > 0",
+                ));
             }
         }
-        body.extend(variables(definitions));
+        body.extend(variables(definitions.clone()));
         body.push(Statement::Variable(
             names.omega,
             Value::Call(FREQUENCY, of_frequency.to_vec()),
+        ));
+        // Where a definition stands in a motion, it stands there over omega^2.
+        let scale = Expr::product([names.omega, names.amplitude].map(Expr::from));
+        body.extend(digits(
+            names,
+            definitions.iter().map(|own| &own.meaning),
+            names.omega,
+            &scale,
         ));
         body.push(angle(names));
         Beginning { arguments, body }
@@ -449,7 +469,10 @@ fn both(
     let mut slopes = terms(moving, names.theta);
     let omega = Value::Expression(names.omega.into());
     let result = match slopes.len() {
-        1 => times(vec![omega, slopes.remove(0)]),
+        1 => times(match slopes.remove(0) {
+            Value::Product(factors) => std::iter::once(omega).chain(factors).collect(),
+            slope => vec![omega, slope],
+        }),
         _ => {
             velocity
                 .body
@@ -544,6 +567,66 @@ fn motion_in_numbers(names: &Names, motion: &FourierSeries<Doubles>, frequency: 
         None,
         displaced.collect(),
         moving.collect(),
+    )
+}
+
+/// Ends a function where the terms of its formulas cancel and more than half of the digits of `value*scale` with them: as the
+/// amplitude goes to zero, several of them become infinite and their sum does not.
+fn digits<'a>(
+    names: &Names,
+    formulas: impl IntoIterator<Item = &'a Expr>,
+    value: Symbol,
+    scale: &Expr,
+) -> Vec<Statement> {
+    /// What terms may be larger than their sum.
+    const LARGEST: i64 = 1_000_000_000;
+    let is_infinite = |term: &&Expr| term.substitute(names.amplitude, &Expr::zero()).is_err();
+    let size = |formula: Expr| Expr::function(Function::Absolute, vec![formula]).ok();
+    let mut sizes = Vec::new();
+    for formula in formulas {
+        let Ok(written_out) = formula.expand() else { continue };
+        let infinite: Vec<&Expr> = written_out.terms().iter().filter(is_infinite).collect();
+        if infinite.len() > 1 {
+            sizes.extend(infinite.into_iter().filter_map(|term| size(term.clone())));
+        }
+    }
+    let whole = size(Expr::from(value) * scale).filter(|_| !sizes.is_empty());
+    let Some(whole) = whole else { return vec![] };
+    let left = Expr::from(LARGEST) * whole - Expr::sum(sizes);
+    vec![
+        Statement::Variable(names.digits, Value::Expression(left)),
+        Statement::Positive(
+            names.digits,
+            value,
+            "at so small an amplitude rounding takes the digits of the formula",
+        ),
+    ]
+}
+
+/// What a program does not look at and the numbers of an answer do: whether there is a motion, and whether the force is defined all
+/// along it.
+fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<&'static str> {
+    let in_parts = |part: &Expr| match part.node() {
+        Node::Function(function, _) => {
+            use Function::{Acos, Asin, Log, Tan};
+            [Acos, Asin, Log, Tan].contains(function)
+        }
+        Node::Power(base, exponent) => {
+            let is_whole = exponent
+                .as_number()
+                .is_some_and(|number| number.is_integer() && number.is_positive());
+            base.contains(oscillator.coordinate) && !is_whole
+        }
+        _ => false,
+    };
+    if Entry::of(solution.method).motion == Motion::Exact {
+        return Some(
+            "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing.",
+        );
+    }
+    let has_gaps = law_takes_size(oscillator, solution) && oscillator.force.unique_nodes().any(in_parts);
+    has_gaps.then_some(
+        "The program does not look whether the force is defined and finite from -A to A: where it is not, its numbers mean nothing.",
     )
 }
 

@@ -28,7 +28,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("{name} = "), String::new()],
     result: ["return ", ""],
     size: |name| format!("{name} = abs({name})"),
-    positive: |name, reason| format!("if not {name} > 0:\n    raise ValueError(\"{reason}\")"),
+    positive: |name, _, reason| format!("if not {name} > 0:\n    raise ValueError(\"{reason}\")"),
     breaks: Break::InParentheses,
     beginning,
     routine,

@@ -27,7 +27,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     },
     result: ["", ""],
     size: |name| format!("let {name} = {name}.abs();"),
-    positive: |name, reason| format!("if {name}.is_nan() || {name} <= 0.0 {{\n    return f64::NAN; // {reason}\n}}"),
+    positive: |name, _, reason| format!("if {name}.is_nan() || {name} <= 0.0 {{\n    return f64::NAN; // {reason}\n}}"),
     breaks: Break::BeforeSigns,
     beginning,
     routine,

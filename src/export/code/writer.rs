@@ -192,8 +192,8 @@ impl Writer<'_> {
                     lines.extend(self.lines(&before, value, &after)?);
                 }
                 Statement::Size(name) => lines.push((self.syntax.size)(&self.name(*name))),
-                Statement::Positive(name, reason) => {
-                    let condition = (self.syntax.positive)(&self.name(*name), reason);
+                Statement::Positive(name, spoilt, reason) => {
+                    let condition = (self.syntax.positive)(&self.name(*name), &self.name(*spoilt), reason);
                     lines.extend(condition.lines().map(str::to_owned));
                 }
             }

@@ -3,6 +3,7 @@
 //! In: a force and its coordinate, with letters or without. Out: its stable equilibria, by closed forms where there are some, chosen with
 //! numbers in place of the letters, or by numbers; the names of them, for messages.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use num_traits::Zero;
@@ -315,13 +316,23 @@ impl<'a> Force<'a> {
             .map(|found| found.position.abs())
             .fold(f64::INFINITY, f64::min);
         let unit = if unit.is_finite() { unit } else { 1.0 };
+        // Most forces pull back: one value on either side tells.
+        let value = self.at_numbers(samples.first()?)?;
+        if value(1e-6 * unit) > 0.0 && value(-1e-6 * unit) < 0.0 {
+            return None;
+        }
         let rest = Expr::zero();
         let at = |sample: &BTreeMap<Symbol, f64>| AtNumbers::new(self.force, self.coordinate, &rest, sample, unit);
         let away = |sample: &BTreeMap<Symbol, f64>| at(sample).is_some_and(|force| pushes_away(&force, unit));
         if !samples.iter().all(away) || !is_odd(self.force, self.coordinate).unwrap_or(false) {
             return None;
         }
-        let ranges = |sample: &BTreeMap<Symbol, f64>| Some(*passages(&at(sample)?, unit).first()?);
+        let several = Cell::new(false);
+        let ranges = |sample: &BTreeMap<Symbol, f64>| {
+            let ranges = passages(&at(sample)?, unit);
+            several.set(several.get() || ranges.len() > 1);
+            ranges.first().copied()
+        };
         let found: Vec<(&BTreeMap<Symbol, f64>, Passage)> = samples
             .iter()
             .filter_map(|sample| Some((sample, ranges(sample)?)))
@@ -351,6 +362,7 @@ impl<'a> Force<'a> {
             equilibrium: position.clone(),
             from,
             to,
+            others: several.get(),
             positive,
         })
     }

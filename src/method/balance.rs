@@ -90,6 +90,8 @@ pub struct Continuation {
     states: RefCell<Vec<State>>,
     /// How much finer than usual the sums had to be for the last of them; none yet is 0.
     fineness: Cell<usize>,
+    /// How often a motion over several wells was followed in vain.
+    in_vain: Cell<usize>,
 }
 
 impl Continuation {
@@ -547,8 +549,10 @@ impl<'a> Problem<'a> {
     /// nearby at which one term is nearly all.
     fn over_the_hilltop(&self, known: &Continuation) -> Result<State, Lost> {
         /// Starts that are tried, and how far they are from the amplitude: to four times, where there is no end before.
-        const STARTS: usize = 12;
-        const PER_DOUBLING: i32 = 8;
+        const STARTS: usize = 6;
+        const PER_DOUBLING: i32 = 3;
+        /// Starts in vain, for all amplitudes together: along a force of many waves each takes long.
+        const MOST_IN_VAIN: usize = 12;
         let passages = passages(self.force, self.amplitude);
         let range = passage_at(&passages, self.amplitude).ok_or(Lost::NoStart)?;
         let end = range.to.map_or(f64::INFINITY, |rim| rim.place);
@@ -564,19 +568,26 @@ impl<'a> Problem<'a> {
         if let Some(Ok(found)) = nearest.map(&reached) {
             return Ok(found);
         }
+        if known.in_vain.get() >= MOST_IN_VAIN {
+            return Err(Lost::NoStart);
+        }
         let sizes =
-            (-8 * PER_DOUBLING..=2 * PER_DOUBLING).map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
+            (-3 * PER_DOUBLING..=2 * PER_DOUBLING).map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
         let sizes = sizes.map(|factor| factor * self.amplitude.abs());
         let mut alone: Vec<(State, f64)> = sizes
             .filter(|&size| size > range.from && size < end)
             .filter_map(|size| self.of_one_term(size * self.side()))
             .collect();
-        alone.sort_by(|one, other| one.1.total_cmp(&other.1));
+        // Nearly of one term, and not far.
+        let merit = |(state, corrections): &(State, f64)| corrections + 0.1 * (state.logarithm() - goal).abs();
+        alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
         let mut lost = Lost::NoStart;
         let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
-            match reached(start) {
+            let found = reached(start);
+            known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
+            match found {
                 Ok(found) => return Ok(found),
                 Err(last) if lost == Lost::NoStart => {
                     let amplitude = last.logarithm().exp() * self.side();

@@ -347,6 +347,8 @@ pub struct CrossWell {
     pub from: Option<Position>,
     /// Where they end.
     pub to: CrossWellEnd,
+    /// Whether there are others farther out, over hilltops between other wells.
+    pub others: bool,
     /// The letters that are taken to be positive.
     pub positive: Vec<Symbol>,
 }
@@ -377,6 +379,9 @@ impl fmt::Display for CrossWell {
                 "where the potential energy at A is above that of the equilibrium, up to the next unstable one",
             )?,
             (None, _) => formatter.write_str("where the potential energy at A is above that of the equilibrium")?,
+        }
+        if self.others {
+            formatter.write_str(", and others farther out")?;
         }
         match self.positive.is_empty() {
             true => Ok(()),

@@ -11,6 +11,10 @@ use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
 use crate::solution::{Degrees, Method, Solution};
 
+/// omega^2 of a motion `A cos(theta)` by what defines it, in numbers: of the force about the equilibrium and the size of the
+/// amplitude. With a bound of its error, relative.
+pub type Definition = fn(&Force, f64) -> Option<(f64, f64)>;
+
 /// A row of [`METHODS`].
 pub struct Entry {
     /// The method.
@@ -25,9 +29,8 @@ pub struct Entry {
     /// for the force, zero for a polynomial force kept whole; `None` where the force is taken as it is. The flag says whether
     /// the force is a polynomial.
     pub rounded_degree: fn(&Options, bool) -> Option<u32>,
-    /// omega^2 of a motion `A cos(theta)` by what defines it, in numbers, for methods of one term: the force about the
-    /// equilibrium and the size of the amplitude; with a bound of its error, relative.
-    pub definition: Option<fn(&Force, f64) -> Option<(f64, f64)>>,
+    /// For methods of one term.
+    pub definition: Option<Definition>,
     /// Whether its law knows the sign of the amplitude; one that does not is written for positive ones.
     pub signed: bool,
     /// How its motion becomes numbers.

@@ -92,6 +92,15 @@ impl<'a> TrueBackbone<'a> {
         self.well.map_or(0.0, |well| well.smallest_amplitude())
     }
 
+    /// Whether the motions run over hilltops beyond the equilibrium, of a force that goes up and down again and again.
+    pub(super) fn has_waves_of_hilltops(&self) -> bool {
+        let inner = self.well.and_then(|well| well.inner);
+        let rest = self.physics.as_ref().map(|physics| &physics.rest);
+        inner
+            .zip(rest)
+            .is_some_and(|(inner, rest)| inner.place != rest.equilibrium() && rest.waves())
+    }
+
     /// The end of what is looked at.
     pub(super) fn farthest(&self) -> f64 {
         f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())

@@ -12,6 +12,7 @@ use crate::conservative::features::Features;
 use crate::decimal::significant;
 use crate::expr::Expr;
 use crate::method::numbers::Known;
+use crate::method::table::{Entry, Motion};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -117,6 +118,10 @@ pub(super) fn reach(
     // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve to follow.
     let fixed = solution.limit_cycle.is_some() || solution.response.is_some() || solution.slow().is_some();
     if fixed {
+        return None;
+    }
+    // Over the many hilltops of a force that waves a balance has many solutions, and following it finds one or another.
+    if Entry::of(solution.method).motion == Motion::Balance && truth.has_waves_of_hilltops() {
         return None;
     }
     let mut amplitudes = truth.amplitudes();

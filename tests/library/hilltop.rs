@@ -367,3 +367,28 @@ fn a_formula_that_is_not_real_at_first_says_from_where_on() {
         .find(|range| range.text.contains("is positive from A = 1.44604 on"));
     assert!(from.is_some_and(|range| range.outside), "{:?}", judged.ranges);
 }
+
+/// A force that waves has a hilltop every wave: what a verdict passes lies in the range that is printed, and a balance, which has many
+/// solutions there, has none.
+#[test]
+fn over_many_hilltops_a_balance_has_no_range() {
+    let oscillator = about_zero("x'' - sin(3*x) + x/5 = 0");
+    for (method, has_range) in [
+        (Method::HarmonicBalance, false),
+        (Method::Hamiltonian, true),
+        (Method::IterationPerturbation, true),
+    ] {
+        let solution = by(&oscillator, method, None);
+        for amplitude in ["8", "12", "24"] {
+            let judged = judge(&oscillator, &solution, &at(&format!("A = {amplitude}")), 0.01).expect("a motion");
+            let ranges = judged.ranges.iter().filter(|range| range.text.starts_with("within"));
+            let ranges: Vec<_> = ranges.collect();
+            assert_eq!(!ranges.is_empty(), has_range, "{method:?} {amplitude}");
+            let passes = judged.verdict == Verdict::Pass;
+            assert!(
+                ranges.iter().all(|range| range.outside != passes),
+                "{method:?} {amplitude}: {ranges:?}"
+            );
+        }
+    }
+}

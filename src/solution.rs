@@ -486,8 +486,7 @@ impl Solution {
     }
 
     /// The branch of the relation that starts at the linear frequency or, about an unstable equilibrium, at the first order, at given
-    /// values; `None` where there is no relation, a
-    /// value is missing, or the branch has no start.
+    /// values; `None` where there is no relation, a value is missing, or the branch has no start.
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
         let relation = self.law.relation()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());

@@ -15,6 +15,8 @@ pub(crate) mod tape;
 pub(crate) mod taylor;
 pub(crate) mod terms;
 pub(crate) mod waves;
+#[cfg(test)]
+pub(crate) mod written;
 
 pub use convolution::{Convolutions, Node};
 pub use fourier::{FourierSeries, Resonance, fraction, linear_combination, sum_of_products};

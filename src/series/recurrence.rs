@@ -85,6 +85,12 @@ impl Recurrences {
         Ok(place)
     }
 
+    /// Lets this name stand for what is at a place.
+    #[cfg(test)]
+    pub(super) fn define(&mut self, name: Symbol, place: usize) {
+        self.known.insert(Expr::symbol(name.name()), place);
+    }
+
     /// What computes the series of all that was added.
     pub fn into_tape(mut self) -> Tape {
         self.tape.keep_only(&self.outputs);

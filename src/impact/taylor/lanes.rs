@@ -7,7 +7,8 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::course::{Courses, courses};
-use super::series::{Coefficients, Ends, HIGHEST_ORDER, Inputs, Terms, contact, flight};
+use super::recurrences::{contact, flight};
+use super::series::{Coefficients, Ends, HIGHEST_ORDER, Inputs, Terms};
 use super::step::step_lengths;
 use super::{Equation, Runner};
 

@@ -1,7 +1,8 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
 //! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run alone (`alone`) or from
-//! eight side by side (`lanes`), the same to the last bit. The coefficients of a step come from `series`.
+//! eight side by side (`lanes`), the same to the last bit. The coefficients of a step come from `recurrences`, which is written
+//! from `equations`.
 //!
 //! ```text
 //! step:    (h/r)^(p+1) <= tolerance, 1/r = max |v_n|^(1/n) over the last coefficients of the velocity, n = p-4 ... p
@@ -23,9 +24,13 @@
 mod angle;
 mod contact;
 mod course;
+#[cfg(test)]
+mod equations;
 mod flight;
 mod friction;
+mod kernels;
 mod lanes;
+mod recurrences;
 mod series;
 mod step;
 mod stretch;
@@ -144,8 +149,8 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
     while let Some(equation) = runner.wants() {
         runner.inputs(0, &mut inputs);
         match equation {
-            Equation::Flight => series::flight(&inputs, order, terms, &mut series),
-            Equation::Contact => series::contact(&inputs, order, terms, &mut series),
+            Equation::Flight => recurrences::flight(&inputs, order, terms, &mut series),
+            Equation::Contact => recurrences::contact(&inputs, order, terms, &mut series),
         }
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
         let length = runner.reach(proposed);

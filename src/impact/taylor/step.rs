@@ -1,6 +1,7 @@
 //! How long a step may be, from the last coefficients of a series.
 
-use super::series::{INVERSE, LAST, Series};
+use super::kernels::INVERSE;
+use super::series::{LAST, Series};
 
 /// 2^52: a number to whose last digits whole numbers below it can be added, and taken off again.
 const WHOLE_NUMBERS: f64 = 4_503_599_627_370_496.0;

@@ -69,6 +69,21 @@ pub(super) fn stretched<const L: usize>([p, q]: &[[f64; L]; 2], series: &Series<
     result
 }
 
+/// The same of a series that is not kept: from its coefficient n and the two before it, the last one first.
+#[inline(always)]
+pub(super) fn stretched_next<const L: usize>(
+    [p, q]: &[[f64; L]; 2],
+    next: [f64; L],
+    before: &mut [[f64; L]; 2],
+) -> [f64; L] {
+    let mut result = next;
+    for lane in 0..L {
+        result[lane] += p[lane] * before[0][lane] + q[lane] * before[1][lane];
+    }
+    *before = [next, before[0]];
+    result
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

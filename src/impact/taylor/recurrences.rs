@@ -1,0 +1,232 @@
+//! The series of a step of equation (7). Written from the lines in `equations` by its test: a change here is lost.
+
+use super::kernels::{INVERSE, each, product, quotient, sine_and_cosine, square, time, waves_of_time};
+use super::series::{Coefficients, HIGHEST_ORDER, Inputs, Terms};
+use super::stretch::{in_contact, in_flight, stretched, stretched_next};
+use crate::impact::model::STEEPNESS;
+
+/// The series of free motion to this order, by time.
+///
+/// ```text
+/// x' = v
+/// drive = sin(eta*t)
+/// counter = cos(eta*t)
+/// sine = sin(x)
+/// cosine = cos(x)
+/// slowing = atan(k*v)
+/// force = -sine - viscous*v - dry - arctangent*slowing + beta*drive*cosine
+/// v' = force
+/// t' = 1
+/// ```
+#[inline(always)]
+pub(super) fn flight<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+    let order = order.min(HIGHEST_ORDER);
+    let stretch = in_flight(inputs);
+    let Coefficients {
+        place: x,
+        velocity: v,
+        time: t,
+        scratch,
+        ahead,
+        ahead_of_waves,
+    } = series;
+    let [
+        drive,
+        counter,
+        x_slope,
+        sine,
+        cosine,
+        scaled_v,
+        slowing_over,
+        slowing_slope,
+        slowing,
+        ..,
+    ] = scratch;
+    let [scaled_v_squared_ahead, drive_cosine_ahead, ..] = ahead;
+    let [sine_ahead, ..] = ahead_of_waves;
+    let mut force_before = [[0.0; L]; 2];
+    x[0] = inputs.place;
+    v[0] = inputs.velocity;
+    t[0] = [0.0; L];
+    time(t, &inputs.unit, &stretch);
+    sine[0] = inputs.sine;
+    cosine[0] = inputs.cosine;
+    if terms.excited {
+        drive[0] = inputs.drive[0];
+        counter[0] = inputs.drive[1];
+    }
+    for n in 0..order {
+        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+        let v_stretched = stretched(&stretch, v, n);
+        x_slope[n] = each(|lane| inputs.unit[lane] * v_stretched[lane]);
+        x[n + 1] = each(|lane| INVERSE[n + 1] * x_slope[n][lane]);
+        if terms.excited && n > 0 {
+            waves_of_time(
+                [&mut *drive, &mut *counter],
+                &stretch,
+                &each(|lane| inputs.unit[lane] * inputs.eta[lane] * INVERSE[n]),
+                n,
+            );
+        }
+        if n > 0 {
+            sine_and_cosine([&mut *sine, &mut *cosine], x_slope, n, sine_ahead);
+        }
+        if terms.arctangent {
+            scaled_v[n] = each(|lane| STEEPNESS * v[n][lane]);
+            let scaled_v_squared = square(scaled_v, n, scaled_v_squared_ahead);
+            let mut slowing_over_n: [f64; L] = each(|lane| scaled_v_squared[lane]);
+            if n == 0 {
+                slowing_over_n = each(|lane| slowing_over_n[lane] + 1.0);
+            }
+            slowing_over[n] = slowing_over_n;
+            if n == 0 {
+                slowing[0] = each(|lane| (scaled_v[0][lane]).atan());
+            }
+            if n > 0 {
+                quotient(
+                    [&mut *slowing, &mut *slowing_slope],
+                    &each(|lane| n as f64 * scaled_v[n][lane]),
+                    slowing_over,
+                    n,
+                );
+            }
+        }
+        let mut force: [f64; L] = each(|lane| -sine[n][lane] - inputs.viscous[lane] * v[n][lane]);
+        if n == 0 {
+            force = each(|lane| force[lane] - inputs.dry[lane]);
+        }
+        if terms.arctangent {
+            force = each(|lane| force[lane] - inputs.arctangent[lane] * slowing[n][lane]);
+        }
+        if terms.excited {
+            let drive_cosine = product(drive, cosine, n, drive_cosine_ahead);
+            force = each(|lane| force[lane] + inputs.beta[lane] * drive_cosine[lane]);
+        }
+        let force_stretched = stretched_next(&stretch, force, &mut force_before);
+        v[n + 1] = each(|lane| factor[lane] * force_stretched[lane]);
+    }
+}
+
+/// The series of motion in contact to this order, by s: x = x_r + w^2, dt = w ds.
+///
+/// ```text
+/// t' = w
+/// w' = v/2
+/// depth = w^2
+/// drive = sin(eta*t)
+/// counter = cos(eta*t)
+/// sine = sin(x_r + depth)
+/// cosine = cos(x_r + depth)
+/// fourth = depth^2
+/// slowing = atan(k*v)
+/// slow = sine + dry + arctangent*slowing - beta*drive*cosine
+/// force = -w*slow - gamma*fourth - mu*v*fourth
+/// (v + viscous*depth)' = force
+/// ```
+#[inline(always)]
+pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+    let order = order.min(HIGHEST_ORDER);
+    let stretch = in_contact(inputs);
+    let Coefficients {
+        place: w,
+        velocity: v,
+        time: t,
+        scratch,
+        ahead,
+        ahead_of_waves,
+    } = series;
+    let [
+        depth,
+        t_slope,
+        drive,
+        counter,
+        depth_slope,
+        sine,
+        cosine,
+        fourth,
+        scaled_v,
+        slowing_over,
+        slowing_slope,
+        slowing,
+        slow,
+        ..,
+    ] = scratch;
+    let [
+        depth_ahead,
+        fourth_ahead,
+        scaled_v_squared_ahead,
+        drive_cosine_ahead,
+        w_slow_ahead,
+        v_fourth_ahead,
+        ..,
+    ] = ahead;
+    let [drive_ahead, sine_ahead, ..] = ahead_of_waves;
+    let mut force_before = [[0.0; L]; 2];
+    w[0] = inputs.place;
+    v[0] = inputs.velocity;
+    t[0] = [0.0; L];
+    sine[0] = inputs.sine;
+    cosine[0] = inputs.cosine;
+    if terms.excited {
+        drive[0] = inputs.drive[0];
+        counter[0] = inputs.drive[1];
+    }
+    depth[0] = square(w, 0, depth_ahead);
+    for n in 0..order {
+        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+        let w_stretched = stretched(&stretch, w, n);
+        t[n + 1] = each(|lane| factor[lane] * w_stretched[lane]);
+        let v_stretched = stretched(&stretch, v, n);
+        w[n + 1] = each(|lane| 0.5 * factor[lane] * v_stretched[lane]);
+        depth[n + 1] = square(w, n + 1, depth_ahead);
+        depth_slope[n] = each(|lane| (n + 1) as f64 * depth[n + 1][lane]);
+        if terms.excited && n > 0 {
+            t_slope[n - 1] = each(|lane| n as f64 * inputs.eta[lane] * t[n][lane]);
+            sine_and_cosine([&mut *drive, &mut *counter], t_slope, n, drive_ahead);
+        }
+        if n > 0 {
+            sine_and_cosine([&mut *sine, &mut *cosine], depth_slope, n, sine_ahead);
+        }
+        fourth[n] = square(depth, n, fourth_ahead);
+        if terms.arctangent {
+            scaled_v[n] = each(|lane| STEEPNESS * v[n][lane]);
+            let scaled_v_squared = square(scaled_v, n, scaled_v_squared_ahead);
+            let mut slowing_over_n: [f64; L] = each(|lane| scaled_v_squared[lane]);
+            if n == 0 {
+                slowing_over_n = each(|lane| slowing_over_n[lane] + 1.0);
+            }
+            slowing_over[n] = slowing_over_n;
+            if n == 0 {
+                slowing[0] = each(|lane| (scaled_v[0][lane]).atan());
+            }
+            if n > 0 {
+                quotient(
+                    [&mut *slowing, &mut *slowing_slope],
+                    &each(|lane| n as f64 * scaled_v[n][lane]),
+                    slowing_over,
+                    n,
+                );
+            }
+        }
+        let mut slow_n: [f64; L] = each(|lane| sine[n][lane]);
+        if n == 0 {
+            slow_n = each(|lane| slow_n[lane] + inputs.dry[lane]);
+        }
+        if terms.arctangent {
+            slow_n = each(|lane| slow_n[lane] + inputs.arctangent[lane] * slowing[n][lane]);
+        }
+        if terms.excited {
+            let drive_cosine = product(drive, cosine, n, drive_cosine_ahead);
+            slow_n = each(|lane| slow_n[lane] - inputs.beta[lane] * drive_cosine[lane]);
+        }
+        slow[n] = slow_n;
+        let w_slow = product(w, slow, n, w_slow_ahead);
+        let mut force: [f64; L] = each(|lane| -inputs.gamma[lane] * fourth[n][lane] - w_slow[lane]);
+        if terms.damped_contact {
+            let v_fourth = product(v, fourth, n, v_fourth_ahead);
+            force = each(|lane| force[lane] - inputs.mu[lane] * v_fourth[lane]);
+        }
+        let force_stretched = stretched_next(&stretch, force, &mut force_before);
+        v[n + 1] = each(|lane| factor[lane] * force_stretched[lane] - inputs.viscous[lane] * depth[n + 1][lane]);
+    }
+}

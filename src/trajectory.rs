@@ -15,6 +15,7 @@ mod hold;
 mod pulse;
 mod root;
 mod section;
+mod sensitivity;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -29,6 +30,7 @@ use crate::symbol::{Symbol, fresh};
 use crate::system::{End, Event, Integrator, Options, Path, System, SystemError};
 
 pub use section::{Crossing, MOST_CROSSINGS, Section};
+pub use sensitivity::DISPLACEMENT;
 pub use sweep::{SweptMotion, sweep};
 
 use hold::Hold;

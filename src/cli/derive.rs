@@ -64,7 +64,7 @@ pub struct Arguments {
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
-    /// Print the derivation, order by order, before the result
+    /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a program as a comment
     #[arg(long)]
     steps: bool,
     #[command(flatten)]
@@ -157,28 +157,31 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             })?)
         }
     };
+    let derivation = match arguments.common.format {
+        Format::Latex if arguments.steps => latex::steps(&solution),
+        _ if arguments.steps => text::steps(&solution),
+        _ => String::new(),
+    };
     let text = match arguments.common.format {
         Format::Text => {
-            let derivation = if arguments.steps {
-                text::steps(&solution) + "\n"
-            } else {
-                String::new()
-            };
-            derivation + &text::solution(&solution, verification.as_ref(), tolerance)
+            let space = if arguments.steps { "\n" } else { "" };
+            derivation + space + &text::solution(&solution, verification.as_ref(), tolerance)
         }
-        Format::Latex => {
-            let derivation = if arguments.steps {
-                latex::steps(&solution)
-            } else {
-                String::new()
-            };
-            derivation + &latex::solution(&solution, verification.as_ref())
-        }
+        Format::Latex => derivation + &latex::solution(&solution, verification.as_ref()),
         Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::solution(&solution, verification.as_ref()))?,
+        Format::Json => {
+            let mut document = json::solution(&solution, verification.as_ref());
+            // The first line is the heading.
+            document.derivation = arguments
+                .steps
+                .then(|| derivation.lines().skip(1).map(str::to_owned).collect());
+            json_text(&document)?
+        }
         Format::Code(language) => {
             let program = code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
-            program.map_err(|reason| Failure::advised(&reason, reason.help()))?
+            let program = program.map_err(|reason| Failure::advised(&reason, reason.help()))?;
+            let space = if derivation.is_empty() { "" } else { "\n" };
+            language.comment(&(derivation + space)) + &program
         }
     };
     let picture = match (&arguments.common.plot, &verification) {

@@ -7,7 +7,7 @@ use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TrajectoryReport};
 use lindstedt::system::{End, Integrator, SystemError};
-use lindstedt::trajectory::{Course, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep};
+use lindstedt::trajectory::{Course, DISPLACEMENT, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
 
@@ -73,6 +73,7 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         motion: &motion,
         judge: judge.as_ref(),
         samples: asked.samples,
+        known_until: motion.known_until(),
     };
     let text = match common.format {
         Format::Csv => trajectory::csv(&report),
@@ -95,7 +96,12 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
             "warning: the two integrators differ by {} of the largest displacement: do not trust this motion so far",
             significant(motion.difference(judge), 2)
         )),
-        _ => None,
+        _ => report.known_until.map(|known| {
+            format!(
+                "warning: six digits hold until t = {} only: then a start displaced by {DISPLACEMENT:e} of it is elsewhere",
+                decimal(known)
+            )
+        }),
     };
     Ok(Outcome {
         result: whole(text),

@@ -45,6 +45,16 @@ impl Language {
         self.syntax().name
     }
 
+    /// A text as a comment, line by line; one that no documentation is made of.
+    ///
+    /// ```
+    /// use lindstedt::export::code::Language;
+    /// assert_eq!(Language::Python.comment("one\n\ntwo"), "# one\n#\n# two\n");
+    /// ```
+    pub fn comment(self, text: &str) -> String {
+        commented(text, self.syntax().comment.trim_end_matches('!'))
+    }
+
     fn syntax(self) -> &'static Syntax {
         match self {
             Self::Rust => &rust::SYNTAX,
@@ -158,6 +168,13 @@ struct Syntax {
     beginning: fn(&Used) -> String,
     /// A whole function.
     routine: fn(&Text) -> String,
+}
+
+/// A text as a comment, line by line.
+fn commented(text: &str, prefix: &str) -> String {
+    text.lines()
+        .map(|line| format!("{prefix} {line}").trim_end().to_owned() + "\n")
+        .collect()
 }
 
 /// The base of a power.

@@ -8,7 +8,7 @@ use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::system::{End, Integrator};
-use crate::trajectory::{Course, Crossing, Section, SweptMotion, Trajectory, in_words};
+use crate::trajectory::{Course, Crossing, DISPLACEMENT, Section, SweptMotion, Trajectory, in_words};
 
 /// The most times of rest that are listed.
 const MOST_HELD: usize = 6;
@@ -28,6 +28,8 @@ pub struct TrajectoryReport<'a> {
     pub judge: Option<&'a Trajectory>,
     /// The times at which states are asked for.
     pub samples: &'a [f64],
+    /// From when on it is not known to six digits ([`Trajectory::known_until`]).
+    pub known_until: Option<f64>,
 }
 
 impl TrajectoryReport<'_> {
@@ -51,7 +53,7 @@ impl TrajectoryReport<'_> {
 /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
-/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[1.0] };
+/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[1.0], known_until: None };
 /// let text = lindstedt::export::text::document(&lindstedt::report::trajectory(&report), 120);
 /// assert!(text.contains("0.540302"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -262,6 +264,10 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
             "unaccounted for",
             format!("{} of the largest", significant(balance.residual, 2)),
         ));
+    }
+    if let Some(known) = report.known_until {
+        let why = format!("then a start displaced by {DISPLACEMENT:e} of it is elsewhere");
+        facts.push(("six digits hold", format!("until t = {}, {why}", decimal(known))));
     }
     if let Some(judge) = report.judge {
         let apart = significant(motion.difference(judge), 2);

@@ -16,6 +16,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use super::largest::largest_over;
 use super::orbit::SAMPLES;
 use super::smaller::{is_small_in_amplitude, smaller};
 use super::{Motions, Verdict, Verification, VerificationError, checked_numbers, slopes_of};
@@ -344,12 +345,8 @@ impl Truth {
         let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);
         let deviation = found.map(|found| {
-            let times = (0..=SAMPLES).map(|k| self.period * k as f64 / SAMPLES as f64);
-            let pairs = times.map(|t| (found.at(t).0, motion.position(t, state)));
-            let (largest, size) = pairs.fold((0.0_f64, 0.0_f64), |(largest, size), (truth, formula)| {
-                let distance = (truth - motion.equilibrium).abs();
-                (largest.max((truth - formula).abs()), size.max(distance))
-            });
+            let largest = largest_over(self.period, |t| (found.at(t).0 - motion.position(t, state)).abs());
+            let size = largest_over(self.period, |t| (found.at(t).0 - motion.equilibrium).abs());
             if size > 0.0 { largest / size } else { 0.0 }
         });
         JudgedState {

@@ -22,6 +22,7 @@ pub mod comparison;
 pub(crate) mod convergence;
 mod driven;
 mod free_motion;
+mod largest;
 mod orbit;
 mod reach;
 mod slow_motion;
@@ -39,6 +40,7 @@ pub use crate::conservative::well::{End, Rim, Well};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use self::largest::largest_over;
 use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion, true_frequency};
 use crate::conservative::features::Features;
 use crate::conservative::force::Force;
@@ -655,11 +657,8 @@ fn largest_deviation(truth: &TrueMotion, frequency: f64, motion: &FourierSeries<
     if !truth.has_path() {
         return None;
     }
-    let deviation = |index: usize| {
-        let t = truth.period() * index as f64 / SAMPLES as f64;
-        (truth.sample(t).1 - motion.evaluate(frequency * t)).abs()
-    };
-    let largest = (0..=SAMPLES).map(deviation).fold(0.0, f64::max) / truth.amplitude;
+    let deviation = |t: f64| (truth.sample(t).1 - motion.evaluate(frequency * t)).abs();
+    let largest = largest_over(truth.period(), deviation) / truth.amplitude;
     largest.is_finite().then_some(largest)
 }
 

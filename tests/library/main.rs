@@ -36,6 +36,7 @@ mod response;
 mod ring;
 mod section;
 mod self_excited;
+mod sensitivity;
 mod series_properties;
 mod simulate;
 mod spurious;

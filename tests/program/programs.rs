@@ -530,3 +530,33 @@ fn programs_look_as_they_looked() {
         insta::assert_snapshot!("program-exact-python", output(&exact));
     });
 }
+
+/// A derivation that is asked for is there whatever the format.
+#[test]
+fn a_derivation_stands_in_every_format() {
+    let first = "fixes               W1 = 3*eps*A^2/4";
+    let json: Value =
+        serde_json::from_str(&output(&["derive", "duffing", "--steps", "--format", "json"])).expect("JSON");
+    let lines = json["derivation"].as_array().expect("lines");
+    assert!(
+        lines
+            .iter()
+            .any(|line| line.as_str().is_some_and(|line| line.trim() == first))
+    );
+    let plain: Value = serde_json::from_str(&output(&["derive", "duffing", "--format", "json"])).expect("JSON");
+    assert!(plain.get("derivation").is_none());
+    for (language, prefix) in [
+        ("rust", "// "),
+        ("c", "// "),
+        ("python", "# "),
+        ("julia", "# "),
+        ("matlab", "% "),
+    ] {
+        let text = output(&["derive", "duffing", "--steps", "--format", language]);
+        let line = format!("{prefix}    {first}\n");
+        assert!(text.contains(&line), "{language}: {text}");
+        // What follows is the program without them.
+        let program = output(&["derive", "duffing", "--format", language]);
+        assert!(text.ends_with(&program), "{language}: {text}");
+    }
+}

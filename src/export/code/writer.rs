@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::{One, Signed, Zero};
 
-use super::{Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, Used, Value};
+use super::{Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, Used, Value, commented};
 use crate::exact::Integer;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{Expr, Function, Node};
@@ -37,8 +37,7 @@ pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<Strin
     if !renamed.is_empty() {
         header.extend([String::new(), format!("{}.", renamed.join(", "))]);
     }
-    let comment = |line: &String| format!("{} {line}", syntax.comment).trim_end().to_owned() + "\n";
-    let header: String = header.iter().map(comment).collect();
+    let header = commented(&header.join("\n"), syntax.comment);
     let parts = [header, beginning, text].into_iter().filter(|part| !part.is_empty());
     let whole = parts.collect::<Vec<String>>().join("\n");
     Ok(whole.trim_end().to_owned() + "\n")

@@ -37,6 +37,10 @@ pub struct MotionDocument {
     pub energy: Option<EnergyAccount>,
     /// The largest difference from the other integrator, over the largest displacement; null where it was not asked for.
     pub difference: Option<f64>,
+    /// The time from which on the states are not known to six digits, because a start displaced by 1e-12 of it leads elsewhere; left out
+    /// where they are known to the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known_until: Option<f64>,
     /// Where dry friction holds it at rest: from when until when.
     pub held: Vec<[f64; 2]>,
     /// Why it ends where it does.
@@ -97,7 +101,7 @@ pub struct EnergyAccount {
 /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
-/// let document = lindstedt::export::json::motion(&TrajectoryReport { motion: &motion, judge: None, samples: &[] });
+/// let document = lindstedt::export::json::motion(&TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None });
 /// assert!(document.complete && document.samples.len() == 21);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -147,6 +151,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
             residual: balance.residual,
         }),
         difference: report.judge.map(|judge| motion.difference(judge)),
+        known_until: report.known_until,
         held: motion.held().collect(),
         stopped: in_words(motion.reason()).to_owned(),
         complete: motion.is_complete(),

@@ -80,6 +80,9 @@ pub struct SolutionDocument {
     /// How far the series of omega^2 converges, by its own coefficients; left out where they are too few or show no law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub convergence: Option<Convergence>,
+    /// The derivation line by line, as text; left out where it was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivation: Option<Vec<String>>,
     /// The verdict at given values; null where none were given.
     pub verification: Option<Verification>,
 }
@@ -399,6 +402,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         numerical: solution.numerical,
         validity: solution.validity.iter().map(ToString::to_string).collect(),
         convergence: solution.convergence.as_ref().map(Convergence::of),
+        derivation: None,
         verification: verification.map(judged),
     }
 }

@@ -6,7 +6,7 @@ use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
-    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline, simulate,
+    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline, known_until, simulate,
 };
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
@@ -242,6 +242,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         samples: &arguments.sample,
         dissipation: Some(&dissipation),
         units,
+        known_until: if arguments.chain { None } else { known_until(&motion) },
     };
     let text = match arguments.common.format {
         Format::Csv => csv(&report),

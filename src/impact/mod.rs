@@ -108,7 +108,7 @@ pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, Phase, PhasesError, Swing, ThreePhases, three_phases};
 pub use setup::{ContactLoss, Letters, Setup, SetupError};
 pub use si::{SiImpact, YieldCheck};
-pub use simulate::{SimulationError, simulate, simulate_many};
+pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
     ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece,
     REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,

@@ -18,9 +18,10 @@ use thiserror::Error;
 
 use super::chain::{ChainError, chain};
 use super::model::{Model, ModelError, Start};
-use super::simulation::{Integrator, Settings, Simulation, size};
+use super::simulation::{Integrator, Settings, Simulation, Stop, size};
 use super::{judge, taylor};
 use crate::numeric::ode::IntegrationError;
+use crate::trajectory::DISPLACEMENT;
 
 /// Why a simulation cannot begin.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -79,6 +80,47 @@ pub fn simulate(
         Integrator::RungeKutta => Ok(judge::follow(model, start, settings)?),
         Integrator::Chain => Ok(chain(model, start, settings)?),
     }
+}
+
+/// The time until which a motion with a moving pivot is known to six digits of its size, one of two thousand in it; beyond it a start displaced
+/// by [`DISPLACEMENT`] of it leads elsewhere. `None` where it is known to the end, where the pivot is at rest, whose motions are regular, or
+/// without a path. Costs as much as the motion.
+///
+/// ```text
+/// errors of the integration grow as the displacement does: six digits are lost where it has grown 1e-6/tolerance times
+/// ```
+///
+/// ```
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, known_until, simulate};
+///
+/// let start = Start { x: -1.5, velocity: 0.0 };
+/// let motion = simulate(&Model::default(), start, Integrator::Taylor, &Settings::default())?;
+/// assert_eq!(known_until(&motion), None);
+/// # Ok::<(), lindstedt::impact::SimulationError>(())
+/// ```
+pub fn known_until(motion: &Simulation) -> Option<f64> {
+    const SIX_DIGITS: f64 = 1e-6;
+    const LOOKS: usize = 2000;
+    if motion.model.beta == 0.0 || matches!(motion.stop, Stop::Interrupted { .. }) {
+        return None;
+    }
+    let displaced = |value: f64| value + DISPLACEMENT * if value == 0.0 { motion.model.beta } else { value };
+    let start = Start {
+        x: displaced(motion.start.x),
+        velocity: displaced(motion.start.velocity),
+    };
+    let other = simulate(&motion.model, start, motion.integrator, &motion.settings).ok()?;
+    let until = motion.end_time.min(other.end_time);
+    let places = (0..=LOOKS).filter_map(|look| {
+        let time = until * look as f64 / LOOKS as f64;
+        Some((time, motion.path.at(time)?.0, other.path.at(time)?.0))
+    });
+    let places: Vec<(f64, f64, f64)> = places.collect();
+    let size = places.iter().fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));
+    let lost = DISPLACEMENT * SIX_DIGITS / motion.settings.relative_tolerance.max(f64::EPSILON);
+    let is_lost = |(_, x, other): &&(f64, f64, f64)| (x - other).abs() > lost * size;
+    let first = places.iter().position(|place| is_lost(&place))?;
+    Some(first.checked_sub(1).map_or(0.0, |last| places[last].0))
 }
 
 /// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.

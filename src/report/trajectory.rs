@@ -28,7 +28,7 @@ pub struct TrajectoryReport<'a> {
     pub judge: Option<&'a Trajectory>,
     /// The times at which states are asked for.
     pub samples: &'a [f64],
-    /// From when on it is not known to six digits ([`Trajectory::known_until`]).
+    /// Until when it is known to six digits, if not to the end ([`Trajectory::known_until`]).
     pub known_until: Option<f64>,
 }
 

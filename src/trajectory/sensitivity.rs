@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! d(t) = max_i |y_i(t) - z_i(t)|/Y_i,  Y_i = max |y_i|        z: the same from a start with y_i (1 + 1e-12)
+//! (where y_i = 0: 1e-12 of its size soon after)
 //! errors of the integration grow as d does: six digits are lost where d reaches 1e-12 (1e-6/e), e = 1e-15 or its tolerance
 //! ```
 //!
@@ -17,12 +18,15 @@ pub const DISPLACEMENT: f64 = 1e-12;
 /// What the errors of the integration begin with, at least.
 const ROUNDING: f64 = 1e-15;
 
+/// The part of a motion whose size displaces what begins at zero.
+const BEGINNING: u32 = 100;
+
 /// What is lost when the sixth digit is.
 const SIX_DIGITS: f64 = 1e-6;
 
 impl Trajectory {
-    /// The time from which on its states are not known to six digits, for a start displaced by [`DISPLACEMENT`] of it leads elsewhere; `None`
-    /// where they are known to the end. Costs as much as the motion.
+    /// The time until which its states are known to six digits of their sizes, one of two thousand in the motion; beyond it a start displaced by
+    /// [`DISPLACEMENT`] of it leads elsewhere. `None` where they are known to the end. Costs as much as the motion.
     ///
     /// ```
     /// use lindstedt::Oscillator;
@@ -41,33 +45,37 @@ impl Trajectory {
         if self.reason == End::Interrupted {
             return None;
         }
+        let time = |end: f64, index: u32| end * f64::from(index) / f64::from(ACCOUNTS);
+        let sizes = |count: u32| {
+            let mut sizes = vec![0.0_f64; self.course.rates.states.len()];
+            for state in (0..=count).filter_map(|index| self.at(time(self.end(), index))) {
+                for (size, value) in sizes.iter_mut().zip(&state) {
+                    *size = size.max(value.abs());
+                }
+            }
+            sizes
+        };
         let mut displaced = self.course.clone();
         displaced.section = None;
-        for value in &mut displaced.start {
-            *value *= 1.0 + DISPLACEMENT;
+        for (value, size) in displaced.start.iter_mut().zip(sizes(ACCOUNTS / BEGINNING)) {
+            *value += DISPLACEMENT * if *value == 0.0 { size } else { *value };
         }
         let displaced = displaced.follow_by(self.integrator).ok()?;
         let lost = DISPLACEMENT * SIX_DIGITS / self.course.tolerance.max(ROUNDING);
         let end = self.end().min(displaced.end());
-        let times = (0..=ACCOUNTS).map(|index| end * f64::from(index) / f64::from(ACCOUNTS));
-        let mut sizes = vec![0.0_f64; self.course.rates.states.len()];
-        for state in times.clone().filter_map(|time| self.at(time)) {
-            for (size, value) in sizes.iter_mut().zip(&state) {
-                *size = size.max(value.abs());
-            }
-        }
-        let mut since = None;
-        for time in times {
+        let sizes = sizes(ACCOUNTS);
+        let (mut known, mut doubtful) = (0.0, false);
+        for time in (0..=ACCOUNTS).map(|index| time(end, index)) {
             let (one, other) = (self.at(time)?, displaced.at(time)?);
             let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs());
             let is_lost = apart.zip(&sizes).any(|(apart, size)| apart > lost * size);
             // One moment alone may lie between two jumps of one force.
-            match (is_lost, since) {
-                (true, Some(since)) => return Some(since),
-                (true, None) => since = Some(time),
-                (false, _) => since = None,
+            match (is_lost, doubtful) {
+                (true, true) => return Some(known),
+                (true, false) => doubtful = true,
+                (false, _) => (known, doubtful) = (time, false),
             }
         }
-        since
+        doubtful.then_some(known)
     }
 }

@@ -25,6 +25,7 @@ fn two_integrators_part_where_six_digits_are_lost() {
     for (equation, start) in [
         ("x'' + 0.25*x' - x + x^3 - 0.3*cos(t) = 0", 1.0),
         ("x'' + 0.05*x' + x^3 - 7.5*cos(t) = 0", 3.0),
+        ("x'' + 0.05*x' + x^3 - 7.5*cos(t) = 0", 0.0),
         ("x'' + 0.5*x' + sin(x) - 1.15*cos(2*t/3) = 0", 0.2),
     ] {
         let course = course(equation, start, 400.0);

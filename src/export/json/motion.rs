@@ -37,8 +37,8 @@ pub struct MotionDocument {
     pub energy: Option<EnergyAccount>,
     /// The largest difference from the other integrator, over the largest displacement; null where it was not asked for.
     pub difference: Option<f64>,
-    /// The time from which on the states are not known to six digits, because a start displaced by 1e-12 of it leads elsewhere; left out
-    /// where they are known to the end.
+    /// The time until which the states are known to six digits; beyond it a start displaced by 1e-12 of it leads elsewhere. Left out where
+    /// they are known to the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub known_until: Option<f64>,
     /// Where dry friction holds it at rest: from when until when.

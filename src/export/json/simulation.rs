@@ -51,6 +51,10 @@ pub struct SimulationDocument {
     pub energy: Energy,
     /// The largest energy that no work accounts for, as a fraction of the largest energy met; of a chain that of its velocities.
     pub energy_residual: f64,
+    /// The time until which the motion is known to six digits; beyond it a start displaced by 1e-12 of it leads elsewhere. Left out where it
+    /// is known to the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known_until: Option<f64>,
     /// Why the run ended, in words.
     pub stopped: String,
     /// Whether the run got where it was to get.
@@ -406,7 +410,7 @@ const INTEGRATORS: [Integrator; 3] = [Integrator::Taylor, Integrator::RungeKutta
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None, known_until: None };
 /// let document = json::simulation(&report);
 /// assert_eq!((document.samples.len(), document.impacts.len()), (1, motion.impacts.len()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -475,6 +479,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
             excitation: book.excitation,
         },
         energy_residual: book.residual,
+        known_until: report.known_until,
         stopped: motion.stop.to_string(),
         complete: motion.stop.is_complete(),
         steps: motion.steps,

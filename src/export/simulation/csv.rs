@@ -19,7 +19,7 @@ const BETWEEN: usize = 3;
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None, known_until: None };
 /// let table = csv(&report);
 /// assert!(table.starts_with("t,x,velocity,") && table.lines().count() == 2); // the state at t = 1
 /// # Ok::<(), Box<dyn std::error::Error>>(())

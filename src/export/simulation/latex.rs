@@ -18,7 +18,7 @@ const LINES: usize = 24;
 ///
 /// let (model, start) = Case { zeta: 0.05, ..Case::default() }.motion()?;
 /// let motion = simulate(&model, start, Integrator::Chain, &Settings::default())?;
-/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[], baseline: None, dissipation: None, units: None };
+/// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[], baseline: None, dissipation: None, units: None, known_until: None };
 /// assert!(latex(&report).contains("\\operatorname{sn}"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

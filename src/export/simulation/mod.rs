@@ -22,6 +22,7 @@ pub use text::{simulation as text, sweep as sweep_text};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::{Axis, Summary, grid_values};
 use crate::impact::{Baseline, Dissipation, Friction, Simulation, Units};
+use crate::trajectory::DISPLACEMENT;
 
 /// What is handed on of one run.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +43,8 @@ pub struct Report<'a> {
     pub dissipation: Option<&'a Dissipation>,
     /// The pendulum in SI units, where they are known.
     pub units: Option<&'a Units>,
+    /// Until when it is known to six digits, if not to the end ([`known_until`](crate::impact::known_until)).
+    pub known_until: Option<f64>,
 }
 
 /// What is handed on of a sweep.
@@ -79,6 +82,12 @@ pub(super) fn friction(friction: Friction) -> &'static str {
 pub(super) fn notes(report: &Report) -> Vec<String> {
     let motion = report.motion;
     let mut notes = Vec::new();
+    if let Some(known) = report.known_until {
+        notes.push(format!(
+            "six digits hold until t = {}: then a start displaced by {DISPLACEMENT:e} of it is elsewhere",
+            decimal(known)
+        ));
+    }
     if motion.model.gamma == 0.0 {
         notes.push("gamma = 0 is no barrier: the motion is that of the plain pendulum".to_owned());
     }

@@ -1,6 +1,6 @@
 //! One integrator against the other, and against itself a hundred times tighter.
 
-use lindstedt::impact::{Friction, Integrator, Model, Start, Stop};
+use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, Stop, known_until, simulate};
 
 use super::{REST, run, taylor};
 
@@ -194,5 +194,53 @@ fn a_touch_faster_than_the_contact_relaxes() {
         );
         let [out, judged] = [one, other].map(|impact| impact.speed_out.expect("an exit"));
         assert!((out / judged - 1.0).abs() < 1e-5, "{one:?} {other:?}");
+    }
+}
+
+/// Where six digits are lost to a chaotic drive, there the integrators part; without chaos, or a drive, they are kept.
+#[test]
+fn a_chaotic_motion_is_known_until_the_integrators_part() {
+    let still = Start { x: 0.0, velocity: 0.0 };
+    let driven = |beta: f64, frequency_ratio: f64, barrier: f64| Model {
+        gamma: 1e4,
+        mu: 500.0,
+        zeta: 0.01,
+        beta,
+        frequency_ratio,
+        right: Some(barrier),
+        ..Model::default()
+    };
+    let settings = Settings {
+        duration: 400.0,
+        relative_tolerance: 1e-12,
+        absolute_tolerance: 1e-14,
+        ..Settings::default()
+    };
+    for (beta, frequency_ratio, barrier) in [(0.7, 2.1, 0.05), (1.2, 0.9, 0.1), (1.0, 2.5, 0.0)] {
+        let model = driven(beta, frequency_ratio, barrier);
+        let [series, judge] = [Integrator::Taylor, Integrator::RungeKutta]
+            .map(|integrator| simulate(&model, still, integrator, &settings).expect("a motion"));
+        let known = known_until(&series).expect("a chaotic motion");
+        let apart = |from: f64, to: f64| {
+            let times = (0..200).map(|k| from + (to - from) * f64::from(k) / 200.0);
+            let places = times.filter_map(|t| Some((series.path.at(t)?.0 - judge.path.at(t)?.0).abs()));
+            places.fold(0.0, f64::max)
+        };
+        let places = (0..400).filter_map(|t| series.path.at(f64::from(t)));
+        let size = places.fold(0.0, |size: f64, (x, _)| size.max(x.abs()));
+        let (before, after) = (
+            apart(0.0, 0.8 * known) / size,
+            apart(known, (1.6 * known).min(400.0)) / size,
+        );
+        assert!((20.0..350.0).contains(&known), "{beta} {frequency_ratio}: {known}");
+        assert!(
+            before < 1e-6 && after > 1e-6,
+            "{beta} {frequency_ratio}: {before:e}, {after:e} around {known}"
+        );
+    }
+    for model in [driven(0.8, 0.6, 0.2), driven(0.0, 1.0, 0.2)] {
+        let start = Start { x: -0.5, velocity: 0.0 };
+        let motion = simulate(&model, start, Integrator::Taylor, &settings).expect("a motion");
+        assert_eq!(known_until(&motion), None);
     }
 }

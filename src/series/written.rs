@@ -364,8 +364,8 @@ impl<'a> Writer<'a> {
         Ok(format!("{sign} {}", factors.join(" * ")))
     }
 
-    /// Whether a slope is stored: one that only a quotient reads is not.
-    fn has_slope(&self, of: usize) -> Option<usize> {
+    /// The place of the slope of another place, if something reads it there: a quotient makes its own.
+    fn slope_of(&self, of: usize) -> Option<usize> {
         let is_slope = |place: &&usize| matches!(self.tape.operation(**place), Operation::Slope(own) if *own == of);
         self.flags.keys().find(is_slope).copied()
     }
@@ -426,7 +426,11 @@ impl<'a> Writer<'a> {
                 let [sine, cosine] = [place, place + 1].map(|place| self.name(place));
                 let waves = format!("[&mut *{sine}, &mut *{cosine}]");
                 if *degree == 1 {
-                    let factor = self.scaled(*of)?.factors.join(" * ");
+                    let phase = self.scaled(*of)?;
+                    if phase.is_negative || !self.is_state(phase.place) || phase.factors.is_empty() {
+                        return Err(format!("`{sine}` is of no multiple of the time"));
+                    }
+                    let factor = phase.factors.join(" * ");
                     let factor = format!("each(|lane| inputs.unit[lane] * {factor} * INVERSE[n])");
                     return one(&["n > 0"], format!("waves_of_time({waves}, &stretch, &{factor}, n);"));
                 }
@@ -544,9 +548,7 @@ impl<'a> Writer<'a> {
             mut factors,
             place,
         } = self.scaled(rate.rate)?;
-        if is_negative {
-            return Err("a rate that is negative".to_owned());
-        }
+        let sign = if is_negative { "-" } else { "" };
         let plain = |text: String| Statement {
             conditions: vec![],
             text,
@@ -566,11 +568,14 @@ impl<'a> Writer<'a> {
                 )
             }
         };
-        match self.has_slope(rate.state) {
+        match self.slope_of(rate.state) {
             Some(slope) if beside.is_empty() => {
                 let slope = self.name(slope);
                 factors.extend(["inputs.unit[lane]".to_owned(), format!("{of}_stretched[lane]")]);
-                statements.push(plain(format!("{slope}[n] = each(|lane| {});", factors.join(" * "))));
+                statements.push(plain(format!(
+                    "{slope}[n] = each(|lane| {sign}{});",
+                    factors.join(" * ")
+                )));
                 statements.push(plain(format!(
                     "{name}[n + 1] = each(|lane| INVERSE[n + 1] * {slope}[n][lane]);"
                 )));
@@ -579,7 +584,7 @@ impl<'a> Writer<'a> {
             None => {
                 factors.extend(["factor[lane]".to_owned(), format!("{of}_stretched[lane]")]);
                 statements.push(plain(format!(
-                    "{name}[n + 1] = each(|lane| {}{beside});",
+                    "{name}[n + 1] = each(|lane| {sign}{}{beside});",
                     factors.join(" * ")
                 )));
             }
@@ -587,113 +592,128 @@ impl<'a> Writer<'a> {
         Ok(statements)
     }
 
+    /// The places that are computed, in their order.
+    fn places(&self) -> impl Iterator<Item = usize> {
+        self.flags.keys().copied().filter(|place| !self.is_state(*place))
+    }
+
+    /// What is there before the first step of the recurrences: where states and parts begin.
+    fn before(&self) -> Result<Vec<Statement>, String> {
+        let plain = |text: String| Statement {
+            conditions: vec![],
+            text,
+        };
+        let mut before = vec![];
+        for (place, [state, _, start]) in self.equations.states.iter().enumerate() {
+            before.push(plain(format!("{state}[0] = {start};")));
+            if self.tape.degree(place) == 1 {
+                before.push(plain(format!("time({state}, &inputs.unit, &stretch);")));
+            }
+        }
+        for [part, start] in self.equations.starts {
+            let place = self.names.iter().find(|(_, name)| name == part);
+            let (place, _) = place.ok_or_else(|| format!("no part: {part}"))?;
+            before.push(Statement {
+                conditions: self.conditions(*place, &[]),
+                text: format!("{part}[0] = {start};"),
+            });
+        }
+        // A slope has no coefficient of order zero.
+        let has_value = |place: &usize| !matches!(self.tape.operation(*place), Operation::Slope(_));
+        for place in self
+            .places()
+            .filter(|place| self.ahead.contains(place))
+            .filter(has_value)
+        {
+            before.extend(self.statements(place, "0")?);
+        }
+        Ok(before)
+    }
+
+    /// A step of the recurrences: states whose rates are states, what is needed of them one order ahead, everything else, the other states.
+    fn step(&self) -> Result<Vec<Statement>, String> {
+        let (mut step, mut last) = (vec![], vec![]);
+        for rate in self.rates.iter().filter(|rate| self.tape.degree(rate.state) != 1) {
+            let list = match self.is_state(self.scaled(rate.rate)?.place) {
+                true => &mut step,
+                false => &mut last,
+            };
+            list.extend(self.feed(rate)?);
+        }
+        for place in self.places().filter(|place| self.ahead.contains(place)) {
+            step.extend(self.statements(place, "n + 1")?);
+        }
+        let is_product = |place: usize| matches!(self.tape.operation(place), Operation::Multiply(..));
+        for place in self.places().filter(|place| !self.ahead.contains(place)) {
+            // That of a sum stands with the sum.
+            if !(is_product(place) && self.local.contains(&place)) {
+                step.extend(self.statements(place, "n")?);
+            }
+        }
+        step.extend(last);
+        Ok(step)
+    }
+
+    /// The names of all series and of what is known ahead of them.
+    fn bindings(&self) -> String {
+        let (mut scratch, mut ahead, mut ahead_of_waves, mut rates) = (vec![], vec![], vec![], String::new());
+        let is_series = |place: &usize| self.stored.contains(place) && !self.tape.is_number(*place);
+        for place in self.places().filter(is_series) {
+            let name = self.name(place);
+            match self.tape.operation(place) {
+                Operation::Multiply(..) => ahead.push(format!("{name}_ahead")),
+                Operation::Waves { degree, .. } if *degree > 1 => ahead_of_waves.push(format!("{name}_ahead")),
+                Operation::Quotient { .. } => scratch.push(format!("{name}_slope")),
+                Operation::Sum(_) if self.local.contains(&place) => {
+                    rates += &format!("let mut {name}_before = [[0.0; L]; 2];\n");
+                }
+                _ => {}
+            }
+            if !self.local.contains(&place) {
+                scratch.push(name);
+            }
+        }
+        let states = self.equations.states.iter();
+        let states: String = states.map(|[state, field, _]| format!("{field}: {state}, ")).collect();
+        let lists = [
+            ("scratch", scratch),
+            ("ahead", ahead),
+            ("ahead_of_waves", ahead_of_waves),
+        ];
+        let lists = lists.map(|(all, names)| format!("let [{}, ..] = {all};\n", names.join(", ")));
+        format!(
+            "let Coefficients {{ {states}scratch, ahead, ahead_of_waves }} = series;\n{}{rates}",
+            lists.concat()
+        )
+    }
+
     fn function(&self) -> Result<String, String> {
         let Equations {
             name,
             about,
             lines,
-            states,
             stretch,
             ..
         } = self.equations;
-        let places: Vec<usize> = self
-            .flags
-            .keys()
-            .copied()
-            .filter(|place| !self.is_state(*place))
-            .collect();
-        let (mut before, mut body) = (vec![], vec![]);
-        for (place, [state, _, start]) in states.iter().enumerate() {
-            before.push(Statement {
-                conditions: vec![],
-                text: format!("{state}[0] = {start};"),
-            });
-            if self.tape.degree(place) == 1 {
-                before.push(Statement {
-                    conditions: vec![],
-                    text: format!("time({state}, &inputs.unit, &stretch);"),
-                });
-            }
-        }
-        for [part, start] in self.equations.starts {
-            let place = self
-                .names
-                .iter()
-                .find(|(_, name)| name == part)
-                .map(|(place, _)| *place);
-            let place = place.ok_or_else(|| format!("no part: {part}"))?;
-            before.push(Statement {
-                conditions: self.conditions(place, &[]),
-                text: format!("{part}[0] = {start};"),
-            });
-        }
-        let fed = self.rates.iter().filter(|rate| self.tape.degree(rate.state) != 1);
-        let mut late = vec![];
-        for rate in fed {
-            match self.is_state(self.scaled(rate.rate)?.place) {
-                true => body.extend(self.feed(rate)?),
-                false => late.extend(self.feed(rate)?),
-            }
-        }
-        for place in places.iter().filter(|place| self.ahead.contains(place)) {
-            if !matches!(self.tape.operation(*place), Operation::Slope(_)) {
-                before.extend(self.statements(*place, "0")?);
-            }
-            body.extend(self.statements(*place, "n + 1")?);
-        }
-        let is_product = |place: usize| matches!(self.tape.operation(place), Operation::Multiply(..));
-        for place in places.iter().filter(|place| !self.ahead.contains(place)) {
-            // That of a sum stands with the sum.
-            if !(is_product(*place) && self.local.contains(place)) {
-                body.extend(self.statements(*place, "n")?);
-            }
-        }
-        body.extend(late);
-        let mut out = format!("/// {about}\n///\n/// ```text\n");
-        for line in *lines {
-            out += &format!("/// {line}\n");
-        }
-        out += "/// ```\n#[inline(always)]\n";
-        out += &format!(
-            "pub(super) fn {name}<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {{\n"
-        );
-        out += "let order = order.min(HIGHEST_ORDER);\n";
-        out += &format!("let stretch = {stretch}(inputs);\n");
-        let (mut scratch, mut ahead, mut ahead_of_waves, mut before_now) = (vec![], vec![], vec![], String::new());
-        let is_series = |place: &&usize| self.stored.contains(place) && !self.tape.is_number(**place);
-        for place in places.iter().filter(is_series) {
-            let name = self.name(*place);
-            match self.tape.operation(*place) {
-                Operation::Multiply(..) => ahead.push(format!("{name}_ahead")),
-                Operation::Waves { degree, .. } if *degree > 1 => ahead_of_waves.push(format!("{name}_ahead")),
-                Operation::Quotient { .. } => scratch.push(format!("{name}_slope")),
-                Operation::Sum(_) if self.local.contains(place) => {
-                    before_now += &format!("let mut {name}_before = [[0.0; L]; 2];\n");
-                }
-                _ => {}
-            }
-            if !self.local.contains(place) {
-                scratch.push(name);
-            }
-        }
-        let fields = states.iter().map(|[state, field, _]| format!("{field}: {state}"));
-        let fields: Vec<String> = fields
-            .chain(["scratch", "ahead", "ahead_of_waves"].map(str::to_owned))
-            .collect();
-        out += &format!("let Coefficients {{ {} }} = series;\n", fields.join(", "));
-        for (all, names) in [
-            ("scratch", scratch),
-            ("ahead", ahead),
-            ("ahead_of_waves", ahead_of_waves),
-        ] {
-            out += &format!("let [{}, ..] = {all};\n", names.join(", "));
-        }
-        out += &before_now;
-        out += &block(&before, 0);
-        out += "for n in 0..order {\nlet factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);\n";
-        out += &block(&body, 0);
-        out += "}\n}\n";
-        Ok(out)
+        let lines: String = lines.iter().map(|line| format!("/// {line}\n")).collect();
+        Ok(format!(
+            "/// {about}
+///
+/// ```text
+{lines}/// ```
+#[inline(always)]
+pub(super) fn {name}<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {{
+let order = order.min(HIGHEST_ORDER);
+let stretch = {stretch}(inputs);
+{bindings}{before}for n in 0..order {{
+let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+{step}}}
+}}
+",
+            bindings = self.bindings(),
+            before = block(&self.before()?, 0),
+            step = block(&self.step()?, 0),
+        ))
     }
 }
 
@@ -784,5 +804,27 @@ v[n + 1] = each(|lane| factor[lane] * v_rate_stretched[lane]);
                 "{line}: {refused:?}"
             );
         }
+        let phase = Equations {
+            lines: &[
+                "x' = v",
+                "t' = 1",
+                "sine = sin(1 + t)",
+                "cosine = cos(1 + t)",
+                "v' = -sine",
+            ],
+            states: &[
+                ["x", "place", "inputs.place"],
+                ["v", "velocity", "inputs.velocity"],
+                ["t", "time", "[0.0; L]"],
+            ],
+            ..PENDULUM
+        };
+        let refused = phase.to_rust();
+        assert!(
+            refused
+                .as_ref()
+                .is_err_and(|error| error.contains("no multiple of the time")),
+            "{refused:?}"
+        );
     }
 }

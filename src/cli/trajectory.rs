@@ -96,7 +96,8 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
             "warning: the two integrators differ by {} of the largest displacement: do not trust this motion so far",
             significant(motion.difference(judge), 2)
         )),
-        _ => report.known_until.map(|known| {
+        // A section is looked at for what motions nearby have in common.
+        _ => report.known_until.filter(|_| course.section.is_none()).map(|known| {
             format!(
                 "warning: six digits hold until t = {} only: then a start displaced by {DISPLACEMENT:e} of it is elsewhere",
                 decimal(known)

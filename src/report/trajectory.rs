@@ -266,7 +266,11 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         ));
     }
     if let Some(known) = report.known_until {
-        let why = format!("then a start displaced by {DISPLACEMENT:e} of it is elsewhere");
+        let beyond = match motion.course.section {
+            Some(_) => "; the section beyond is that of motions nearby",
+            None => "",
+        };
+        let why = format!("then a start displaced by {DISPLACEMENT:e} of it is elsewhere{beyond}");
         facts.push(("six digits hold", format!("until t = {}, {why}", decimal(known))));
     }
     if let Some(judge) = report.judge {

@@ -347,7 +347,7 @@ impl Truth {
         let deviation = found.map(|found| {
             let largest = largest_over(self.period, |t| (found.at(t).0 - motion.position(t, state)).abs());
             let size = largest_over(self.period, |t| (found.at(t).0 - motion.equilibrium).abs());
-            if size > 0.0 { largest / size } else { 0.0 }
+            if size == 0.0 { 0.0 } else { largest / size }
         });
         JudgedState {
             state,

@@ -36,6 +36,7 @@
 //! | [`hill`] | linear equations with periodic coefficients: exact transition curves, Floquet's multipliers |
 //! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
 //! | [`verify`] | the true motion and the verdict |
+//! | [`certificate`] | a proof beside a formula: exactly one motion is so near, and the formula is off by so much |
 //! | [`response`] | steady states of an oscillator: branches, stability, bifurcations, backbones |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
 //! | [`optimize`] | the design that rests soonest: genetic algorithm, constraints, fronts, what decides |
@@ -97,6 +98,8 @@ mod equilibrium;
 pub mod method;
 
 pub mod verify;
+
+pub mod certificate;
 
 pub mod response;
 

@@ -19,9 +19,9 @@ use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, tolerance, whole};
 
+/// An equation, and how it is to be answered.
 #[derive(Args)]
-#[command(mut_arg("format", super::with_programs))]
-pub struct Arguments {
+pub struct Question {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
@@ -64,6 +64,13 @@ pub struct Arguments {
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
+}
+
+#[derive(Args)]
+#[command(mut_arg("format", super::with_programs))]
+pub struct Arguments {
+    #[command(flatten)]
+    pub question: Question,
     /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a program as a comment
     #[arg(long)]
     steps: bool,
@@ -108,7 +115,8 @@ fn order(text: &str) -> Result<Order, String> {
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+/// The answer to a question, with the oscillator and the values that are left once those that the equation needs stand in it.
+pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>, Solution), Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
     let oscillator = oscillator(&formula, arguments.about.as_deref())?;
@@ -126,35 +134,63 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .map_err(|refusal| refused(&oscillator, &refusal))?,
         None => options,
     };
-    let derived = with_progress("of the calculation", || {
+    with_progress("of the calculation", || {
         on_threads(arguments.jobs, || {
             let mut derived = solve_at(oscillator, values, &options)?;
             derived.2.convergence = verify::converges(&derived.2);
             Ok(derived)
         })
-    });
-    let (oscillator, values, solution) = derived?;
+    })
+}
+
+/// Refuses values that the formula does not have, and asks for those that it needs.
+pub(super) fn needed(solution: &Solution, values: &Values) -> Result<(), Failure> {
+    verify::checked(solution, values).map_err(|error| unjudged(&error))
+}
+
+/// Why there is no verdict, with what to do about it.
+fn unjudged(error: &VerificationError) -> Failure {
+    match error {
+        VerificationError::Unknown { name, known } => {
+            let near = nearest(name.name(), known.iter().map(|known| known.name()));
+            let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
+            Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
+        }
+        VerificationError::Missing(names) => {
+            Failure::refused(error, names.first().map(|name| format!("--at {name}=VALUE")))
+        }
+        VerificationError::OffCycle => Failure::refused(
+            error,
+            Some("--method averaging follows the motion from A to the cycle".to_owned()),
+        ),
+        _ => Failure::refused(error, None),
+    }
+}
+
+/// Refuses what asks for the motion where it is left out.
+pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Result<(), Failure> {
+    match of_motion.iter().find(|(_, given)| question.omega_only && *given) {
+        Some((what, _)) => Err(Failure::Usage(format!(
+            "{what} asks for the motion, which --omega-only leaves out"
+        ))),
+        None => Ok(()),
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let of_motion = [
+        ("--steps", arguments.steps),
+        ("--plot", arguments.common.plot.is_some()),
+    ];
+    with_motion(&arguments.question, &of_motion)?;
+    let (oscillator, values, solution) = solved(&arguments.question)?;
     let tolerance = tolerance(&arguments.common);
     let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
     let verification = match judged {
         false => None,
         true => {
             let judged = verify::judge(&oscillator, &solution, &values.unwrap_or_default(), tolerance);
-            Some(judged.map_err(|error| match &error {
-                VerificationError::Unknown { name, known } => {
-                    let near = nearest(name.name(), known.iter().map(|known| known.name()));
-                    let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
-                    Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
-                }
-                VerificationError::Missing(names) => {
-                    Failure::refused(&error, names.first().map(|name| format!("--at {name}=VALUE")))
-                }
-                VerificationError::OffCycle => Failure::refused(
-                    &error,
-                    Some("--method averaging follows the motion from A to the cycle".to_owned()),
-                ),
-                _ => Failure::refused(&error, None),
-            })?)
+            Some(judged.map_err(|error| unjudged(&error))?)
         }
     };
     let derivation = match arguments.common.format {
@@ -309,7 +345,7 @@ pub(super) fn with_known_equilibrium(
     })
 }
 
-fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) -> Result<Options, Failure> {
+fn options(arguments: &Question, formula: &Formula, oscillator: &Oscillator) -> Result<Options, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     let method = match arguments.method.as_deref().or(formula.method) {
         None => None,
@@ -348,13 +384,6 @@ fn options(arguments: &Arguments, formula: &Formula, oscillator: &Oscillator) ->
     }
     if arguments.resonance.is_some() && !entry.takes(Choice::Resonance) {
         return without("--resonance", &that_take(Choice::Resonance));
-    }
-    let of_motion = [
-        ("--steps", arguments.steps),
-        ("--plot", arguments.common.plot.is_some()),
-    ];
-    if let Some((option, _)) = of_motion.iter().find(|(_, given)| arguments.omega_only && *given) {
-        return usage(format!("{option} asks for the motion, which --omega-only leaves out"));
     }
     if arguments.omega_only && !entry.takes(Choice::FrequencyAlone) {
         return without("--omega-only", &that_take(Choice::FrequencyAlone));

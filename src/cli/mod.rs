@@ -8,6 +8,7 @@
 
 mod audit;
 mod catalog;
+mod certify;
 mod compare;
 mod derive;
 mod files;
@@ -81,6 +82,10 @@ enum Command {
     Audit(audit::Arguments),
     /// Every number, equation, table and figure of the paper, computed again, with a verdict
     Paper(audit::PaperArguments),
+    /// A proof beside a formula: the motion exists, and how far the formula is off, from both sides
+    Certify(certify::Arguments),
+    /// Check a certificate that `certify` wrote, in exact arithmetic
+    Check(certify::CheckArguments),
     /// List the classical oscillators that `derive` knows by name
     Catalog(catalog::Arguments),
     /// Print the JSON Schema of a kind of document: every key with its meaning and unit
@@ -256,6 +261,8 @@ impl Command {
             Self::Stability(arguments) => arguments.common.clone(),
             Self::Audit(arguments) => arguments.common.clone(),
             Self::Paper(arguments) => arguments.common.clone(),
+            Self::Certify(arguments) => arguments.common.clone(),
+            Self::Check(arguments) => arguments.common.clone(),
             Self::Catalog(arguments) => arguments.common.clone(),
             Self::Schema(arguments) => arguments.common(),
         }
@@ -264,7 +271,9 @@ impl Command {
     /// The file it reads, where it reads one.
     fn input(&self) -> Option<&Path> {
         match self {
-            Self::Derive(arguments) => problem::path(&arguments.problem),
+            Self::Derive(arguments) => problem::path(&arguments.question.problem),
+            Self::Certify(arguments) => problem::path(&arguments.question.problem),
+            Self::Check(arguments) => Some(&arguments.file),
             Self::Compare(arguments) => problem::path(&arguments.problem),
             Self::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
             Self::Simulate(arguments) => arguments.problem.as_deref().and_then(problem::path),
@@ -294,7 +303,7 @@ impl Command {
             Self::Simulate(_) | Self::Response(_) | Self::Materials(_) | Self::Optimize(_) => {
                 || Duration::from_secs(60)
             }
-            Self::Derive(_) => derive::patience,
+            Self::Derive(_) | Self::Certify(_) => derive::patience,
             _ => || Duration::ZERO,
         }
     }
@@ -319,6 +328,8 @@ impl Command {
             Self::Stability(arguments) => stability::run(arguments),
             Self::Audit(arguments) => audit::run(arguments),
             Self::Paper(arguments) => audit::run_paper(arguments),
+            Self::Certify(arguments) => certify::run(arguments),
+            Self::Check(arguments) => certify::check(arguments),
             Self::Catalog(arguments) => catalog::run(arguments),
             Self::Schema(arguments) => schema::run(arguments),
         }

@@ -5,9 +5,12 @@
 //!
 //! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what a derivation asks of its
 //! coefficients, so that one derivation serves exact numbers, symbols, floating point, and rings that are chosen at run time.
-//! Where rounding cannot be left out, `BigFloat` puts it as far away as is asked for.
+//! Where rounding cannot be left out, `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that rounding
+//! leaves possible; their sizes are `Bound`s, rounded up.
 
+pub(crate) mod ball;
 pub(crate) mod big_float;
+pub(crate) mod bound;
 pub(crate) mod integer;
 pub(crate) mod polynomial;
 pub(crate) mod rational;
@@ -17,6 +20,7 @@ pub(crate) mod ring;
 pub(crate) mod scaled;
 pub(crate) mod zero_clusters;
 
+pub use bound::Bound;
 pub use integer::{Integer, ParseIntegerError};
 pub use polynomial::{Monomial, POLYNOMIALS, Polynomial, Polynomials};
 pub use rational::{Rational, convergent, factorial, from_f64, ratio, to_f64};

@@ -5,6 +5,7 @@
 //! and nothing of the results. Which law is shown, what is left out and what stands beside what is chosen here, once.
 
 mod audit;
+mod certificate;
 mod comparison;
 mod driven;
 mod friction;
@@ -22,6 +23,7 @@ mod trajectory;
 pub use audit::audit;
 #[cfg(feature = "json")]
 pub(crate) use audit::{computed as audit_computed, entry as audit_entry, printed as audit_printed};
+pub use certificate::{CertificateReport, certificate};
 pub use comparison::comparison;
 pub use friction::friction;
 pub use impact::impact;

@@ -413,6 +413,14 @@ fn amplitude_symbol(solution: &Solution) -> Symbol {
     }
 }
 
+/// Whether a formula can be judged at these values.
+///
+/// # Errors
+/// Missing or unknown values, or an amplitude of zero.
+pub fn checked(solution: &Solution, at: &Values) -> Result<(), VerificationError> {
+    checked_numbers(solution, at).map(|_| ())
+}
+
 /// The values as numbers.
 ///
 /// # Errors

@@ -7,10 +7,10 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument,
-    ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
-    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
-    SolutionDocument, StabilityDocument, SweepDocument,
+    self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, FrictionDocument,
+    ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument,
+    MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -112,6 +112,7 @@ fn reads_back(document: &Value) {
         Kind::Optimization => again::<OptimizationDocument>(document),
         Kind::Audit => again::<AuditDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
+        Kind::Certificate => again::<CertificateDocument>(document),
         Kind::Response => again::<ResponseDocument>(document),
     };
     assert_eq!(written.to_string(), document.to_string());
@@ -185,6 +186,9 @@ fn documents() -> Vec<(String, Value)> {
     add(&["friction"]);
     add(&["friction", "--alpha", "0.02", "--speed", "0.01"]);
     add(&["catalog"]);
+    for file in files("examples/certify", ".toml") {
+        add(&["certify", &file.to_string_lossy()]);
+    }
     documents
 }
 
@@ -253,6 +257,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         },
         Some("lindstedt/motion/1" | "lindstedt/primary/1") => "/final_state",
         Some("lindstedt/stability/1") => "/curves/0",
+        Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",
         _ => "/entries/0/methods/0",

@@ -209,6 +209,24 @@ fn every_audit_prints_what_it_printed() {
     });
 }
 
+/// Proofs in text and LaTeX, and the certificate of the first of them.
+#[test]
+fn every_certificate_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/certify"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("certify-text", output(&["certify", path]));
+                insta::assert_snapshot!("certify-latex", output(&["certify", path, "--format", "latex"]));
+            }
+        );
+        insta::assert_snapshot!("help-certify", output(&["certify", "--help"]));
+        insta::assert_snapshot!("help-check", output(&["check", "--help"]));
+    });
+}
+
 /// Every mechanism, its equations of motion and its groups, in text, LaTeX and JSON; the paper's among them.
 #[test]
 fn every_mechanism_prints_what_it_printed() {

@@ -2,6 +2,7 @@
 
 mod audit;
 mod catalog;
+mod certificates;
 mod documents;
 mod errors;
 mod gallery;

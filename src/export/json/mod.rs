@@ -14,6 +14,7 @@
 
 pub mod audit;
 pub mod catalog;
+pub mod certificate;
 pub mod comparison;
 pub mod friction;
 pub mod impact;
@@ -39,6 +40,7 @@ use serde_json::Value;
 
 pub use audit::{AuditDocument, audit};
 pub use catalog::{CatalogDocument, catalog};
+pub use certificate::{CertificateDocument, certificate};
 pub use comparison::{ComparisonDocument, comparison};
 pub use friction::{FrictionDocument, friction};
 pub use impact::{ImpactDocument, impact};

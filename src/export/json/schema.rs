@@ -5,10 +5,10 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    AuditDocument, CatalogDocument, ComparisonDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument,
-    JsonError, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
-    PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument, StabilityDocument,
-    SweepDocument, unexpected,
+    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, FrictionDocument,
+    ImpactComparisonDocument, ImpactDocument, JsonError, LagrangianDocument, MaterialsDocument, MotionDocument,
+    MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
 
@@ -51,11 +51,13 @@ pub enum Kind {
     Audit,
     /// `catalog`.
     Catalog,
+    /// `certify`.
+    Certificate,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -74,6 +76,7 @@ impl Kind {
         Self::Stability,
         Self::Audit,
         Self::Catalog,
+        Self::Certificate,
     ];
 
     /// What a document of this kind has under `schema`.
@@ -97,6 +100,7 @@ impl Kind {
             Self::Stability => "lindstedt/stability/1",
             Self::Audit => "lindstedt/audit/1",
             Self::Catalog => "lindstedt/catalog/1",
+            Self::Certificate => "lindstedt/certificate/1",
         }
     }
 
@@ -140,6 +144,7 @@ impl Kind {
             Self::Stability => generator.into_root_schema_for::<StabilityDocument>(),
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
+            Self::Certificate => generator.into_root_schema_for::<CertificateDocument>(),
         };
         schema.insert("title".to_owned(), self.schema().into());
         let mut schema = head_first(schema.to_value());

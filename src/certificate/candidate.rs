@@ -1,0 +1,383 @@
+//! The numbers of a certificate: Newton's iteration from the true motion in doubles, as far as there are digits.
+//!
+//! In: an oscillator, an answer and values. Out: a certificate that has been checked. Nothing here is trusted by the theorem: the
+//! true motion of the judge gives the first harmonics, the inverse of the derivative in doubles the steps, and each block that
+//! does not prove the motion is followed by a larger one.
+
+use std::f64::consts::TAU;
+
+use nalgebra::DMatrix;
+use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
+
+use super::cosine_series::WORKING;
+use super::force::along;
+use super::formula::{Errors, JudgedFormula};
+use super::theorem::{NotProved, correction, prove};
+use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula};
+use crate::exact::ball::Balls;
+use crate::exact::bound::Bound;
+use crate::exact::rational::from_f64;
+use crate::exact::{Integer, Rational};
+use crate::expr::{Expr, ExprError};
+use crate::method::motion::NoMotion;
+use crate::oscillator::{Oscillator, OscillatorError};
+use crate::solution::{AmplitudeConvention, Solution};
+use crate::values::Values;
+use crate::verify::{self, VerificationError};
+
+/// Binary digits behind the point of the harmonics: thirty-three decimal ones.
+const BITS: usize = 112;
+/// Those of the inverse, which need not be exact.
+const INVERSE_BITS: usize = 56;
+
+/// Why there is no certificate. This is no evidence against a formula, but for a motion that the judge does not find either.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotCertified {
+    /// A force that depends on velocity or time.
+    #[error(
+        "`{0}` depends on the velocity or on time: certificates are of motions whose force is that of their position alone"
+    )]
+    NotConservative(String),
+    /// A formula in the amplitude of the first harmonic.
+    #[error(
+        "the formula is one in the amplitude of the first harmonic, a: a certificate needs to know where exactly the motion starts"
+    )]
+    Convention,
+    /// A start that is no fraction.
+    #[error("x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts")]
+    Start(String),
+    /// A motion that the formula does not give.
+    #[error(transparent)]
+    Motion(#[from] NoMotion),
+    /// A motion with sines.
+    #[error("the motion of the formula is none of cosines alone")]
+    Sines,
+    /// A motion that the judge does not find.
+    #[error(transparent)]
+    Truth(#[from] VerificationError),
+    /// A force that could not be taken apart, or had no value.
+    #[error(transparent)]
+    Oscillator(#[from] OscillatorError),
+    /// Likewise.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// No block proves it, for a reason that no block has a part in.
+    #[error("not certified: {0}")]
+    NoSeries(NotProved),
+    /// No block proves it.
+    #[error("not certified: {reason}, with {harmonics} harmonics in the block")]
+    NotProved {
+        /// The inequality that does not hold.
+        reason: NotProved,
+        /// Of the last block.
+        harmonics: usize,
+    },
+}
+
+impl NotCertified {
+    /// What to do about it.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::NotConservative(_) => Some("`simulate` and the verdict of `derive` follow such motions in numbers"),
+            Self::Start(_) => Some("give the amplitude as a decimal or a fraction, and an equilibrium that is one"),
+            Self::NoSeries(_) => Some(
+                "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion",
+            ),
+            Self::NotProved { .. } => Some(
+                "a smaller amplitude: near the edge of a well, or where the force turns sharply, a motion has more harmonics than a proof can hold",
+            ),
+            _ => None,
+        }
+    }
+}
+
+/// A certificate of the motion that a formula is about, and what it proves of the formula.
+///
+/// # Errors
+/// [`NotCertified`].
+pub fn certify(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<(Certificate, Certified), NotCertified> {
+    let question = Question::of(oscillator, solution, at)?;
+    let judged = judged(solution, at)?;
+    let samples = verify::motions(oscillator, solution, at)?
+        .ok_or(NoMotion::NotReal)?
+        .truth;
+    let (mu, harmonics) = from_samples(&samples, question.odd);
+    let mut certificate = question.certificate(mu, &harmonics, judged);
+    // Many harmonics bring it near in few steps; how many a proof needs is another question.
+    certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
+    refine(&mut certificate).map_err(|reason| not_proved(reason, &certificate))?;
+    let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
+    for highest in blocks(harmonics.len()) {
+        certificate.highest = highest;
+        match proved(&mut certificate) {
+            Ok(certified) => return Ok((certificate, certified)),
+            Err(error @ NotProved::NoValue(_)) => return Err(not_proved(error, &certificate)),
+            Err(error) => reason = error,
+        }
+    }
+    Err(not_proved(reason, &certificate))
+}
+
+fn not_proved(reason: NotProved, certificate: &Certificate) -> NotCertified {
+    match reason {
+        NotProved::NoValue(_) => NotCertified::NoSeries(reason),
+        _ => NotCertified::NotProved {
+            reason,
+            harmonics: certificate.block().len(),
+        },
+    }
+}
+
+/// The last harmonics of the blocks that are tried, all odd: about a half of those that a double sees, and more.
+fn blocks(seen: usize) -> impl Iterator<Item = usize> {
+    let first = (seen / 2).max(5) | 1;
+    let sizes = std::iter::successors(Some(first), |size| Some((size * 3 / 2) | 1));
+    sizes.take_while(|size| *size < HIGHEST_HARMONIC).take(8)
+}
+
+/// What is to be proved.
+struct Question {
+    force: Expr,
+    start: Rational,
+    odd: bool,
+}
+
+impl Question {
+    fn of(oscillator: &Oscillator, solution: &Solution, at: &Values) -> Result<Self, NotCertified> {
+        let parts = oscillator.parts()?;
+        for part in [parts.damping, parts.inertia, parts.forcing] {
+            if !part.is_zero() {
+                return Err(NotCertified::NotConservative(part.to_string()));
+            }
+        }
+        if solution.amplitude != AmplitudeConvention::Initial {
+            return Err(NotCertified::Convention);
+        }
+        let (values, _) = at.split(&oscillator.parameters);
+        let force = oscillator.force.substitute_all(&values)?;
+        let (amplitude, _) = at.split(&[solution.amplitude.symbol()]);
+        let amplitude = amplitude.into_values().next().unwrap_or_else(Expr::one);
+        let start = &solution.equilibrium.substitute_all(&values)? + &amplitude;
+        let start = start
+            .as_number()
+            .ok_or_else(|| NotCertified::Start(start.to_string()))?
+            .clone();
+        let force = force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?;
+        // Written out, as it is in a document.
+        let written = force
+            .to_polynomial(&mut |_| None)?
+            .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
+        let force = written.as_ref().map_or(force, Expr::from);
+        let odd = super::force::is_odd(&force)?;
+        Ok(Self { force, start, odd })
+    }
+
+    fn certificate(self, mu: f64, harmonics: &[f64], formula: JudgedFormula) -> Certificate {
+        Certificate {
+            force: self.force,
+            start: self.start,
+            odd: self.odd,
+            bits: BITS,
+            mu: units(mu, BITS),
+            coefficients: harmonics.iter().map(|value| units(*value, BITS)).collect(),
+            highest: 1,
+            inverse_bits: INVERSE_BITS,
+            inverse: vec![],
+            sigma: 0,
+            claim: Rational::zero(),
+            formula: Some(formula),
+        }
+    }
+}
+
+/// The nearest number of units of `2^-bits`, or below it.
+fn units(value: f64, bits: usize) -> Integer {
+    from_f64(value).map_or_else(Integer::zero, |value| Balls { bits }.fraction(&value).middle)
+}
+
+/// The formula with its numbers; nothing is claimed yet.
+fn judged(solution: &Solution, at: &Values) -> Result<JudgedFormula, NotCertified> {
+    let motion = solution.motion_at(at)?;
+    let displacement = motion.displacement();
+    let harmonics = 0..=displacement.highest_harmonic();
+    if harmonics.clone().any(|k| displacement.sine(k).mean().0 != 0.0) {
+        return Err(NotCertified::Sines);
+    }
+    Ok(JudgedFormula {
+        law: solution.formula(),
+        frequency: units(motion.frequency(), BITS),
+        coefficients: harmonics
+            .map(|k| units(displacement.cosine(k).mean().0, BITS))
+            .collect(),
+        deviation: [Rational::zero(), Rational::zero()],
+        frequency_error: [Rational::zero(), Rational::zero()],
+        drift: [Rational::zero(), Rational::zero()],
+    })
+}
+
+/// `1/omega^2` and the cosine coefficients of one period.
+fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
+    /// What the numbers of Runge-Kutta have no digits for.
+    const NOISE: f64 = 1e-11;
+    let count = samples.len() - 1;
+    let period = samples[count].0;
+    let coefficient = |k: usize| {
+        let waves = (0..count).map(|j| samples[j].1 * (TAU * ((j * k) % count) as f64 / count as f64).cos());
+        let sum: f64 = waves.sum();
+        match (odd && k.is_multiple_of(2), k) {
+            (true, _) => 0.0,
+            (false, 0) => sum / count as f64,
+            (false, _) => 2.0 * sum / count as f64,
+        }
+    };
+    let mut harmonics: Vec<f64> = (0..HIGHEST_HARMONIC.min(count / 2)).map(coefficient).collect();
+    let largest = harmonics.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    while harmonics.len() > 2 && harmonics.last().is_some_and(|last| last.abs() < NOISE * largest) {
+        harmonics.pop();
+    }
+    ((period / TAU).powi(2), harmonics)
+}
+
+/// Checks a certificate with its block, and claims what is proved.
+fn proved(certificate: &mut Certificate) -> Result<Certified, NotProved> {
+    certificate.inverse = inverse(certificate)?;
+    certificate.sigma = weight_of_mu(certificate);
+    let proof = prove(certificate)?;
+    certificate.claim = above(proof.radius.value());
+    let certified = formula::certified(certificate, proof)?;
+    if let (Some(claimed), Some(errors)) = (&mut certificate.formula, &certified.formula) {
+        claim(claimed, errors);
+    }
+    Ok(certified)
+}
+
+/// Three decimal digits, not below.
+fn above(value: f64) -> Rational {
+    decimal(value, 1)
+}
+
+/// Three decimal digits, not above.
+fn below(value: f64) -> Rational {
+    decimal(value, 0)
+}
+
+fn decimal(value: f64, up: i64) -> Rational {
+    let Some(exact) = from_f64(value).filter(|value| value.is_positive()) else {
+        return Rational::zero();
+    };
+    let places = 2 - value.log10().floor().to_i32().unwrap_or(0);
+    let ten = Integer::from(10).pow(places.unsigned_abs());
+    let unit = if places >= 0 {
+        Rational::new(1.into(), ten)
+    } else {
+        Rational::from_integer(ten)
+    };
+    let count = (&exact / &unit).floor();
+    let whole = count.clone() * &unit == exact;
+    (count + Rational::from_integer(if whole { 0 } else { up }.into())) * unit
+}
+
+fn claim(formula: &mut JudgedFormula, errors: &Errors) {
+    let both = |range: formula::Range| [below(range.lower), above(range.upper)];
+    formula.deviation = both(errors.deviation);
+    formula.frequency_error = both(errors.frequency);
+    formula.drift = both(errors.drift);
+}
+
+/// The inverse of the derivative on the block, in doubles.
+fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, NotProved> {
+    let motion = certificate.motion();
+    let nearest = |series: &super::CosineSeries, k: usize| WORKING.nearest(&series.coefficient(k));
+    let force = along(&certificate.force, &motion)?;
+    let slope = along(&certificate.force.differentiate(coordinate())?, &motion)?;
+    let mu = WORKING.nearest(&certificate.mu_ball());
+    let block = certificate.block();
+    let size = block.len() + 1;
+    let half = |m: usize| nearest(&slope, m) * if m == 0 { 1.0 } else { 0.5 };
+    let product = |k: usize, j: usize| match (k, j) {
+        (_, 0) => nearest(&slope, k),
+        (0, _) => half(j),
+        _ => half(k.abs_diff(j)) + half(k + j),
+    };
+    let derivative = DMatrix::from_fn(size, size, |row, column| match (row, column) {
+        (0, 0) => 0.0,
+        (0, _) => 1.0,
+        (_, 0) => nearest(&force, block[row - 1]),
+        _ => {
+            let (k, j) = (block[row - 1], block[column - 1]);
+            mu * product(k, j) - if k == j { (k * k) as f64 } else { 0.0 }
+        }
+    });
+    let inverse = derivative
+        .try_inverse()
+        .ok_or(NotProved::NoContraction(Bound::UNKNOWN))?;
+    let row = |row: usize| {
+        (0..size)
+            .map(|column| units(inverse[(row, column)], INVERSE_BITS))
+            .collect()
+    };
+    Ok((0..size).map(row).collect())
+}
+
+/// Newton's iteration with one inverse, until nothing changes or it does not get nearer.
+fn refine(certificate: &mut Certificate) -> Result<(), NotProved> {
+    /// The steps of an iteration that gains a digit a step.
+    const STEPS: usize = 40;
+    let unit = Bound::power_of_two(-(BITS as i32));
+    certificate.inverse = inverse(certificate)?;
+    let mut before = Bound::UNKNOWN;
+    for _ in 0..STEPS {
+        let step = correction(certificate)?;
+        let all = step.block.iter().chain(step.beyond.iter().map(|(_, ball)| ball));
+        let size: Bound = all.map(|ball| WORKING.magnitude(ball)).sum();
+        if size >= before || size == Bound::UNKNOWN {
+            break;
+        }
+        before = size;
+        let short = |ball| Balls { bits: BITS }.converted(ball, WORKING).middle;
+        let block = certificate.block();
+        certificate.mu -= short(&step.block[0]);
+        let last = step
+            .beyond
+            .iter()
+            .map(|(k, _)| *k)
+            .chain(block.iter().copied())
+            .max()
+            .unwrap_or(0);
+        let length = certificate.coefficients.len().max(last + 1);
+        certificate.coefficients.resize(length, Integer::zero());
+        let corrections = block.iter().copied().zip(&step.block[1..]);
+        let corrections = corrections.chain(step.beyond.iter().map(|(k, ball)| (*k, ball)));
+        for (k, ball) in corrections {
+            certificate.coefficients[k] -= short(ball);
+        }
+        while certificate.coefficients.len() > 2
+            && (certificate.coefficients.len() > 2 * HIGHEST_HARMONIC
+                || certificate.coefficients.last().is_some_and(|last| last.bits() < 4))
+        {
+            certificate.coefficients.pop();
+        }
+        if size < unit * Bound::exactly(64.0) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The weight with which an error of `mu` counts as much as the harmonics that come with it.
+fn weight_of_mu(certificate: &Certificate) -> i32 {
+    let balls = Balls { bits: INVERSE_BITS };
+    let number = |units: &Integer| {
+        let ball = balls.dyadic(units, INVERSE_BITS);
+        balls.nearest(&ball).abs()
+    };
+    let of_mu = number(&certificate.inverse[0][0]);
+    let of_harmonics: f64 = certificate.inverse[1..].iter().map(|row| number(&row[0])).sum();
+    let ratio = (of_harmonics / of_mu).log2().round();
+    ratio.to_i32().map_or(0, |ratio| ratio.clamp(-20, 20))
+}

@@ -1,0 +1,110 @@
+//! A force evaluated on a whole ball of motions: the expression as it was typed, over cosine series.
+//!
+//! In: `f`, `f'` or `f''` as an expression in the coordinate with exact numbers. Out: a series that contains its values on every
+//! motion of the ball. Sums, products and elementary functions of analytic arguments have one; a corner (`abs`, `sgn`, `max`, a
+//! fractional power through zero) has none, for what is proved rests on the harmonics falling off.
+
+use num_traits::{One as _, Signed as _, ToPrimitive as _};
+
+use super::coordinate;
+use super::cosine_series::{CosineSeries, WORKING};
+use crate::exact::Rational;
+use crate::exact::bound::Bound;
+use crate::expr::{Expr, ExprError, Function, Node};
+
+/// What of a force cannot be evaluated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct NoValue(
+    /// The part of the expression.
+    pub(super) String,
+);
+
+/// The values of the expression where the coordinate has these.
+///
+/// # Errors
+/// [`NoValue`].
+pub(super) fn along(force: &Expr, motion: &CosineSeries) -> Result<CosineSeries, NoValue> {
+    force.fold(|node, parts: &[CosineSeries]| {
+        let value = value(node, motion, parts);
+        value
+            .filter(|value| value.norm() < Bound::UNKNOWN)
+            .ok_or_else(|| NoValue(node.to_string()))
+    })
+}
+
+fn value(node: &Expr, motion: &CosineSeries, parts: &[CosineSeries]) -> Option<CosineSeries> {
+    match node.node() {
+        Node::Number(value) => Some(CosineSeries::constant(WORKING.fraction(value))),
+        Node::Pi => Some(CosineSeries::constant(WORKING.pi())),
+        Node::Symbol(symbol) => (*symbol == coordinate()).then(|| motion.clone()),
+        Node::Sum(_) => parts.iter().cloned().reduce(|sum, part| sum.sum(&part)),
+        Node::Product(coefficient, _) => {
+            let product = parts.iter().cloned().reduce(|product, part| product.product(&part))?;
+            Some(times(product, coefficient))
+        }
+        Node::Power(_, exponent) => power(parts.first()?, exponent.as_number()?),
+        Node::Function(function, _) => function_of(*function, parts.first()?),
+    }
+}
+
+fn times(series: CosineSeries, coefficient: &Rational) -> CosineSeries {
+    match coefficient.is_one() {
+        true => series,
+        false => series.product(&CosineSeries::constant(WORKING.fraction(coefficient))),
+    }
+}
+
+/// Powers up to this come of products.
+const HIGHEST_POWER: u32 = 200;
+
+fn power(base: &CosineSeries, exponent: &Rational) -> Option<CosineSeries> {
+    let times = exponent
+        .numer()
+        .abs()
+        .to_u32()
+        .filter(|times| *times <= HIGHEST_POWER)?;
+    let degree = exponent.denom().to_u32().filter(|degree| *degree <= HIGHEST_POWER)?;
+    match (degree, exponent.is_negative()) {
+        (1, false) => Some(base.power(times)),
+        (1, true) => Some(base.inverse()?.power(times)),
+        (_, true) => Some(base.inverse_root(degree)?.power(times)),
+        // u^(1/n) = u (u^(-1/n))^(n - 1).
+        (_, false) => Some(base.product(&base.inverse_root(degree)?.power(degree - 1)).power(times)),
+    }
+}
+
+fn function_of(function: Function, argument: &CosineSeries) -> Option<CosineSeries> {
+    let hyperbolic = || {
+        let growing = argument.exponential()?;
+        let falling = argument.scaled(-1).exponential()?;
+        Some((growing.difference(&falling), growing.sum(&falling)))
+    };
+    let half = Rational::new(1.into(), 2.into());
+    match function {
+        Function::Sin => Some(argument.sine_and_cosine()?.0),
+        Function::Cos => Some(argument.sine_and_cosine()?.1),
+        Function::Tan => {
+            let (sine, cosine) = argument.sine_and_cosine()?;
+            Some(sine.product(&cosine.inverse()?))
+        }
+        Function::Exp => argument.exponential(),
+        Function::Sinh => Some(times(hyperbolic()?.0, &half)),
+        Function::Cosh => Some(times(hyperbolic()?.1, &half)),
+        Function::Tanh => {
+            let (sine, cosine) = hyperbolic()?;
+            Some(sine.product(&cosine.inverse()?))
+        }
+        Function::Log => argument.logarithm(),
+        Function::Atan => argument.arctangent(),
+        _ => None,
+    }
+}
+
+/// Whether `f(-x) = -f(x)`, as far as can be seen by writing it out.
+///
+/// # Errors
+/// A point at which the force has no value is written in it.
+pub(super) fn is_odd(force: &Expr) -> Result<bool, ExprError> {
+    let even = force + &force.substitute(coordinate(), &-&Expr::from(coordinate()))?;
+    Ok(even.is_zero() || even.expand().is_ok_and(|even| even.is_zero()))
+}

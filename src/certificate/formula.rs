@@ -1,0 +1,221 @@
+//! What a proved motion says about a formula: how far it is off, from both sides.
+//!
+//! ```text
+//! x~(t) = X~(omega~ t),   D(theta) = Xbar(theta) - X~(theta), a cosine series of degree K;   theta_j = pi j/M
+//! max_j |D(theta_j)| - r <= max |X - X~| <= max_j |D(theta_j)|/cos(K pi/(2 M)) + r
+//! |x(t) - x~(t)| <= max |X - X~| + max |X~'| |omega - omega~| |t|
+//! ```
+//!
+//! In: a certificate and its proof. Out: enclosures, as doubles rounded outwards. The cost is K M products.
+//!
+//! Source: H. Ehlich, K. Zeller: Schwankung von Polynomen zwischen Gitterpunkten, Mathematische Zeitschrift 86 (1964), 41-44.
+
+use std::f64::consts::PI;
+
+use num_traits::Zero as _;
+
+use super::cosine_series::{CosineSeries, WORKING};
+use super::theorem::{NotProved, Proof};
+use super::{Certificate, Certified, CheckError};
+use crate::exact::ball::{Ball, Balls};
+use crate::exact::bound::Bound;
+use crate::exact::rational::from_f64;
+use crate::exact::{Integer, Rational};
+
+/// A number with everything that it may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enclosure {
+    /// The middle.
+    pub middle: Rational,
+    /// How far the number may be from it.
+    pub radius: Bound,
+}
+
+impl Enclosure {
+    fn of(ball: &Ball) -> Self {
+        Self {
+            middle: WORKING.middle(ball),
+            radius: ball.radius,
+        }
+    }
+}
+
+/// The ends between which a size is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Range {
+    /// No less.
+    pub lower: f64,
+    /// No more.
+    pub upper: f64,
+}
+
+/// A formula with numbers, and what is claimed of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedFormula {
+    /// The law, in words of whoever derived it.
+    pub law: String,
+    /// The angular frequency, an integer times `2^-bits` of the certificate.
+    pub frequency: Integer,
+    /// The cosine coefficients of the motion, likewise.
+    pub coefficients: Vec<Integer>,
+    /// What is claimed of `max |X - X~|`.
+    pub deviation: [Rational; 2],
+    /// What is claimed of `|omega - omega~|`.
+    pub frequency_error: [Rational; 2],
+    /// What is claimed of `max |X~'| |omega - omega~|`, by which the two motions part at most in a unit of time.
+    pub drift: [Rational; 2],
+}
+
+/// How far a formula is off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Errors {
+    /// `max |X - X~|`, both at the same phase, in the unit of the coordinate.
+    pub deviation: Range,
+    /// `|omega - omega~|`.
+    pub frequency: Range,
+    /// `|omega~/omega - 1|`.
+    pub relative: Range,
+    /// `max |X~'| |omega - omega~|`: what is added to the deviation at most in a unit of time.
+    pub drift: Range,
+}
+
+/// What follows from a proof.
+///
+/// # Errors
+/// A frequency without a value.
+pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certified, NotProved> {
+    let mut mu = certificate.mu_ball();
+    mu.radius += proof.radius.over(Bound::power_of_two(certificate.sigma).value());
+    let inverse = WORKING.quotient(&WORKING.integer(1), &mu);
+    let frequency = inverse.and_then(|inverse| WORKING.root(&inverse, 2));
+    let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
+    let formula = certificate
+        .formula
+        .as_ref()
+        .map(|formula| errors(certificate, proof, &frequency, formula));
+    Ok(Certified {
+        proof,
+        frequency: Enclosure::of(&frequency),
+        formula,
+    })
+}
+
+fn errors(certificate: &Certificate, proof: Proof, frequency: &Ball, formula: &JudgedFormula) -> Errors {
+    let own = |units: &Integer| WORKING.dyadic(units, certificate.bits);
+    let own_motion = CosineSeries::exactly(formula.coefficients.iter().map(own).collect());
+    let (lower, upper) = largest(&certificate.motion().difference(&own_motion).coefficients, Wave::Cosine);
+    let own_frequency = own(&formula.frequency);
+    let off = WORKING.difference(&own_frequency, frequency);
+    let frequency_error = Range {
+        lower: WORKING.distance_from_zero(&off).max(0.0),
+        upper: WORKING.magnitude(&off).value(),
+    };
+    let slowest = WORKING.distance_from_zero(frequency);
+    let fastest = WORKING.magnitude(frequency).value();
+    let by_harmonic = formula.coefficients.iter().enumerate();
+    let slopes: Vec<Ball> = by_harmonic.map(|(k, c)| WORKING.scaled(&own(c), k as i64)).collect();
+    let (flattest, steepest) = largest(&slopes, Wave::Sine);
+    Errors {
+        deviation: Range {
+            lower: (lower - proof.radius.value()).next_down().max(0.0),
+            upper: (upper + proof.radius).value(),
+        },
+        relative: Range {
+            lower: (frequency_error.lower / fastest).next_down().max(0.0),
+            upper: Bound::exactly(frequency_error.upper).over(slowest).value(),
+        },
+        drift: Range {
+            lower: (flattest * frequency_error.lower).next_down().max(0.0),
+            upper: (steepest * Bound::exactly(frequency_error.upper)).value(),
+        },
+        frequency: frequency_error,
+    }
+}
+
+/// Which functions a series consists of.
+#[derive(Clone, Copy, PartialEq)]
+enum Wave {
+    Cosine,
+    Sine,
+}
+
+/// The largest value of a series of cosines or sines, from below and from above.
+fn largest(coefficients: &[Ball], wave: Wave) -> (f64, Bound) {
+    const BALLS: Balls = Balls { bits: 80 };
+    let degree = coefficients.len();
+    if coefficients.iter().all(Ball::is_zero) {
+        return (0.0, Bound::ZERO);
+    }
+    let points = (64 * degree).min(4096).max(16 * degree);
+    let short: Vec<Ball> = coefficients.iter().map(|ball| BALLS.converted(ball, WORKING)).collect();
+    let table = waves(points, wave, BALLS);
+    let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
+    for j in 0..=points {
+        let (mut units, mut radius) = (Integer::zero(), Bound::ZERO);
+        for (k, coefficient) in short.iter().enumerate().filter(|(_, ball)| !ball.is_zero()) {
+            let value = &table[j * k % (2 * points)];
+            units += &coefficient.middle * &value.middle;
+            radius += BALLS.radius_of_product(coefficient, value);
+        }
+        let value = BALLS.rounded(&units, radius);
+        lower = lower.max(BALLS.distance_from_zero(&value));
+        upper = upper.max(BALLS.magnitude(&value));
+    }
+    // cos y >= 1 - y^2/2.
+    let half_step = Bound::of_nearest(PI) * Bound::exactly(degree as f64) / (2 * points as u32);
+    let between = (half_step * half_step / 2).below_complement();
+    (lower, upper.over(between))
+}
+
+/// The function at the angles `pi j/points`, `j` below twice their number.
+fn waves(points: usize, wave: Wave, balls: Balls) -> Vec<Ball> {
+    let step = WORKING.divided(&WORKING.pi(), u32::try_from(points).unwrap_or(u32::MAX));
+    let unknown = || {
+        let all = CosineSeries::exactly(vec![]).widened(Bound::exactly(1.0));
+        (all.clone(), all)
+    };
+    let (sine, cosine) = CosineSeries::constant(step).sine_and_cosine().unwrap_or_else(unknown);
+    let (sine, cosine) = (sine.at_zero(), cosine.at_zero());
+    let mut at = (WORKING.integer(1), Ball::zero());
+    let mut table = Vec::with_capacity(2 * points);
+    for _ in 0..2 * points {
+        let value = if wave == Wave::Cosine { &at.0 } else { &at.1 };
+        table.push(balls.converted(value, WORKING));
+        let turned = |left: (&Ball, &Ball), right: (&Ball, &Ball)| {
+            (WORKING.product(left.0, left.1), WORKING.product(right.0, right.1))
+        };
+        let (cc, ss) = turned((&at.0, &cosine), (&at.1, &sine));
+        let (sc, cs) = turned((&at.1, &cosine), (&at.0, &sine));
+        at = (WORKING.difference(&cc, &ss), WORKING.sum(&sc, &cs));
+    }
+    table
+}
+
+/// Whether everything claimed is proved.
+///
+/// # Errors
+/// The first claim that is not.
+pub(super) fn hold_claims(certificate: &Certificate, certified: &Certified) -> Result<(), CheckError> {
+    let above = |what, proved, claim: &Rational| match from_f64(proved).is_some_and(|proved| proved <= *claim) {
+        true => Ok(()),
+        false => Err(CheckError::ClaimedLess { what, proved }),
+    };
+    let below = |what, proved, claim: &Rational| match from_f64(proved).is_some_and(|proved| *claim <= proved) {
+        true => Ok(()),
+        false => Err(CheckError::ClaimedMore { what, proved }),
+    };
+    above("the radius", certified.proof.radius.value(), &certificate.claim)?;
+    if let (Some(claimed), Some(errors)) = (&certificate.formula, &certified.formula) {
+        let both = [
+            ("the deviation", errors.deviation, &claimed.deviation),
+            ("the error of the frequency", errors.frequency, &claimed.frequency_error),
+            ("the drift", errors.drift, &claimed.drift),
+        ];
+        for (what, proved, claim) in both {
+            below(what, proved.lower, &claim[0])?;
+            above(what, proved.upper, &claim[1])?;
+        }
+    }
+    Ok(())
+}

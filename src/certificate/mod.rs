@@ -1,0 +1,232 @@
+//! Certificates: a proof beside a closed form.
+//!
+//! In: an oscillator whose energy is conserved, an answer of any method to it, and numbers. Out: a [`Certificate`], from which
+//! anybody can prove in exact arithmetic that there is exactly one motion `x(t) = X(omega t)` with this start near a refined one,
+//! and [`Certified`], what that says of the formula: its frequency is off by no less than this and no more than that, its motion
+//! likewise, and how far the two drift apart in any time.
+//!
+//! ```text
+//! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
+//! ```
+//!
+//! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what is proved rests on
+//! `theorem.rs` and what it is computed with, `force.rs`, `cosine_series.rs` and balls. A certificate that fails says nothing
+//! about the formula.
+
+mod candidate;
+mod cosine_series;
+mod force;
+mod formula;
+mod theorem;
+
+use num_traits::{Signed as _, Zero as _};
+
+pub use candidate::{NotCertified, certify};
+pub use formula::{Enclosure, Errors, JudgedFormula, Range};
+pub use theorem::{NotProved, Proof};
+
+use crate::decimal::decimal;
+use crate::exact::ball::Ball;
+use crate::exact::{Integer, Rational};
+use crate::expr::{Expr, ExprError};
+use crate::symbol::Symbol;
+use cosine_series::{CosineSeries, WORKING};
+
+/// The letter of the displacement in every certificate.
+pub fn coordinate() -> Symbol {
+    Symbol::new("x")
+}
+
+/// The last harmonic of a block is at most this.
+pub const HIGHEST_HARMONIC: usize = 400;
+
+/// The most binary digits behind the point that a certificate may have.
+pub const MOST_BITS: usize = 224;
+
+/// Numbers from which a motion can be proved. They may be anything: [`check`] trusts none of them.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Certificate {
+    /// `f` of `x'' + f(x) = 0`, in the letter [`x`](coordinate) and numbers.
+    pub force: Expr,
+    /// `x(0)`; `x'(0) = 0`.
+    pub start: Rational,
+    /// Whether the motion has odd harmonics alone, as those of an odd force have.
+    pub odd: bool,
+    /// `mu` and the coefficients are integers times `2^-bits`.
+    pub bits: usize,
+    /// About `1/omega^2`.
+    pub mu: Integer,
+    /// About the cosine coefficients of the motion, `c_0` first.
+    pub coefficients: Vec<Integer>,
+    /// The last harmonic of the block, odd where `odd`.
+    pub highest: usize,
+    /// The entries of the inverse are integers times `2^-inverse_bits`.
+    pub inverse_bits: usize,
+    /// About the inverse of the derivative on `mu` and the harmonics of the block, row by row; the first row is that of `mu`, the
+    /// first column that of the condition `x(0) = A`.
+    pub inverse: Vec<Vec<Integer>>,
+    /// The weight of `mu` in the norm is `2^sigma`.
+    pub sigma: i32,
+    /// The radius that is claimed.
+    pub claim: Rational,
+    /// The formula that is judged, and what is claimed of it.
+    pub formula: Option<JudgedFormula>,
+}
+
+/// What has been proved.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Certified {
+    /// The motion exists, and is the only one so near.
+    pub proof: Proof,
+    /// `omega`.
+    pub frequency: Enclosure,
+    /// Of the formula, where one is judged.
+    pub formula: Option<Errors>,
+}
+
+/// Why a certificate is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckError {
+    /// Numbers that do not fit together, or are too large.
+    #[error("not a certificate: {0}")]
+    Malformed(&'static str),
+    /// An inequality of the theorem does not hold.
+    #[error("not certified: {0}")]
+    NotProved(NotProved),
+    /// The motion is proved, and something of it is claimed to be smaller than what is proved.
+    #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", decimal(*proved))]
+    ClaimedLess {
+        /// Of which number.
+        what: &'static str,
+        /// What is proved.
+        proved: f64,
+    },
+    /// Likewise larger.
+    #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", decimal(*proved))]
+    ClaimedMore {
+        /// Of which number.
+        what: &'static str,
+        /// What is proved.
+        proved: f64,
+    },
+}
+
+/// Checks every inequality of the theorem, and every claim.
+///
+/// # Errors
+/// [`CheckError`].
+///
+/// ```
+/// use lindstedt::certificate::{certify, check};
+/// use lindstedt::exact::Integer;
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// let (mut certificate, certified) = certify(&pendulum, &solution, &"A = 3/2".parse()?)?;
+/// let errors = certified.formula.as_ref().ok_or("no formula")?;
+/// assert!(errors.relative.lower > 0.0148 && errors.relative.upper < 0.0149);
+/// assert_eq!(check(&certificate)?, certified);
+/// certificate.mu += Integer::from(1_000_000_000_000_i64);
+/// assert!(check(&certificate).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
+    certificate.well_formed().map_err(CheckError::Malformed)?;
+    let proof = theorem::prove(certificate).map_err(CheckError::NotProved)?;
+    let certified = formula::certified(certificate, proof).map_err(CheckError::NotProved)?;
+    formula::hold_claims(certificate, &certified)?;
+    Ok(certified)
+}
+
+impl Certificate {
+    /// The step from one harmonic to the next.
+    fn step(&self) -> usize {
+        if self.odd { 2 } else { 1 }
+    }
+
+    /// The first harmonic.
+    fn first(&self) -> usize {
+        usize::from(self.odd)
+    }
+
+    /// The harmonics of the block.
+    fn block(&self) -> Vec<usize> {
+        (self.first()..=self.highest).step_by(self.step()).collect()
+    }
+
+    fn mu_ball(&self) -> Ball {
+        WORKING.dyadic(&self.mu, self.bits)
+    }
+
+    /// The approximate motion.
+    fn motion(&self) -> CosineSeries {
+        let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
+        CosineSeries::exactly(balls.collect())
+    }
+
+    /// Not above `mu`.
+    fn size_of_mu(&self) -> f64 {
+        match self.mu.is_positive() {
+            true => WORKING.distance_from_zero(&self.mu_ball()),
+            false => 0.0,
+        }
+    }
+
+    /// Not above `|c_1|`.
+    fn size_of_first_harmonic(&self) -> f64 {
+        WORKING.distance_from_zero(&self.motion().coefficient(1))
+    }
+
+    /// Whether the force is odd and the motion has odd harmonics alone.
+    fn is_odd(&self) -> Result<bool, ExprError> {
+        Ok(force::is_odd(&self.force)? && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
+    }
+
+    /// What does not fit together.
+    fn well_formed(&self) -> Result<(), &'static str> {
+        let demands = [
+            (
+                self.bits <= MOST_BITS && self.inverse_bits <= MOST_BITS,
+                "more than 224 bits",
+            ),
+            ((-64..=64).contains(&self.sigma), "a weight of mu beyond 2^64"),
+            (
+                (1..=HIGHEST_HARMONIC).contains(&self.highest),
+                "a block that ends beyond harmonic 400, or has none",
+            ),
+            (
+                !self.odd || self.highest % 2 == 1,
+                "odd harmonics, and a block that ends with an even one",
+            ),
+            (
+                self.coefficients.len() <= 2 * HIGHEST_HARMONIC,
+                "more than 800 harmonics",
+            ),
+            (
+                self.force.symbols().iter().all(|name| *name == coordinate()),
+                "a force with letters that have no value",
+            ),
+            (
+                [&self.mu]
+                    .into_iter()
+                    .chain(&self.coefficients)
+                    .chain(self.inverse.iter().flatten())
+                    .all(|integer| integer.bits() <= 700),
+                "a number of more than 200 digits",
+            ),
+        ];
+        if let Some((_, reason)) = demands.into_iter().find(|(holds, _)| !holds) {
+            return Err(reason);
+        }
+        let size = self.block().len() + 1;
+        let square = self.inverse.len() == size && self.inverse.iter().all(|row| row.len() == size);
+        match square {
+            true => Ok(()),
+            false => Err("an inverse of another size than the block"),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Upper bounds of sizes, as doubles that are rounded up.
+//!
+//! In: sizes, none negative. Out: doubles that are certainly no smaller than their sums, products and quotients. An operation
+//! of IEEE 754 is within half a unit in the last place, so that the next double above what it gives is a bound; what is no
+//! number bounds nothing and becomes infinity, which no comparison with a finite number takes for small.
+
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, Mul};
+
+use super::rational::{Rational, from_f64, to_f64};
+
+/// An upper bound of something that is not negative; infinity where nothing is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub struct Bound(f64);
+
+impl Bound {
+    /// Of what is zero.
+    pub const ZERO: Self = Self(0.0);
+    /// Of what nothing is known of.
+    pub const UNKNOWN: Self = Self(f64::INFINITY);
+
+    /// A double that is a bound as it is: exact, or rounded up already.
+    pub const fn exactly(value: f64) -> Self {
+        match value >= 0.0 {
+            true => Self(value),
+            false => Self::UNKNOWN,
+        }
+    }
+
+    /// Of a nearest double: the one above it.
+    pub const fn of_nearest(value: f64) -> Self {
+        match value >= 0.0 {
+            true => Self(value.next_up()),
+            false => Self::UNKNOWN,
+        }
+    }
+
+    /// `2^exponent`, for exponents of normal doubles.
+    pub fn power_of_two(exponent: i32) -> Self {
+        match (f64::MIN_EXP..f64::MAX_EXP).contains(&exponent) {
+            true => Self::exactly(2.0_f64.powi(exponent)),
+            false => Self::UNKNOWN,
+        }
+    }
+
+    /// Of the size of a fraction.
+    pub fn of_fraction(value: &Rational) -> Self {
+        let nearest = to_f64(value).abs();
+        match from_f64(nearest) {
+            Some(exact) if exact >= num_traits::abs(value.clone()) => Self::exactly(nearest),
+            _ => Self::of_nearest(nearest),
+        }
+    }
+
+    /// The double.
+    pub const fn value(self) -> f64 {
+        self.0
+    }
+
+    /// The larger of two.
+    #[must_use]
+    pub const fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+
+    /// The square root.
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        match self == Self::ZERO {
+            true => self,
+            false => Self::of_nearest(self.0.sqrt()),
+        }
+    }
+
+    /// A double that is certainly no larger than `1 - bound`; negative where that may be.
+    pub const fn below_complement(self) -> f64 {
+        (1.0 - self.0).next_down()
+    }
+
+    /// The quotient by a lower bound of the divisor; nothing is known where that is not positive.
+    #[must_use]
+    pub fn over(self, divisor: f64) -> Self {
+        match (self == Self::ZERO, divisor > 0.0) {
+            (_, false) => Self::UNKNOWN,
+            (true, true) => self,
+            (false, true) => Self::of_nearest(self.0 / divisor),
+        }
+    }
+}
+
+impl Add for Bound {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        match (self == Self::ZERO, other == Self::ZERO) {
+            (true, _) => other,
+            (_, true) => self,
+            _ => Self::of_nearest(self.0 + other.0),
+        }
+    }
+}
+
+impl AddAssign for Bound {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Mul for Bound {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        // What a product with an unknown size is, is not known, whatever the other.
+        match (
+            self == Self::ZERO || other == Self::ZERO,
+            self.0 + other.0 < f64::INFINITY,
+        ) {
+            (_, false) => Self::UNKNOWN,
+            (true, true) => Self::ZERO,
+            (false, true) => Self::of_nearest(self.0 * other.0),
+        }
+    }
+}
+
+/// By an exact number.
+impl Div<u32> for Bound {
+    type Output = Self;
+
+    fn div(self, divisor: u32) -> Self {
+        self.over(f64::from(divisor))
+    }
+}
+
+impl Sum for Bound {
+    fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
+        terms.fold(Self::ZERO, Add::add)
+    }
+}

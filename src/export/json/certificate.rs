@@ -1,0 +1,292 @@
+//! Kind `certificate`: numbers from which a motion, and the error of a formula, can be proved.
+//!
+//! Every number is text, an integer or a fraction: a program with whole numbers of any length checks a certificate without a
+//! single rounded operation. A reader treats what it reads as hostile, and so does [`CertificateDocument::read`].
+
+use num_traits::Zero as _;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::number::expression;
+use super::schema::check_kind;
+use super::{JsonError, Kind, unexpected};
+use crate::certificate::{Certificate, HIGHEST_HARMONIC, JudgedFormula, MOST_BITS, coordinate};
+use crate::decimal::significant_fraction;
+use crate::exact::{Integer, Rational};
+use crate::expr::Expr;
+
+/// A number has at most so many characters.
+const LONGEST_NUMBER: usize = 200;
+
+/// A force has at most so many.
+const LONGEST_FORCE: usize = 2000;
+
+/// Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is off. All numbers are text: integers,
+/// fractions such as `-1/6`, decimals such as `2.5e-33`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
+pub struct CertificateDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Certificate.schema()))]
+    pub schema: String,
+    /// The equation that f belongs to.
+    #[schemars(extend("const" = EQUATION))]
+    pub ode: String,
+    /// The force: the coefficients of a polynomial by rising power of x, or an expression in x.
+    pub f: ForceDocument,
+    /// x(0), a fraction, exact; x'(0) = 0.
+    #[serde(rename = "A")]
+    pub start: String,
+    /// Whether f is odd: then the motion has odd harmonics alone, and so has the block.
+    pub odd: bool,
+    /// `mu`, `c` and the numbers of the formula are integers times 2^-bits; at most 224.
+    pub bits: usize,
+    /// The approximate 1/omega^2.
+    pub mu: String,
+    /// The approximate cosine coefficients c_0, c_1, ... of the motion.
+    pub c: Vec<String>,
+    /// The last harmonic of the block; at most 400.
+    #[serde(rename = "K")]
+    pub highest: usize,
+    /// The entries of `A_block` are integers times 2^-Abits; at most 224.
+    #[serde(rename = "Abits")]
+    pub inverse_bits: usize,
+    /// The approximate inverse of the derivative on mu and the c_k of the block, row by row; the first row is that of mu, the first
+    /// column that of the condition x(0) = A.
+    #[serde(rename = "A_block")]
+    pub inverse: Vec<Vec<String>>,
+    /// The norm is sigma |mu| + sum |c_k|, sigma = 2^sigma_log2.
+    pub sigma_log2: i32,
+    /// The weight of a harmonic from one to the next; 1.
+    #[schemars(extend("const" = "1"))]
+    pub nu: String,
+    /// The radius that is claimed: the true mu and c are so near in the norm.
+    pub claim_r: String,
+    /// The formula that is judged; null where none is.
+    pub formula: Option<FormulaDocument>,
+}
+
+/// What `ode` has.
+const EQUATION: &str = "x''+f(x)=0";
+
+/// A force.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "CertificateForce")]
+pub enum ForceDocument {
+    /// The coefficients of a polynomial, fractions, that of x^0 first.
+    Polynomial(Vec<String>),
+    /// An expression in x; `sin` is short for `sin(x)`.
+    Expression(String),
+}
+
+/// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below and from above.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields, rename = "CertificateFormula")]
+pub struct FormulaDocument {
+    /// The law as it was derived, in words; nothing is checked against it.
+    pub law: String,
+    /// omega~, an integer times 2^-bits.
+    pub omega: String,
+    /// The cosine coefficients of X~, likewise.
+    pub c: Vec<String>,
+    /// max |X - X~|, both at the same phase, in the unit of x.
+    pub phase_error: [String; 2],
+    /// |omega - omega~|.
+    pub frequency_error: [String; 2],
+    /// max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t.
+    pub drift: [String; 2],
+}
+
+/// The document of kind `certificate`.
+///
+/// ```
+/// use lindstedt::certificate::certify;
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options::default())?;
+/// let (certificate, _) = certify(&pendulum, &solution, &"A = 3/2".parse()?)?;
+/// let document = lindstedt::export::json::certificate(&certificate);
+/// assert_eq!((document.start.as_str(), document.nu.as_str()), ("3/2", "1"));
+/// assert_eq!(document.read()?, certificate);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn certificate(certificate: &Certificate) -> CertificateDocument {
+    let integers = |numbers: &[Integer]| numbers.iter().map(ToString::to_string).collect();
+    let decimal = |value: &Rational| significant_fraction(value, 3);
+    let formula = |formula: &JudgedFormula| FormulaDocument {
+        law: formula.law.clone(),
+        omega: formula.frequency.to_string(),
+        c: integers(&formula.coefficients),
+        phase_error: formula.deviation.each_ref().map(decimal),
+        frequency_error: formula.frequency_error.each_ref().map(decimal),
+        drift: formula.drift.each_ref().map(decimal),
+    };
+    CertificateDocument {
+        schema: Kind::Certificate.schema().to_owned(),
+        ode: EQUATION.to_owned(),
+        f: force(certificate),
+        start: certificate.start.to_string(),
+        odd: certificate.odd,
+        bits: certificate.bits,
+        mu: certificate.mu.to_string(),
+        c: integers(&certificate.coefficients),
+        highest: certificate.highest,
+        inverse_bits: certificate.inverse_bits,
+        inverse: certificate.inverse.iter().map(|row| integers(row)).collect(),
+        sigma_log2: certificate.sigma,
+        nu: "1".to_owned(),
+        claim_r: decimal(&certificate.claim),
+        formula: certificate.formula.as_ref().map(formula),
+    }
+}
+
+/// The coefficients of a polynomial, or the text of another force.
+fn force(certificate: &Certificate) -> ForceDocument {
+    let x = coordinate();
+    let force = &certificate.force;
+    let polynomial = force.to_polynomial(&mut |_| None).ok().flatten();
+    let coefficients = polynomial.and_then(|polynomial| {
+        let mut coefficients = vec![Rational::zero()];
+        for (monomial, coefficient) in polynomial.terms() {
+            let power = usize::try_from(monomial.exponent(x))
+                .ok()
+                .filter(|power| *power <= 200)?;
+            let length = coefficients.len().max(power + 1);
+            coefficients.resize(length, Rational::zero());
+            coefficients[power] = coefficient.clone();
+        }
+        Some(coefficients)
+    });
+    match coefficients {
+        Some(coefficients) => ForceDocument::Polynomial(coefficients.iter().map(ToString::to_string).collect()),
+        None => match force.to_string() {
+            text if text == "sin(x)" => ForceDocument::Expression("sin".to_owned()),
+            text => ForceDocument::Expression(text),
+        },
+    }
+}
+
+impl CertificateDocument {
+    /// The certificate that is written, with nothing checked but that it is one.
+    ///
+    /// # Errors
+    /// A key that holds something else, or more than a certificate ever has.
+    pub fn read(&self) -> Result<Certificate, JsonError> {
+        check_kind(&self.schema, Kind::Certificate)?;
+        if self.ode != EQUATION {
+            return unexpected("ode", "`x''+f(x)=0`");
+        }
+        if self.nu != "1" {
+            return unexpected("nu", "`1`, the only weight of this schema");
+        }
+        let highest = self.highest <= HIGHEST_HARMONIC && self.inverse.len() <= HIGHEST_HARMONIC + 2;
+        if !highest || self.inverse.iter().any(|row| row.len() > HIGHEST_HARMONIC + 2) {
+            return unexpected("K", "at most 400, and `A_block` a square matrix of this size");
+        }
+        if self.bits > MOST_BITS || self.inverse_bits > MOST_BITS {
+            return unexpected("bits", "at most 224, and so `Abits`");
+        }
+        Ok(Certificate {
+            force: self.f.read()?,
+            start: fraction(&self.start, "A")?,
+            odd: self.odd,
+            bits: self.bits,
+            mu: integer(&self.mu, "mu")?,
+            coefficients: integers(&self.c, "c")?,
+            highest: self.highest,
+            inverse_bits: self.inverse_bits,
+            inverse: self
+                .inverse
+                .iter()
+                .map(|row| integers(row, "A_block"))
+                .collect::<Result<_, _>>()?,
+            sigma: self.sigma_log2,
+            claim: decimal(&self.claim_r, "claim_r")?,
+            formula: self.formula.as_ref().map(FormulaDocument::read).transpose()?,
+        })
+    }
+}
+
+impl FormulaDocument {
+    fn read(&self) -> Result<JudgedFormula, JsonError> {
+        let range = |ends: &[String; 2], key: &str| -> Result<[Rational; 2], JsonError> {
+            Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
+        };
+        Ok(JudgedFormula {
+            law: self.law.clone(),
+            frequency: integer(&self.omega, "omega")?,
+            coefficients: integers(&self.c, "formula.c")?,
+            deviation: range(&self.phase_error, "phase_error")?,
+            frequency_error: range(&self.frequency_error, "frequency_error")?,
+            drift: range(&self.drift, "drift")?,
+        })
+    }
+}
+
+impl ForceDocument {
+    fn read(&self) -> Result<Expr, JsonError> {
+        let x = Expr::from(coordinate());
+        match self {
+            Self::Expression(text) if text == "sin" => x.sin().or_else(|_| unexpected("f", "an expression in x")),
+            Self::Expression(text) if text.len() > LONGEST_FORCE => {
+                unexpected("f", "an expression of at most 2000 characters")
+            }
+            Self::Expression(text) => expression(text, "f"),
+            Self::Polynomial(coefficients) if coefficients.len() > LONGEST_NUMBER => {
+                unexpected("f", "a polynomial of a degree below 200")
+            }
+            Self::Polynomial(coefficients) => {
+                let term = |(power, text): (usize, &String)| {
+                    let power = x.integer_power(i64::try_from(power).unwrap_or(0));
+                    let power = power.or_else(|_| unexpected("f", "a polynomial"))?;
+                    Ok(&Expr::number(fraction(text, "f")?) * &power)
+                };
+                let terms: Result<Vec<Expr>, JsonError> = coefficients.iter().enumerate().map(term).collect();
+                Ok(Expr::sum(terms?))
+            }
+        }
+    }
+}
+
+fn integers(texts: &[String], key: &str) -> Result<Vec<Integer>, JsonError> {
+    if texts.len() > 2 * HIGHEST_HARMONIC {
+        return unexpected(key, "a list of at most 800 numbers");
+    }
+    texts.iter().map(|text| integer(text, key)).collect()
+}
+
+fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
+    let number = text.parse().ok().filter(|_| text.len() <= LONGEST_NUMBER);
+    number.map_or_else(|| unexpected(key, "integers of at most 200 characters"), Ok)
+}
+
+fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
+    let number = text.parse().ok().filter(|_| text.len() <= LONGEST_NUMBER);
+    number.map_or_else(|| unexpected(key, "a fraction of at most 200 characters"), Ok)
+}
+
+/// A decimal, `2.5e-33`, that is not negative.
+fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
+    const EXPECTED: &str = "a decimal such as `2.5e-33`, not negative";
+    /// No double is smaller, and none larger.
+    const EXPONENTS: std::ops::RangeInclusive<i32> = -400..=400;
+    let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
+    let exponent = exponent.parse().ok().filter(|exponent| EXPONENTS.contains(exponent));
+    let plain = text.len() <= LONGEST_NUMBER && (whole.to_owned() + decimals).bytes().all(|byte| byte.is_ascii_digit());
+    let count: Option<Integer> = (whole.to_owned() + decimals)
+        .parse()
+        .ok()
+        .filter(|_| plain && !whole.is_empty());
+    let Some((count, exponent)) = count.zip(exponent) else {
+        return unexpected(key, EXPECTED);
+    };
+    let power = exponent - decimals.len() as i32;
+    let ten = Rational::from_integer(Integer::from(10).pow(power.unsigned_abs()));
+    let count = Rational::from_integer(count);
+    Ok(if power < 0 { count / ten } else { count * ten })
+}

@@ -1,0 +1,429 @@
+//! Certificates against frequencies that are known to forty digits: arithmetic-geometric means, in whole numbers of another crate.
+
+use lindstedt::certificate::{Certificate, CheckError, NotCertified, NotProved, certify, check};
+use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
+use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::verify::motions;
+use lindstedt::{Method, Options, Oscillator, Solution, Values, solve};
+use num_bigint::BigInt;
+use num_traits::{Signed, Zero};
+use proptest::prelude::*;
+
+/// Binary digits behind the point of the truth.
+const BITS: u32 = 150;
+
+fn unit() -> BigInt {
+    BigInt::from(1) << BITS
+}
+
+fn fixed(value: &Rational) -> BigInt {
+    let part = |integer: &Integer| integer.to_string().parse::<BigInt>().expect("an integer");
+    part(value.numer()) * unit() / part(value.denom())
+}
+
+fn root(square: &BigInt) -> BigInt {
+    (square * unit()).sqrt()
+}
+
+/// The arithmetic-geometric mean of two positive numbers, to some units.
+fn mean(mut a: BigInt, mut b: BigInt) -> BigInt {
+    for _ in 0..20 {
+        (a, b) = ((&a + &b) / 2, (&a * &b).sqrt());
+    }
+    a
+}
+
+fn cosine(x: &BigInt) -> BigInt {
+    let (mut term, mut sum) = (unit(), BigInt::zero());
+    for k in 1..80_u32 {
+        sum += &term;
+        term = -term * x / unit() * x / unit() / (2 * k * (2 * k - 1));
+    }
+    sum
+}
+
+/// omega of `x'' + x + eps x^3 = 0`.
+fn duffing(eps: &Rational, start: &Rational) -> Rational {
+    let stiffening = eps * start * start;
+    let one = ratio(1, 1);
+    let half = &stiffening / Integer::from(2);
+    rational(mean(root(&fixed(&(&one + &stiffening))), root(&fixed(&(one + half)))))
+}
+
+/// omega of `x'' + sin(x) = 0`.
+fn pendulum(start: &Rational) -> Rational {
+    let half = start / Integer::from(2);
+    rational(mean(unit(), cosine(&fixed(&half))))
+}
+
+fn rational(units: BigInt) -> Rational {
+    format!("{units}/{}", unit()).parse().expect("a fraction")
+}
+
+fn radius(bound: f64) -> Rational {
+    from_f64(bound).expect("a finite bound")
+        + ratio(1, 1_000_000_000_000_000_000) * ratio(1, 1_000_000_000_000_000_000) * ratio(1, 1_000_000)
+}
+
+/// Whether the true frequency, known to 42 digits, is in the enclosure.
+fn contains(certificate: &Certificate, truth: &Rational) -> Result<bool, CheckError> {
+    let frequency = check(certificate)?.frequency;
+    Ok((frequency.middle - truth).abs() <= radius(frequency.radius.value()))
+}
+
+fn certified(equation: &str, order: u32, at: &str) -> (Oscillator, Solution, Values, Certificate) {
+    let oscillator = Oscillator::parse(equation).expect("an equation");
+    let options = Options {
+        order: Some(order),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).expect("a solution");
+    let at: Values = at.parse().expect("values");
+    let (certificate, proved) =
+        certify(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{equation} at {at:?}: {error}"));
+    assert_eq!(check(&certificate), Ok(proved));
+    (oscillator, solution, at, certificate)
+}
+
+#[test]
+fn thirty_digits_of_the_pendulum() {
+    for (start, digits) in [("1/10", 32), ("3/2", 32), ("5/2", 32), ("31/10", 31)] {
+        let (_, _, _, certificate) = certified("x'' + sin(x) = 0", 4, &format!("A = {start}"));
+        let start: Rational = start.parse().expect("a fraction");
+        assert_eq!(contains(&certificate, &pendulum(&start)), Ok(true), "A = {start}");
+        let known = check(&certificate).expect("a proof").frequency.radius.value();
+        assert!(known < 10.0_f64.powi(-digits), "A = {start}: {known}");
+    }
+}
+
+#[test]
+fn pure_cubic_stiffness_swings_with_gauss_s_constant() {
+    let (_, _, _, certificate) = certified("x'' + x^3 = 0", 1, "A = 2");
+    let two = fixed(&ratio(2, 1));
+    // omega = agm(A, A/sqrt(2)).
+    let truth = rational(mean(two.clone(), root(&two)));
+    assert_eq!(contains(&certificate, &truth), Ok(true));
+}
+
+#[test]
+fn the_error_of_a_formula_is_enclosed() {
+    for (order, at, eps, start) in [
+        (1, "eps = 1/10, A = 1", ratio(1, 10), ratio(1, 1)),
+        (3, "eps = -1/3, A = 3/4", ratio(-1, 3), ratio(3, 4)),
+    ] {
+        let (oscillator, solution, values, certificate) = certified("x'' + x + eps*x^3 = 0", order, at);
+        let errors = check(&certificate).expect("a proof").formula.expect("a formula");
+        let formula = solution.motion_at(&values).expect("a motion");
+        let truth = to_f64(&duffing(&eps, &start));
+        let error = (formula.frequency() - truth).abs();
+        assert!(
+            errors.frequency.lower <= error + 1e-15 && error - 1e-15 <= errors.frequency.upper,
+            "{errors:?}, {error}"
+        );
+        assert!((errors.relative.upper - error / truth).abs() < 1e-15);
+        // Both motions at the same phase, the true one by Runge-Kutta.
+        let samples = motions(&oscillator, &solution, &values)
+            .expect("a motion")
+            .expect("a real frequency");
+        let apart = samples
+            .truth
+            .iter()
+            .map(|(t, x, _)| (x - formula.at(t * truth / formula.frequency())).abs());
+        let largest = apart.fold(0.0, f64::max);
+        assert!(
+            errors.deviation.lower * 0.999 <= largest + 1e-9 && largest <= errors.deviation.upper + 1e-9,
+            "{errors:?}, {largest}"
+        );
+        assert!(errors.deviation.upper < 1.001 * errors.deviation.lower);
+        // No moment of fifty periods is outside.
+        let period = std::f64::consts::TAU / truth;
+        for t in (0..2000).map(|k| f64::from(k) * period / 40.0) {
+            let (_, x, _) = samples.truth[(((t / period).fract() * 1024.0).round() as usize).min(1024)];
+            let same = (t / period).floor() * period
+                + samples.truth[(((t / period).fract() * 1024.0).round() as usize).min(1024)].0;
+            let bound = errors.deviation.upper + errors.drift.upper * same;
+            assert!((x - formula.at(same)).abs() <= bound + 1e-8, "t = {same}");
+        }
+    }
+}
+
+#[test]
+fn proved_errors_shrink_with_the_power_that_is_left_out() {
+    let relative = |order: u32, eps: &str| {
+        let (_, _, _, certificate) = certified("x'' + x + eps*x^3 = 0", order, &format!("eps = {eps}, A = 1"));
+        check(&certificate)
+            .expect("a proof")
+            .formula
+            .expect("a formula")
+            .frequency
+            .upper
+    };
+    for order in 1..=5 {
+        let exponent = (relative(order, "1/50") / relative(order, "1/100")).log2();
+        assert!(
+            (exponent - f64::from(order + 1)).abs() < 0.1,
+            "order {order}: {exponent}"
+        );
+    }
+}
+
+#[test]
+fn every_method_is_held_against_the_same_proof() {
+    let oscillator = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
+    let at: Values = "A = 1".parse().expect("values");
+    let truth = to_f64(&pendulum(&ratio(1, 1)));
+    let mut count = 0;
+    for method in Method::ALL {
+        let options = Options {
+            method: Some(method),
+            ..Options::default()
+        };
+        let Ok(solution) = solve(&oscillator, &options) else {
+            continue;
+        };
+        let (_, proved) = match certify(&oscillator, &solution, &at) {
+            Ok(proved) => proved,
+            Err(NotCertified::Convention | NotCertified::Motion(_) | NotCertified::Truth(_)) => continue,
+            Err(error) => panic!("{method:?}: {error}"),
+        };
+        let error = (solution.motion_at(&at).expect("a motion").frequency() - truth).abs();
+        let enclosed = proved.formula.expect("a formula").frequency;
+        assert!(
+            enclosed.lower <= error + 1e-15 && error <= enclosed.upper + 1e-15,
+            "{method:?}"
+        );
+        count += 1;
+    }
+    assert!(count >= 8, "{count} methods");
+}
+
+#[test]
+fn forces_of_every_function_of_the_evaluator() {
+    for force in [
+        "tanh(x)",
+        "exp(x) - 1",
+        "x/(1 + x^2)",
+        "x/sqrt(1 + x^2)",
+        "atan(3*x)",
+        "log(1 + x^2)*x + x",
+        "sinh(x)",
+        "tan(x)",
+        "sin(pi*x)",
+        "x + x^2*cosh(x)",
+        "x*(1 + x^2)^(2/3)",
+        "x*(2 + cos(x))^(-5/3)",
+        "log(2 + x) - log(2)",
+        "x + sqrt(2)*x^3",
+    ] {
+        let oscillator = Oscillator::parse(&format!("x'' + {force} = 0")).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at: Values = "A = 2/5".parse().expect("values");
+        let (certificate, proved) =
+            certify(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{force}: {error}"));
+        // The judge's own frequency comes of another way, by quadrature.
+        let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
+            .expect("a verdict")
+            .true_frequency;
+        assert!(
+            (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12,
+            "{force}"
+        );
+        assert!(proved.frequency.radius.value() < 1e-28, "{force}: {proved:?}");
+        assert!(check(&certificate).is_ok(), "{force}");
+    }
+}
+
+#[test]
+fn what_cannot_be_certified_is_refused_with_the_reason() {
+    let refused = |equation: &str, method: Option<Method>, at: &str| {
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let options = Options {
+            method,
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).expect("a solution");
+        certify(&oscillator, &solution, &at.parse().expect("values")).expect_err("no certificate")
+    };
+    let velocity = refused("x'' + x'/5 + x = 0", None, "A = 1");
+    assert!(matches!(velocity, NotCertified::NotConservative(term) if term == "x'/5"));
+    assert!(
+        matches!(refused("x'' + x + abs(x)*x = 0", None, "A = 1"), NotCertified::NoSeries(NotProved::NoValue(part)) if part == "abs(x)")
+    );
+    assert!(matches!(refused("x'' + sin(x) = 0", None, "A = pi/3"), NotCertified::Start(start) if start == "pi/3"));
+    assert!(matches!(
+        refused("x'' + x + x^3 = 0", Some(Method::Averaging), "a = 1"),
+        NotCertified::Convention
+    ));
+    assert!(matches!(
+        refused("x'' + sin(x) = 0", None, "A = 7/2"),
+        NotCertified::Truth(_)
+    ));
+    // So near the separatrix that the block would have to be larger than any.
+    assert!(matches!(
+        refused("x'' + sin(x) = 0", None, "A = 31415/10000"),
+        NotCertified::NotProved { .. }
+    ));
+}
+
+/// A change of one number of a certificate, by a power of two of its last digits.
+fn change(certificate: &mut Certificate, which: u8, place: usize, bit: usize, sign: bool) {
+    let by = Integer::from(if sign { 1 } else { -1 }) << bit;
+    let size = certificate.inverse.len();
+    match which {
+        0 => certificate.mu += by,
+        1 => {
+            let place = place % certificate.coefficients.len();
+            certificate.coefficients[place] += by;
+        }
+        2 => certificate.inverse[place % size][(place / size) % size] += by,
+        3 => certificate.sigma += (bit % 5) as i32 - 2,
+        4 => certificate.claim = &certificate.claim / Integer::from(1 + bit),
+        5 => certificate.highest = 1 + bit,
+        6 => certificate.odd = false,
+        7 => certificate.bits += 1,
+        8 => certificate
+            .coefficients
+            .truncate(1 + place % certificate.coefficients.len()),
+        9 => {
+            for row in &mut certificate.inverse {
+                for entry in row {
+                    *entry = Integer::zero();
+                }
+            }
+        }
+        _ => certificate.inverse_bits += 1,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn damaged_certificates_fail_or_are_true(
+        (eps, start) in (-40_i64..300, 10_i64..120), changes in proptest::collection::vec((0_u8..11, 0_usize..400, 0_usize..115, any::<bool>()), 1..3)
+    ) {
+        let (eps, start) = (ratio(eps, 100), ratio(start, 100));
+        let oscillator = Oscillator::parse(&format!("x'' + x + ({eps})*x^3 = 0")).expect("an equation");
+        let solution = solve(&oscillator, &Options { order: Some(2), ..Options::default() }).expect("a solution");
+        let at: Values = format!("A = {start}").parse().expect("values");
+        let (mut certificate, _) = certify(&oscillator, &solution, &at).expect("a certificate");
+        let truth = duffing(&eps, &start);
+        prop_assert_eq!(contains(&certificate, &truth), Ok(true));
+        for (which, place, bit, sign) in changes {
+            change(&mut certificate, which, place, bit, sign);
+        }
+        certificate.claim = ratio(1, 1);
+        certificate.formula = None;
+        prop_assert!(contains(&certificate, &truth) != Ok(false), "{:?}", certificate);
+        // Another start, and another force, are other questions.
+        let (mut other, _) = certify(&oscillator, &solution, &at).expect("a certificate");
+        other.start = &other.start + ratio(1, 1_000_000_000_000);
+        prop_assert!(check(&other).is_err());
+        other.claim = ratio(1, 1);
+        other.formula = None;
+        prop_assert_eq!(contains(&other, &duffing(&eps, &other.start)), Ok(true));
+        let more = ratio(1, 1_000_000_000);
+        let cubic = parse_expression(&format!("({more})*x^3")).expect("an expression");
+        other.force = &other.force + &cubic;
+        prop_assert!(contains(&other, &duffing(&(eps + more), &other.start)) != Ok(false));
+    }
+}
+
+#[test]
+fn each_inequality_is_checked() {
+    let (_, _, _, sound) = certified("x'' + x + eps*x^3 = 0", 2, "eps = 1, A = 1");
+    let reason = |change: &dyn Fn(&mut Certificate)| {
+        let mut certificate = sound.clone();
+        certificate.claim = ratio(10, 1);
+        certificate.formula = None;
+        change(&mut certificate);
+        check(&certificate).expect_err("a certificate that does not hold")
+    };
+    // Z1: an inverse that is none, in one column or in all.
+    let without = |column: usize| {
+        move |certificate: &mut Certificate| {
+            certificate
+                .inverse
+                .iter_mut()
+                .for_each(|row| row[column] = Integer::zero())
+        }
+    };
+    for column in 0..sound.inverse.len() {
+        assert!(
+            matches!(
+                reason(&without(column)),
+                CheckError::NotProved(NotProved::NoContraction(_))
+            ),
+            "column {column}"
+        );
+    }
+    // Z1 beyond the block: one harmonic in it, of a force whose slope has many.
+    let (_, _, _, steep) = certified("x'' + sin(x) = 0", 4, "A = 3");
+    let mut one = steep.clone();
+    one.highest = 1;
+    one.inverse = steep.inverse[..2].iter().map(|row| row[..2].to_vec()).collect();
+    assert!(matches!(
+        check(&one),
+        Err(CheckError::NotProved(NotProved::NoContraction(_)))
+    ));
+    // Y0 and Z2: too far for the curvature of the problem.
+    let far = |certificate: &mut Certificate| certificate.coefficients[1] += Integer::from(1) << (certificate.bits - 2);
+    assert!(matches!(
+        reason(&far),
+        CheckError::NotProved(NotProved::TooFar(_) | NotProved::TooLarge(_))
+    ));
+    // What is claimed.
+    let claimed = |certificate: &mut Certificate| certificate.claim = ratio(1, i64::MAX) * ratio(1, i64::MAX);
+    assert!(matches!(
+        reason(&claimed),
+        CheckError::ClaimedLess { what: "the radius", .. }
+    ));
+    let mut boastful = sound.clone();
+    if let Some(formula) = &mut boastful.formula {
+        formula.deviation[1] = &formula.deviation[1] / Integer::from(2);
+    }
+    assert!(matches!(
+        check(&boastful),
+        Err(CheckError::ClaimedLess {
+            what: "the deviation",
+            ..
+        })
+    ));
+    let mut modest = sound.clone();
+    if let Some(formula) = &mut modest.formula {
+        formula.frequency_error[0] = &formula.frequency_error[0] * Integer::from(2);
+    }
+    assert!(matches!(
+        check(&modest),
+        Err(CheckError::ClaimedMore {
+            what: "the error of the frequency",
+            ..
+        })
+    ));
+    // The symmetry.
+    let even = |certificate: &mut Certificate| {
+        certificate.force = &certificate.force + &Expr::symbol("x").integer_power(2).expect("a square")
+    };
+    assert_eq!(reason(&even), CheckError::NotProved(NotProved::NotOdd));
+    // Sizes.
+    for spoil in [
+        (|certificate: &mut Certificate| certificate.inverse.truncate(2)) as fn(&mut Certificate),
+        |certificate| certificate.highest = 100_000,
+        |certificate| certificate.bits = 1_000_000,
+        |certificate| certificate.sigma = i32::MIN,
+        |certificate| certificate.mu = Integer::from(1) << 100_000,
+        |certificate| certificate.force = Expr::symbol("y"),
+        |certificate| certificate.coefficients = vec![Integer::zero(); 10_000],
+    ] {
+        assert!(matches!(reason(&spoil), CheckError::Malformed(_)));
+    }
+    // No motion at all.
+    assert!(matches!(
+        reason(&|certificate| certificate.mu = Integer::zero()),
+        CheckError::NotProved(_)
+    ));
+    assert!(matches!(
+        reason(&|certificate| certificate.coefficients = vec![]),
+        CheckError::NotProved(_)
+    ));
+}

@@ -1,0 +1,277 @@
+//! Certificates as files: what `certify` writes `check` proves, a second program in another language proves, and what has been tampered
+//! with neither.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+use lindstedt::certificate::check;
+use lindstedt::exact::{Rational, ratio};
+use lindstedt::export::json::CertificateDocument;
+use serde_json::{Value, json};
+
+fn run(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
+    command
+        .args(arguments)
+        .args(["--timeout", "60"])
+        .output()
+        .expect("the program starts")
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("lindstedt-certificates-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// A certificate, and its file.
+fn certified(folder: &Path, arguments: &[&str]) -> (PathBuf, Value) {
+    let file = folder.join("certificate.json");
+    let written = run(&[
+        &["certify"],
+        arguments,
+        &["--output", file.to_str().expect("a path in text")],
+    ]
+    .concat());
+    assert!(
+        written.status.success(),
+        "{arguments:?}: {}",
+        String::from_utf8_lossy(&written.stderr)
+    );
+    let text = std::fs::read_to_string(&file).expect("a file");
+    (file, serde_json::from_str(&text).expect("JSON"))
+}
+
+fn read(document: &Value) -> Result<CertificateDocument, serde_json::Error> {
+    serde_json::from_value(document.clone())
+}
+
+#[test]
+fn what_certify_writes_check_proves() {
+    let folder = folder("check");
+    for example in ["pendulum", "cubic-pendulum", "quadratic", "spring"] {
+        let problem = format!("{}/examples/certify/{example}.toml", env!("CARGO_MANIFEST_DIR"));
+        let (file, document) = certified(&folder, &[&problem]);
+        let checked = run(&["check", file.to_str().expect("a path in text")]);
+        assert!(
+            checked.status.success(),
+            "{example}: {}",
+            String::from_utf8_lossy(&checked.stderr)
+        );
+        // The same facts, without the derivation.
+        let facts = |output: &[u8]| {
+            let text = String::from_utf8_lossy(output).into_owned();
+            let lines = text
+                .lines()
+                .filter(|line| line.starts_with("  ") && !line.contains("x") && !line.contains("u"));
+            lines.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let proved = run(&["certify", &problem]);
+        let same = facts(&proved.stdout);
+        assert!(
+            facts(&checked.stdout).iter().filter(|line| same.contains(line)).count() >= 7,
+            "{example}"
+        );
+        // Once more through the types.
+        let document = read(&document).expect("a document");
+        let certificate = document.read().expect("a certificate");
+        assert_eq!(lindstedt::export::json::certificate(&certificate), document);
+        // A tolerance that is missed is exit code 3.
+        let strict = run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-12"]);
+        assert_eq!(strict.status.code(), Some(3), "{example}");
+    }
+}
+
+fn python() -> Option<PathBuf> {
+    let asked = Command::new("python3")
+        .args(["-c", "import sys; print(sys.executable)"])
+        .output();
+    let output = asked.ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8(output.stdout).ok()?.trim().into())
+}
+
+/// omega from below and from above, by the second program; `None` where it does not prove the certificate.
+fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/check_certificate.py");
+    let output = Command::new(python)
+        .args(["-I", "-S"])
+        .arg(program)
+        .arg(file)
+        .output()
+        .expect("Python starts");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        assert!(errors.starts_with("not proved: "), "{errors}");
+        return None;
+    }
+    let [_, lower, upper]: [String; 3] = serde_json::from_slice(&output.stdout).expect("three texts");
+    let fraction = |text: &str| {
+        let digits: Rational = text.replace('.', "").parse().expect("digits");
+        digits / ratio(10, 1).pow(36)
+    };
+    Some([fraction(&lower), fraction(&upper)])
+}
+
+#[test]
+fn a_second_program_in_python_proves_the_same() {
+    let Some(python) = python() else {
+        eprintln!("python3 is not here: the second program was not run");
+        return;
+    };
+    let folder = folder("python");
+    for arguments in [
+        &["pendulum", "--at", "A=3/2"][..],
+        &["pendulum", "--at", "A=3", "--order", "6"],
+        &["x'' + x - x^3/6 = 0", "--at", "A=2"],
+        &["x'' + x + x^2/5 = 0", "--at", "A=1/2"],
+        &["x'' + x^3 = 0", "--at", "A=1"],
+        &[
+            "duffing",
+            "--at",
+            "A=1",
+            "--at",
+            "eps=10",
+            "--method",
+            "harmonic-balance",
+        ],
+    ] {
+        let (file, document) = certified(&folder, arguments);
+        let certificate = read(&document).expect("a document").read().expect("a certificate");
+        let own = check(&certificate).expect("a proof").frequency;
+        let [lower, upper] = by_python(&python, &file).unwrap_or_else(|| panic!("{arguments:?}"));
+        // Both are true, so that they overlap; and each is as narrow.
+        let radius = lindstedt::exact::from_f64(own.radius.value()).expect("a finite radius");
+        assert!(
+            lower <= &own.middle + &radius && &own.middle - &radius <= upper,
+            "{arguments:?}"
+        );
+        assert!(&upper - &lower < ratio(1, 1_000_000_000).pow(3), "{arguments:?}");
+        // Tampered with, it is no proof for either.
+        for tamper in [
+            (|document: &mut Value| document["A"] = json!("1499999/1000000")) as fn(&mut Value),
+            |document| document["claim_r"] = json!("1e-60"),
+            |document| document["c"][1] = json!("1"),
+            |document| document["f"] = json!(["0", "2"]),
+            |document| document["A_block"][1][0] = json!("0"),
+        ] {
+            let mut changed = document.clone();
+            tamper(&mut changed);
+            std::fs::write(&file, changed.to_string()).expect("the document is written");
+            assert_eq!(by_python(&python, &file), None, "{arguments:?}");
+            let certificate = read(&changed).expect("a document").read().expect("a certificate");
+            assert!(check(&certificate).is_err(), "{arguments:?}");
+        }
+    }
+}
+
+#[test]
+fn hostile_certificates_are_refused_at_once() {
+    let folder = folder("hostile");
+    let (file, document) = certified(&folder, &["pendulum", "--at", "A=1"]);
+    let keys: Vec<String> = document.as_object().expect("an object").keys().cloned().collect();
+    let mut tried = 0;
+    let mut refuse = |changed: &Value| {
+        let begin = Instant::now();
+        let outcome = read(changed).ok().and_then(|document| document.read().ok());
+        let proved = outcome.is_some_and(|certificate| check(&certificate).is_ok());
+        assert!(begin.elapsed() < Duration::from_secs(20));
+        tried += 1;
+        proved
+    };
+    let nines = "9".repeat(100_000);
+    for key in &keys {
+        for value in [
+            json!(null),
+            json!(-1),
+            json!(1e308),
+            json!(1_000_000_000),
+            json!(""),
+            json!("-"),
+            json!("1/0"),
+            json!("0/0"),
+            json!("1e999999999"),
+            json!(nines),
+            json!("x^x^x"),
+            json!("1/x"),
+            json!("exp(exp(exp(exp(x))))"),
+            json!("((((((x"),
+            json!([]),
+            json!([[]]),
+            json!({}),
+            json!(["1", "x"]),
+            json!(vec!["0"; 100_000]),
+            json!(vec![vec!["0"; 500]; 500]),
+        ] {
+            let mut changed = document.clone();
+            changed[key.as_str()] = value.clone();
+            // Without a formula it proves the motion alone, with another weight it may prove the same.
+            let harmless =
+                [("formula", json!(null)), ("sigma_log2", json!(-1))].contains(&(key.as_str(), value.clone()));
+            assert!(!refuse(&changed) || harmless, "{key}: {value:.60}");
+        }
+    }
+    assert!(tried >= 300);
+    for text in [
+        "",
+        "{",
+        "[]",
+        "\u{feff}{}",
+        &"[".repeat(100_000),
+        &format!("{{\"c\": {}}}", "[".repeat(1000)),
+    ] {
+        std::fs::write(&file, text).expect("a file");
+        let checked = run(&["check", file.to_str().expect("a path in text")]);
+        assert_eq!(
+            checked.status.code(),
+            Some(1),
+            "{}",
+            String::from_utf8_lossy(&checked.stderr)
+        );
+        assert!(String::from_utf8_lossy(&checked.stderr).contains("no certificate"));
+    }
+}
+
+#[test]
+fn what_is_asked_for_in_vain_is_said() {
+    for (arguments, code, expected) in [
+        (
+            &["certify", "duffing", "--at", "A=1"][..],
+            1,
+            "values are needed for: eps",
+        ),
+        (
+            &["certify", "pendulum", "--at", "B=1"],
+            2,
+            "`B` does not occur in the formula; it has: A",
+        ),
+        (
+            &["certify", "van-der-pol", "--at", "mu=0.1"],
+            1,
+            "depends on the velocity or on time",
+        ),
+        (
+            &["certify", "pendulum", "--at", "A=4"],
+            1,
+            "no periodic motion about x = 0",
+        ),
+        (
+            &["certify", "pendulum", "--at", "A=1", "--omega-only"],
+            2,
+            "--omega-only leaves out",
+        ),
+        (
+            &["certify", "pendulum", "--at", "A=1", "--plot", "proof.svg"],
+            1,
+            "a proof has no picture",
+        ),
+        (&["certify", "pendulum", "--at", "A=1", "--format", "csv"], 2, "table"),
+        (&["check", "no-such-file.json"], 1, "cannot read no-such-file.json"),
+        (&["certify", "pendulum", "--at", "A=3/2", "--tolerance", "1e-4"], 3, ""),
+    ] {
+        let output = run(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
+        assert!(errors.contains(expected), "{arguments:?}: {errors}");
+    }
+}

@@ -62,6 +62,9 @@ pub enum NotCertified {
     /// Likewise.
     #[error(transparent)]
     Expression(#[from] ExprError),
+    /// A law that is no expression in the amplitude.
+    #[error("`{0}` is no expression in the amplitude: it has numbers at one amplitude after the other alone")]
+    Law(String),
     /// No block proves it, for a reason that no block has a part in.
     #[error("not certified: {0}")]
     NoSeries(NotProved),
@@ -80,6 +83,7 @@ impl NotCertified {
     pub fn help(&self) -> Option<&'static str> {
         match self {
             Self::NotConservative(_) => Some("`simulate` and the verdict of `derive` follow such motions in numbers"),
+            Self::Law(_) => Some("without a range it is certified at one amplitude"),
             Self::Start(_) => Some("give the amplitude as a decimal or a fraction, and an equilibrium that is one"),
             Self::NoSeries(_) => Some(
                 "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion",
@@ -110,7 +114,7 @@ pub fn certify(
     let mut certificate = question.certificate(mu, &harmonics, judged);
     // Many harmonics bring it near in few steps; how many a proof needs is another question.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
-    refine(&mut certificate).map_err(|reason| not_proved(reason, &certificate))?;
+    refine(&mut certificate, Bound::ZERO).map_err(|reason| not_proved(reason, &certificate))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
     for highest in blocks(harmonics.len()) {
         certificate.highest = highest;
@@ -290,7 +294,7 @@ fn claim(formula: &mut JudgedFormula, errors: &Errors) {
 }
 
 /// The inverse of the derivative on the block, in doubles.
-fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, NotProved> {
+pub(super) fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, NotProved> {
     let motion = certificate.motion();
     let nearest = |series: &super::CosineSeries, k: usize| WORKING.nearest(&series.coefficient(k));
     let force = along(&certificate.force, &motion)?;
@@ -324,11 +328,12 @@ fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, NotProved> {
     Ok((0..size).map(row).collect())
 }
 
-/// Newton's iteration with one inverse, until nothing changes or it does not get nearer.
-fn refine(certificate: &mut Certificate) -> Result<(), NotProved> {
+/// Newton's iteration with one inverse, until it is so near, nothing changes, or it does not get nearer.
+pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), NotProved> {
     /// The steps of an iteration that gains a digit a step.
     const STEPS: usize = 40;
-    let unit = Bound::power_of_two(-(BITS as i32));
+    let bits = certificate.bits;
+    let unit = Bound::power_of_two(-(bits as i32));
     certificate.inverse = inverse(certificate)?;
     let mut before = Bound::UNKNOWN;
     for _ in 0..STEPS {
@@ -339,7 +344,7 @@ fn refine(certificate: &mut Certificate) -> Result<(), NotProved> {
             break;
         }
         before = size;
-        let short = |ball| Balls { bits: BITS }.converted(ball, WORKING).middle;
+        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
         let block = certificate.block();
         certificate.mu -= short(&step.block[0]);
         let last = step
@@ -362,7 +367,7 @@ fn refine(certificate: &mut Certificate) -> Result<(), NotProved> {
         {
             certificate.coefficients.pop();
         }
-        if size < unit * Bound::exactly(64.0) {
+        if size < near.max(unit * Bound::exactly(64.0)) {
             break;
         }
     }
@@ -370,7 +375,7 @@ fn refine(certificate: &mut Certificate) -> Result<(), NotProved> {
 }
 
 /// The weight with which an error of `mu` counts as much as the harmonics that come with it.
-fn weight_of_mu(certificate: &Certificate) -> i32 {
+pub(super) fn weight_of_mu(certificate: &Certificate) -> i32 {
     let balls = Balls { bits: INVERSE_BITS };
     let number = |units: &Integer| {
         let ball = balls.dyadic(units, INVERSE_BITS);

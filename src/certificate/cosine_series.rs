@@ -25,7 +25,7 @@ use crate::exact::rational::from_f64;
 /// The digits with which functions are computed. Those of an approximate motion are fewer.
 pub(super) const WORKING: Balls = Balls { bits: 224 };
 
-/// Harmonics smaller than `2^-NEGLIGIBLE` at the end of a series become a part of its tail.
+/// What is negligible in a series unless its digits say otherwise, and at most.
 const NEGLIGIBLE: i32 = 120;
 
 /// No series has more harmonics; what is beyond is a part of its tail.
@@ -37,8 +37,8 @@ const MOST_HALVINGS: u32 = 6;
 /// Steps of Newton's iteration, each of which doubles the digits: from those of a double to more than are kept.
 const STEPS: usize = 3;
 
-/// The terms of a Taylor series of an argument of a norm of at most 1/2: `2^-n/n!` is below `2^-130` from the 26th on.
-const TERMS: u32 = 28;
+/// No Taylor series has more terms.
+const MOST_TERMS: u32 = 28;
 
 /// An even function of an angle, known up to a distance.
 #[derive(Clone, Debug)]
@@ -47,6 +47,8 @@ pub(super) struct CosineSeries {
     pub(super) coefficients: Vec<Ball>,
     /// The norm of what is not in them.
     pub(super) tail: Bound,
+    /// Harmonics smaller than `2^-negligible` at the end become a part of the tail.
+    negligible: i32,
 }
 
 impl CosineSeries {
@@ -55,6 +57,7 @@ impl CosineSeries {
         Self {
             coefficients: vec![value],
             tail: Bound::ZERO,
+            negligible: NEGLIGIBLE,
         }
     }
 
@@ -63,7 +66,25 @@ impl CosineSeries {
         Self {
             coefficients,
             tail: Bound::ZERO,
+            negligible: NEGLIGIBLE,
         }
+    }
+
+    /// The same, of which so many binary digits count.
+    pub(super) fn of_digits(mut self, bits: usize) -> Self {
+        const MORE: i32 = 16;
+        let bits = i32::try_from(bits).unwrap_or(NEGLIGIBLE);
+        self.negligible = NEGLIGIBLE.min(bits.saturating_add(MORE));
+        self
+    }
+
+    /// The terms of a Taylor series, of an argument of a norm of at most 1/2, after which what is left is negligible; an even number.
+    fn terms(&self) -> u32 {
+        let negligible = Bound::power_of_two(-self.negligible - 8);
+        (2..MOST_TERMS)
+            .step_by(2)
+            .find(|&terms| remainder(terms + 1) < negligible)
+            .unwrap_or(MOST_TERMS)
     }
 
     /// All that it may be at the angle 0, which is all where it is a constant.
@@ -101,7 +122,7 @@ impl CosineSeries {
 
     /// Moves into the tail what is at the end and negligible, or beyond all length.
     fn trimmed(mut self) -> Self {
-        let negligible = Bound::power_of_two(-NEGLIGIBLE);
+        let negligible = Bound::power_of_two(-self.negligible);
         while let Some(last) = self.coefficients.last() {
             let size = WORKING.magnitude(last);
             if size > negligible && self.coefficients.len() <= LONGEST {
@@ -119,6 +140,7 @@ impl CosineSeries {
         Self {
             coefficients: joined.collect(),
             tail: self.tail + other.tail,
+            negligible: self.negligible.min(other.negligible),
         }
     }
 
@@ -146,6 +168,7 @@ impl CosineSeries {
                 .map(|ball| WORKING.scaled(ball, factor))
                 .collect(),
             tail: self.tail * Bound::of_nearest(factor.unsigned_abs() as f64),
+            negligible: self.negligible,
         }
     }
 
@@ -158,6 +181,7 @@ impl CosineSeries {
                 .map(|ball| WORKING.divided(ball, divisor))
                 .collect(),
             tail: self.tail / divisor,
+            negligible: self.negligible,
         }
     }
 
@@ -190,6 +214,7 @@ impl CosineSeries {
         Self {
             coefficients: halved.collect(),
             tail: tails,
+            negligible: self.negligible.min(other.negligible),
         }
         .trimmed()
     }
@@ -226,14 +251,15 @@ impl CosineSeries {
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
         let (argument, halvings) = self.halved()?;
         let square = argument.squared();
+        let terms = self.terms();
         let (mut sine, mut cosine) = (Self::integer(1), Self::integer(1));
-        for k in (1..=TERMS / 2).rev() {
+        for k in (1..=terms / 2).rev() {
             let one = Self::integer(1);
             sine = one.difference(&square.product(&sine).divided(2 * k * (2 * k + 1)));
             cosine = one.difference(&square.product(&cosine).divided(2 * k * (2 * k - 1)));
         }
-        let mut sine = argument.product(&sine).widened(remainder(TERMS + 3));
-        let mut cosine = cosine.widened(remainder(TERMS + 2));
+        let mut sine = argument.product(&sine).widened(remainder(terms + 3));
+        let mut cosine = cosine.widened(remainder(terms + 2));
         for _ in 0..halvings {
             let doubled = sine.product(&cosine).scaled(2);
             cosine = Self::integer(1).difference(&sine.squared().scaled(2));
@@ -245,11 +271,12 @@ impl CosineSeries {
     /// The exponential function; `None` of what is too large.
     pub(super) fn exponential(&self) -> Option<Self> {
         let (argument, halvings) = self.halved()?;
+        let terms = self.terms();
         let mut sum = Self::integer(1);
-        for k in (1..=TERMS).rev() {
+        for k in (1..=terms).rev() {
             sum = Self::integer(1).sum(&argument.product(&sum).divided(k));
         }
-        sum = sum.widened(remainder(TERMS + 1));
+        sum = sum.widened(remainder(terms + 1));
         for _ in 0..halvings {
             sum = sum.squared();
         }
@@ -265,7 +292,7 @@ impl CosineSeries {
         let next = |root: &Self, defect: &Self| root.sum(&root.product(defect).divided(degree));
         let mut defect = self.defect(&root, degree);
         for _ in 0..STEPS {
-            if defect.norm() < enough() {
+            if defect.norm() < enough(self.negligible) {
                 break;
             }
             root = next(&root, &defect).without_radii();
@@ -304,7 +331,7 @@ impl CosineSeries {
         };
         let mut rest = beyond(&guess)?;
         for _ in 0..STEPS {
-            if rest.norm() < enough() {
+            if rest.norm() < enough(self.negligible) {
                 break;
             }
             guess = guess.sum(&rest).without_radii();
@@ -324,7 +351,7 @@ impl CosineSeries {
         let mut guess = self.sampled(f64::atan)?;
         let mut rest = self.angle_beyond(&guess)?;
         for _ in 0..STEPS {
-            if rest.norm() < enough() {
+            if rest.norm() < enough(self.negligible) {
                 break;
             }
             guess = guess.sum(&rest).without_radii();
@@ -403,13 +430,14 @@ impl CosineSeries {
         Some(Self {
             coefficients: balls.collect::<Option<_>>()?,
             tail: Bound::ZERO,
+            negligible: self.negligible,
         })
     }
 }
 
 /// What of a guess need not become smaller: its square is negligible.
-fn enough() -> Bound {
-    Bound::power_of_two(-NEGLIGIBLE / 2)
+fn enough(negligible: i32) -> Bound {
+    Bound::power_of_two(-negligible / 2)
 }
 
 /// What is left of a Taylor series of sine, cosine or exponential function from a power on, of an argument of a norm of at most 1/2:

@@ -18,15 +18,17 @@ mod cosine_series;
 mod force;
 mod formula;
 mod theorem;
+mod validity;
 
 use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
 pub use theorem::{NotProved, Proof};
+pub use validity::{Beyond, Validity, validity};
 
 use crate::decimal::decimal;
-use crate::exact::ball::Ball;
+use crate::exact::ball::{Ball, Balls};
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
@@ -143,6 +145,14 @@ pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
 }
 
 impl Certificate {
+    /// Leaves so many digits of the motion.
+    fn shorten(&mut self, bits: usize) {
+        let short = |units: &Integer| Balls { bits }.dyadic(units, self.bits).middle;
+        self.coefficients = self.coefficients.iter().map(short).collect();
+        self.mu = short(&self.mu);
+        self.bits = bits;
+    }
+
     /// The step from one harmonic to the next.
     fn step(&self) -> usize {
         if self.odd { 2 } else { 1 }
@@ -165,7 +175,7 @@ impl Certificate {
     /// The approximate motion.
     fn motion(&self) -> CosineSeries {
         let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
-        CosineSeries::exactly(balls.collect())
+        CosineSeries::exactly(balls.collect()).of_digits(self.bits)
     }
 
     /// Not above `mu`.

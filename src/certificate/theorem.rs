@@ -154,13 +154,22 @@ fn image(matrix: &[Vec<Ball>], vector: &[Ball], balls: Balls) -> Vec<Ball> {
 /// # Errors
 /// [`NotProved`].
 pub(super) fn prove(certificate: &Certificate) -> Result<Proof, NotProved> {
+    prove_around(certificate, Bound::ZERO)
+}
+
+/// The same for every start that is within `spread` of that of the certificate: each has one motion within the radius. The equations
+/// differ in the condition at `t = 0` alone, by no more than that.
+///
+/// # Errors
+/// [`NotProved`].
+pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<Proof, NotProved> {
     if certificate.odd && !certificate.is_odd()? {
         return Err(NotProved::NotOdd);
     }
     let system = System::of(certificate)?;
     let first = certificate.force.differentiate(coordinate())?;
     let second = first.differentiate(coordinate())?;
-    let defect = system.defect();
+    let defect = system.defect() + spread * system.start;
     let contraction = system.contraction(&Slope::of(along(&first, &system.motion)?))?;
     let left = contraction.below_complement();
     if left <= 0.0 {

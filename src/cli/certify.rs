@@ -3,15 +3,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lindstedt::certificate;
+use lindstedt::Interrupt;
+use lindstedt::certificate::{self, Beyond, NotCertified};
+use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument};
 use lindstedt::export::{latex, text};
+use lindstedt::expr::parse_expression;
 use lindstedt::report::{self, CertificateReport};
 use lindstedt::verify::Verdict;
+use num_traits::Signed as _;
 
 use super::derive::{self, Question};
 use super::files::width;
-use super::{Common, Failure, Format, Outcome, json_text, read_at_most, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, json_text, read_at_most, tolerance, whole};
 
 #[derive(Args)]
 #[command(mut_arg("format", super::without_table))]
@@ -20,6 +24,10 @@ use super::{Common, Failure, Format, Outcome, json_text, read_at_most, tolerance
 pub struct Arguments {
     #[command(flatten)]
     pub question: Question,
+    /// Positive amplitudes, 1/10:3 say: how far from the first of them on the formula is proved to be within the tolerance, for every
+    /// amplitude
+    #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
+    range: Option<(Rational, Rational)>,
     #[command(flatten)]
     pub common: Common,
 }
@@ -37,20 +45,39 @@ pub struct CheckArguments {
 /// A certificate of the most harmonics has so many bytes.
 const LARGEST_CERTIFICATE: usize = 16 << 20;
 
+/// Two positive numbers, the smaller one first.
+fn range(text: &str) -> Result<(Rational, Rational), String> {
+    let end = |text: &str| parse_expression(text).ok().and_then(|value| value.as_number().cloned());
+    let ends = text.split_once(':').and_then(|(low, high)| end(low).zip(end(high)));
+    ends.filter(|(low, high)| low.is_positive() && low < high)
+        .ok_or_else(|| "expected two positive fractions or decimals, the smaller one first, such as 1/10:3".to_owned())
+}
+
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
     let (oscillator, values, solution) = derive::solved(&arguments.question)?;
     let values = values.unwrap_or_default();
     derive::needed(&solution, &values)?;
     let proved = certificate::certify(&oscillator, &solution, &values);
-    let (certificate, certified) = proved.map_err(|error| Failure::refused(&error, error.help().map(str::to_owned)))?;
+    let refused = |error: &NotCertified| Failure::refused(error, error.help().map(str::to_owned));
+    let (certificate, certified) = proved.map_err(|error| refused(&error))?;
+    let tolerance = tolerance(&arguments.common);
+    let interrupt = Interrupt::by(&STOP);
+    let validity = arguments
+        .range
+        .as_ref()
+        .map(|(low, high)| certificate::validity(&oscillator, &solution, &values, [low, high], tolerance, &interrupt));
+    let validity = validity.transpose().map_err(|error| refused(&error))?;
     let report = CertificateReport {
         question: Some((&solution, &values)),
         certificate: &certificate,
         certified: &certified,
-        tolerance: tolerance(&arguments.common),
+        validity: validity.as_ref(),
+        tolerance,
     };
-    printed(&report, &arguments.common)
+    let outcome = printed(&report, &arguments.common)?;
+    let partial = validity.is_some_and(|validity| validity.beyond == Beyond::Stopped);
+    Ok(Outcome { partial, ..outcome })
 }
 
 pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
@@ -67,6 +94,7 @@ pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
         question: None,
         certificate: &certificate,
         certified: &certified,
+        validity: None,
         tolerance: tolerance(&arguments.common),
     };
     printed(&report, &arguments.common)
@@ -83,6 +111,11 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
     let text = match format {
         Format::Text => text::document(&document, width(common.output.as_deref())),
         Format::Latex => latex::document(&document),
+        Format::Json if report.validity.is_some() => {
+            return Err(Failure::Usage(
+                "--range is not in a certificate, which is of one amplitude: print it as text".to_owned(),
+            ));
+        }
         Format::Json => json_text(&json::certificate(report.certificate))?,
         Format::Csv => super::no_table()?,
         Format::Code(language) => super::no_program(language)?,

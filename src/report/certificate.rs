@@ -4,9 +4,11 @@ use std::borrow::Cow;
 
 use super::solution::law_blocks;
 use super::{Block, Document};
-use crate::certificate::{Certificate, Certified, Enclosure, Errors, Range, coordinate};
+use crate::certificate::{Beyond, Certificate, Certified, Enclosure, Errors, Range, Validity, coordinate};
 use crate::decimal::{decimal, plain_decimal, significant};
 use crate::derivation::Line;
+use crate::exact::Rational;
+use crate::exact::rational::to_f64;
 use crate::expr::Expr;
 use crate::solution::Solution;
 use crate::values::Values;
@@ -21,6 +23,8 @@ pub struct CertificateReport<'a> {
     pub certificate: &'a Certificate,
     /// What it proves.
     pub certified: &'a Certified,
+    /// How far the formula is proved to hold, where that was asked for.
+    pub validity: Option<&'a Validity>,
     /// The error of the frequency up to which the formula passes.
     pub tolerance: f64,
 }
@@ -44,7 +48,8 @@ impl CertificateReport<'_> {
 /// let solution = solve(&pendulum, &Options::default())?;
 /// let at = "A = 3/2".parse()?;
 /// let (proof, certified) = certify(&pendulum, &solution, &at)?;
-/// let report = CertificateReport { question: Some((&solution, &at)), certificate: &proof, certified: &certified, tolerance: 0.01 };
+/// let question = Some((&solution, &at));
+/// let report = CertificateReport { question, certificate: &proof, certified: &certified, validity: None, tolerance: 0.01 };
 /// let text = lindstedt::export::text::document(&certificate(&report), 100);
 /// assert!(text.contains("0.86060834667961"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -94,6 +99,10 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     }
     blocks.push(Block::Facts(facts));
     sections.push(blocks);
+    sections.extend(report.validity.map(|validity| {
+        let heading = Block::Heading("Proved for a range of amplitudes".to_owned());
+        vec![heading, Block::Facts(of_range(validity, report.tolerance))]
+    }));
     let proof = report.certified.proof;
     let upper = |bound: crate::exact::Bound| significant(rounded_up(bound.value()), 4);
     sections.push(vec![
@@ -107,6 +116,36 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         ]),
     ]);
     Document { sections }
+}
+
+fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> {
+    let amplitude = |value: &Rational| significant(to_f64(value), 6);
+    let within = significant(100.0 * tolerance, 3);
+    let beyond = match &validity.beyond {
+        Beyond::Asked => None,
+        Beyond::Further(place) => Some(format!("omega is off by more at A = {}, proved", amplitude(place))),
+        Beyond::Open(place) => Some(format!(
+            "at A = {} omega is neither proved to be within nor beyond",
+            amplitude(place)
+        )),
+        Beyond::Unproved(place, reason) => Some(format!("at A = {}: {reason}", amplitude(place))),
+        Beyond::Stopped => Some("stopped before the end".to_owned()),
+    };
+    let proved = format!(
+        "omega within {within} % for every A from {} to {}",
+        amplitude(&validity.from),
+        amplitude(&validity.to)
+    );
+    let proved = match validity.intervals {
+        0 => "omega is not proved to be within the tolerance at the first amplitude".to_owned(),
+        _ => proved,
+    };
+    let intervals = format!("{} intervals of A, a proof each", validity.intervals);
+    [("range", proved)]
+        .into_iter()
+        .chain(beyond.map(|words| ("beyond", words)))
+        .chain([("proof", intervals)])
+        .collect()
 }
 
 fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str, String)> {

@@ -1,10 +1,10 @@
 //! Certificates against frequencies that are known to forty digits: arithmetic-geometric means, in whole numbers of another crate.
 
-use lindstedt::certificate::{Certificate, CheckError, NotCertified, NotProved, certify, check};
+use lindstedt::certificate::{Beyond, Certificate, CheckError, NotCertified, NotProved, certify, check, validity};
 use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::verify::motions;
-use lindstedt::{Method, Options, Oscillator, Solution, Values, solve};
+use lindstedt::{Interrupt, Method, Options, Oscillator, Solution, Values, solve};
 use num_bigint::BigInt;
 use num_traits::{Signed, Zero};
 use proptest::prelude::*;
@@ -426,4 +426,128 @@ fn each_inequality_is_checked() {
         reason(&|certificate| certificate.coefficients = vec![]),
         CheckError::NotProved(_)
     ));
+}
+
+/// How far a formula is within a tolerance, as it is proved, and the amplitude from which on it is not.
+fn proved_range(
+    equation: &str,
+    method: Method,
+    order: u32,
+    at: &str,
+    [from, to]: [Rational; 2],
+    tolerance: f64,
+) -> (Rational, Beyond, Solution) {
+    let oscillator = Oscillator::parse(equation).expect("an equation");
+    let options = Options {
+        method: Some(method),
+        order: Some(order),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).expect("a solution");
+    let at: Values = at.parse().expect("values");
+    let proved = validity(
+        &oscillator,
+        &solution,
+        &at,
+        [&from, &to],
+        tolerance,
+        &Interrupt::default(),
+    );
+    let proved = proved.unwrap_or_else(|error| panic!("{equation}: {error}"));
+    assert!(
+        proved.from == from && proved.within <= tolerance && proved.intervals > 0,
+        "{proved:?}"
+    );
+    (proved.to, proved.beyond, solution)
+}
+
+#[test]
+fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
+    let cubic = ("x'' + x - x^3/6 = 0", ratio(1, 10), ratio(12, 5));
+    let sine = ("x'' + sin(x) = 0", ratio(1, 1), ratio(2, 1));
+    for ((equation, from, end), order, tolerance) in [
+        (&cubic, 2, 1e-3),
+        (&cubic, 2, 1e-2),
+        (&cubic, 4, 1e-2),
+        (&cubic, 6, 1e-4),
+        (&sine, 2, 1e-2),
+    ] {
+        let ends = [from.clone(), end.clone()];
+        let (to, beyond, solution) =
+            proved_range(equation, Method::LindstedtPoincare, order, "", ends.clone(), tolerance);
+        let error = |amplitude: &Rational| {
+            let at: Values = format!("A = {amplitude}").parse().expect("values");
+            let formula = solution.motion_at(&at).expect("a motion").frequency();
+            let truth = if *equation == sine.0 {
+                pendulum(amplitude)
+            } else {
+                duffing(&ratio(-1, 6), amplitude)
+            };
+            (formula / to_f64(&truth) - 1.0).abs()
+        };
+        // Every amplitude of the range is within, and hardly one beyond it.
+        for k in 0..=50 {
+            let amplitude = &ends[0] + (&to - &ends[0]) * ratio(k, 50);
+            assert!(
+                error(&amplitude) <= tolerance,
+                "order {order}, A = {}",
+                to_f64(&amplitude)
+            );
+        }
+        let Beyond::Further(outside) = beyond else {
+            panic!("order {order}: {beyond:?}");
+        };
+        assert!(
+            error(&outside) > tolerance && to_f64(&outside) < 1.03 * to_f64(&to),
+            "order {order}: {}, {}",
+            to_f64(&to),
+            to_f64(&outside)
+        );
+    }
+}
+
+#[test]
+fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
+    // An exact law has no error.
+    let (to, beyond, _) = proved_range(
+        "x'' + x + eps*x^3 = 0",
+        Method::HarmonicBalance,
+        1,
+        "eps = 1/10",
+        [ratio(1, 100), ratio(2, 1)],
+        0.01,
+    );
+    assert_eq!((to, beyond), (ratio(2, 1), Beyond::Asked));
+    // The edge of the well of x - x^2 is x = 1, beyond which nothing returns.
+    let quadratic = "x'' + x - x^2 = 0";
+    let (to, beyond, _) = proved_range(
+        quadratic,
+        Method::LindstedtPoincare,
+        6,
+        "",
+        [ratio(1, 100), ratio(3, 2)],
+        0.5,
+    );
+    assert!(
+        to < ratio(1, 1) && matches!(beyond, Beyond::Open(_) | Beyond::Unproved(..) | Beyond::Further(_)),
+        "{to}, {beyond:?}"
+    );
+    // A law without an expression.
+    let oscillator = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
+    let balance = Options {
+        method: Some(Method::HarmonicBalance),
+        order: Some(3),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &balance).expect("a solution");
+    let ends = [ratio(1, 10), ratio(1, 1)];
+    let refused = validity(
+        &oscillator,
+        &solution,
+        &Values::default(),
+        [&ends[0], &ends[1]],
+        0.01,
+        &Interrupt::default(),
+    );
+    assert!(matches!(refused, Err(NotCertified::Law(_))), "{refused:?}");
 }

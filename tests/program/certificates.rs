@@ -266,6 +266,18 @@ fn what_is_asked_for_in_vain_is_said() {
             "a proof has no picture",
         ),
         (&["certify", "pendulum", "--at", "A=1", "--format", "csv"], 2, "table"),
+        (
+            &["certify", "pendulum", "--at", "A=1", "--range", "2:1"],
+            2,
+            "the smaller one first",
+        ),
+        (
+            &[
+                "certify", "pendulum", "--at", "A=1", "--range", "1:2", "--format", "json",
+            ],
+            2,
+            "--range is not in a certificate",
+        ),
         (&["check", "no-such-file.json"], 1, "cannot read no-such-file.json"),
         (&["certify", "pendulum", "--at", "A=3/2", "--tolerance", "1e-4"], 3, ""),
     ] {

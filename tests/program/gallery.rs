@@ -222,6 +222,9 @@ fn every_certificate_prints_what_it_printed() {
                 insta::assert_snapshot!("certify-latex", output(&["certify", path, "--format", "latex"]));
             }
         );
+        let cubic = "examples/certify/cubic-pendulum.toml";
+        let range = ["certify", cubic, "--at", "A=1", "--range", "1/10:2.4"];
+        insta::assert_snapshot!("certify-range", output(&range));
         insta::assert_snapshot!("help-certify", output(&["certify", "--help"]));
         insta::assert_snapshot!("help-check", output(&["check", "--help"]));
     });

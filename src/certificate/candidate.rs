@@ -89,7 +89,7 @@ impl NotCertified {
                 "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion",
             ),
             Self::NotProved { .. } => Some(
-                "a smaller amplitude: near the edge of a well, or where the force turns sharply, a motion has more harmonics than a proof can hold",
+                "a smaller amplitude: near the edge of a well, or where the force turns sharply, a motion has more harmonics than a proof can hold; or units in which frequency and amplitude are nearer to one",
             ),
             _ => None,
         }

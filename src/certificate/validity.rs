@@ -17,7 +17,7 @@ use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
-use crate::interrupt::Interrupt;
+use crate::interrupt::Supervision;
 use crate::oscillator::Oscillator;
 use crate::solution::Solution;
 use crate::values::Values;
@@ -50,7 +50,7 @@ pub enum Beyond {
     Open(Rational),
     /// There is no proof of the motion there.
     Unproved(Rational, NotCertified),
-    /// The time is up, or the number of intervals that are tried.
+    /// It was to stop.
     Stopped,
 }
 
@@ -72,11 +72,11 @@ const HEAVIEST: i32 = 4;
 /// ```
 /// use lindstedt::certificate::validity;
 /// use lindstedt::exact::ratio;
-/// use lindstedt::{Interrupt, Options, Oscillator, solve};
+/// use lindstedt::{Options, Oscillator, Supervision, solve};
 ///
 /// let cubic = Oscillator::parse("x'' + x - x^3/6 = 0")?;
 /// let solution = solve(&cubic, &Options { order: Some(2), ..Options::default() })?;
-/// let proved = validity(&cubic, &solution, &"".parse()?, [&ratio(1, 2), &ratio(1, 1)], 1e-3, &Interrupt::default())?;
+/// let proved = validity(&cubic, &solution, &"".parse()?, [&ratio(1, 2), &ratio(1, 1)], 1e-3, Supervision::default())?;
 /// assert_eq!(proved.to, ratio(1, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -86,7 +86,7 @@ pub fn validity(
     at: &Values,
     [from, to]: [&Rational; 2],
     tolerance: f64,
-    interrupt: &Interrupt,
+    supervision: Supervision,
 ) -> Result<Validity, NotCertified> {
     let mut family = Family::of(oscillator, solution, at, from)?;
     let finer = (1..=4)
@@ -104,17 +104,19 @@ pub fn validity(
         }
     };
     let (mut position, mut width, mut intervals, mut within) = (0, finest / 64, 0, 0.0_f64);
+    supervision.progress.begin(finest as usize);
     let beyond = loop {
         if position == finest {
             break Beyond::Asked;
         }
-        if interrupt.is_requested() {
+        if supervision.interrupt.is_requested() {
             break Beyond::Stopped;
         }
         let next = (position + width).min(finest);
         match family.largest_error(&place(position), &place(next)) {
             Ok(error) if error <= tolerance => {
                 within = within.max(error);
+                (position..next).for_each(|_| supervision.progress.advance());
                 (position, width) = (next, 2 * width);
                 intervals += 1;
             }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lindstedt::Interrupt;
 use lindstedt::certificate::{self, Beyond, NotCertified};
 use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument};
@@ -11,10 +10,12 @@ use lindstedt::export::{latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::report::{self, CertificateReport};
 use lindstedt::verify::Verdict;
+use lindstedt::{Interrupt, Progress, Supervision};
 use num_traits::Signed as _;
 
 use super::derive::{self, Question};
 use super::files::width;
+use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, read_at_most, tolerance, whole};
 
 #[derive(Args)]
@@ -62,11 +63,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let refused = |error: &NotCertified| Failure::refused(error, error.help().map(str::to_owned));
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
     let tolerance = tolerance(&arguments.common);
-    let interrupt = Interrupt::by(&STOP);
-    let validity = arguments
-        .range
-        .as_ref()
-        .map(|(low, high)| certificate::validity(&oscillator, &solution, &values, [low, high], tolerance, &interrupt));
+    let supervision = Supervision {
+        interrupt: Interrupt::by(&STOP),
+        progress: Progress::by(&PROGRESS),
+    };
+    let validity = arguments.range.as_ref().map(|(low, high)| {
+        with_progress("of the range", || {
+            certificate::validity(&oscillator, &solution, &values, [low, high], tolerance, supervision)
+        })
+    });
     let validity = validity.transpose().map_err(|error| refused(&error))?;
     let report = CertificateReport {
         question: Some((&solution, &values)),

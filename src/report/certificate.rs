@@ -9,7 +9,7 @@ use crate::decimal::{decimal, plain_decimal, significant};
 use crate::derivation::Line;
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
-use crate::expr::Expr;
+use crate::expr::{Expr, parse_expression};
 use crate::solution::Solution;
 use crate::values::Values;
 use crate::verify::Verdict;
@@ -120,6 +120,9 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
 
 fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> {
     let amplitude = |value: &Rational| significant(to_f64(value), 6);
+    // What is not proved is not said: six digits, the last one towards the inside of the range.
+    let from = inside(&validity.from, |written, end| written >= end, 1);
+    let to = inside(&validity.to, |written, end| written <= end, 0);
     let within = significant(100.0 * tolerance, 3);
     let beyond = match &validity.beyond {
         Beyond::Asked => None,
@@ -131,11 +134,7 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
         Beyond::Unproved(place, reason) => Some(format!("at A = {}: {reason}", amplitude(place))),
         Beyond::Stopped => Some("stopped before the end".to_owned()),
     };
-    let proved = format!(
-        "omega within {within} % for every A from {} to {}",
-        amplitude(&validity.from),
-        amplitude(&validity.to)
-    );
+    let proved = format!("omega within {within} % for every A from {} to {}", from, to);
     let proved = match validity.intervals {
         0 => "omega is not proved to be within the tolerance at the first amplitude".to_owned(),
         _ => proved,
@@ -196,9 +195,29 @@ fn enclosed(enclosure: &Enclosure) -> String {
         f64::from(MOST)
     };
     let decimals = (known as i32).clamp(0, MOST);
+    let value = to_f64(&enclosure.middle);
     let text = plain_decimal(&enclosure.middle, usize::try_from(decimals).unwrap_or(0));
-    let printed = radius + 0.5 * 10.0_f64.powi(-decimals);
+    // What is very large or small is written with fifteen digits.
+    let rounding = match (1e-4..1e14).contains(&value) {
+        true => 0.5 * 10.0_f64.powi(-decimals),
+        false => 1e-14 * value,
+    };
+    let printed = radius + rounding;
     format!("{text} +- {}", significant(rounded_up(printed), 4))
+}
+
+/// An end of a range with six digits, on its inner side.
+fn inside(end: &Rational, is_inside: fn(&Rational, &Rational) -> bool, side: usize) -> String {
+    let nearest = significant(to_f64(end), 6);
+    let written = parse_expression(&nearest).ok();
+    let written = written.as_ref().and_then(Expr::as_number);
+    match written.is_some_and(|written| is_inside(written, end)) {
+        true => nearest,
+        false => {
+            let (below, above) = ends(to_f64(end), 6);
+            significant([below, above][side], 6)
+        }
+    }
 }
 
 /// A number with its two ends, in one where they agree in what is printed.
@@ -222,20 +241,20 @@ fn between(range: Range, unit: &str) -> String {
 
 /// A little more, so that four digits of it are no less.
 fn rounded_up(value: f64) -> f64 {
-    ends(value).1
+    ends(value, 4).1
 }
 
 /// A little less.
 fn rounded_down(value: f64) -> f64 {
-    ends(value).0
+    ends(value, 4).0
 }
 
-/// The neighbours of a number among those of four digits.
-fn ends(value: f64) -> (f64, f64) {
+/// The neighbours of a number among those of so many digits.
+fn ends(value: f64, digits: i32) -> (f64, f64) {
     if !(value > 0.0 && value.is_finite()) {
         return (value, value);
     }
-    let unit = 10.0_f64.powi(value.log10().floor() as i32 - 3);
+    let unit = 10.0_f64.powi(value.log10().floor() as i32 + 1 - digits);
     let count = value / unit;
     (count.floor() * unit, count.ceil() * unit)
 }

@@ -4,7 +4,7 @@ use lindstedt::certificate::{Beyond, Certificate, CheckError, NotCertified, NotP
 use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::verify::motions;
-use lindstedt::{Interrupt, Method, Options, Oscillator, Solution, Values, solve};
+use lindstedt::{Method, Options, Oscillator, Solution, Supervision, Values, solve};
 use num_bigint::BigInt;
 use num_traits::{Signed, Zero};
 use proptest::prelude::*;
@@ -451,7 +451,7 @@ fn proved_range(
         &at,
         [&from, &to],
         tolerance,
-        &Interrupt::default(),
+        Supervision::default(),
     );
     let proved = proved.unwrap_or_else(|error| panic!("{equation}: {error}"));
     assert!(
@@ -547,7 +547,7 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
         &Values::default(),
         [&ends[0], &ends[1]],
         0.01,
-        &Interrupt::default(),
+        Supervision::default(),
     );
     assert!(matches!(refused, Err(NotCertified::Law(_))), "{refused:?}");
 }

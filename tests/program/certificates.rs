@@ -10,6 +10,8 @@ use lindstedt::exact::{Rational, ratio};
 use lindstedt::export::json::CertificateDocument;
 use serde_json::{Value, json};
 
+use super::documents::python;
+
 fn run(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
     command
@@ -81,14 +83,6 @@ fn what_certify_writes_check_proves() {
         let strict = run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-12"]);
         assert_eq!(strict.status.code(), Some(3), "{example}");
     }
-}
-
-fn python() -> Option<PathBuf> {
-    let asked = Command::new("python3")
-        .args(["-c", "import sys; print(sys.executable)"])
-        .output();
-    let output = asked.ok().filter(|output| output.status.success())?;
-    Some(String::from_utf8(output.stdout).ok()?.trim().into())
 }
 
 /// omega from below and from above, by the second program; `None` where it does not prove the certificate.

@@ -405,7 +405,7 @@ fn hostile_documents_are_refused() {
 }
 
 /// Where Python is, if it is there at all: what starts it by that name may look for it each time.
-fn python() -> Option<PathBuf> {
+pub(super) fn python() -> Option<PathBuf> {
     let asked = Command::new("python3")
         .args(["-c", "import sys; print(sys.executable)"])
         .output();

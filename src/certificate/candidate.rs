@@ -166,7 +166,8 @@ impl Question {
         let force = oscillator.force.substitute_all(&values)?;
         let (amplitude, _) = at.split(&[solution.amplitude.symbol()]);
         let amplitude = amplitude.into_values().next().unwrap_or_else(Expr::one);
-        let start = &solution.equilibrium.substitute_all(&values)? + &amplitude;
+        let equilibrium = solution.equilibrium.substitute_all(&values)?;
+        let start = &equilibrium + &amplitude;
         let start = start
             .as_number()
             .ok_or_else(|| NotCertified::Start(start.to_string()))?
@@ -177,7 +178,8 @@ impl Question {
             .to_polynomial(&mut |_| None)?
             .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
         let force = written.as_ref().map_or(force, Expr::from);
-        let odd = super::force::is_odd(&force)?;
+        // In one of two wells beside each other a motion has all harmonics, whatever the symmetry of the force.
+        let odd = equilibrium.is_zero() && super::force::is_odd(&force)?;
         Ok(Self { force, start, odd })
     }
 

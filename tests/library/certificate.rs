@@ -330,6 +330,29 @@ proptest! {
 }
 
 #[test]
+fn motions_in_one_well_and_over_both() {
+    // In the well about x = 1 of the odd force -x + x^3, and over both wells.
+    for (about, start) in [("1", "A = 1/4"), ("0", "A = 2")] {
+        let about = parse_expression(about).expect("a number");
+        let oscillator = Oscillator::parse("x'' - x + x^3 = 0")
+            .expect("an equation")
+            .about(about);
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at: Values = start.parse().expect("values");
+        let (certificate, proved) =
+            certify(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{start}: {error}"));
+        let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
+            .expect("a verdict")
+            .true_frequency;
+        assert!(
+            (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12,
+            "{start}"
+        );
+        assert!(check(&certificate).is_ok());
+    }
+}
+
+#[test]
 fn each_inequality_is_checked() {
     let (_, _, _, sound) = certified("x'' + x + eps*x^3 = 0", 2, "eps = 1, A = 1");
     let reason = |change: &dyn Fn(&mut Certificate)| {

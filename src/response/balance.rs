@@ -20,7 +20,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::driven::Driven;
-use super::harmonics::{Harmonics, Transform};
+
+use crate::numeric::harmonics::{Harmonics, Transform};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 

@@ -33,7 +33,6 @@ pub mod continuation;
 pub mod cycle;
 pub mod driven;
 mod error;
-mod harmonics;
 pub mod hopf;
 mod judgement;
 pub mod jump;

@@ -12,14 +12,14 @@ use num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
 /// Harmonics 0 to some highest one: twice the mean, then cosines; sines.
-pub(super) struct Harmonics {
-    pub(super) cosines: Vec<f64>,
-    pub(super) sines: Vec<f64>,
+pub(crate) struct Harmonics {
+    pub(crate) cosines: Vec<f64>,
+    pub(crate) sines: Vec<f64>,
 }
 
 impl Harmonics {
     /// Adds what stands at one phase.
-    pub(super) fn add(&mut self, phase: f64, value: f64) {
+    pub(crate) fn add(&mut self, phase: f64, value: f64) {
         if value == 0.0 {
             return;
         }
@@ -37,12 +37,12 @@ impl Harmonics {
     }
 
     /// The cosine of an index of either sign.
-    pub(super) fn cosine(&self, index: isize) -> f64 {
+    pub(crate) fn cosine(&self, index: isize) -> f64 {
         self.cosines[index.unsigned_abs()]
     }
 
     /// The sine of an index of either sign.
-    pub(super) fn sine(&self, index: isize) -> f64 {
+    pub(crate) fn sine(&self, index: isize) -> f64 {
         let value = self.sines[index.unsigned_abs()];
         if index < 0 { -value } else { value }
     }
@@ -50,7 +50,7 @@ impl Harmonics {
 
 /// The transform of a number of samples.
 #[derive(Clone)]
-pub(super) struct Transform(Arc<dyn Fft<f64>>);
+pub(crate) struct Transform(Arc<dyn Fft<f64>>);
 
 impl std::fmt::Debug for Transform {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -60,17 +60,17 @@ impl std::fmt::Debug for Transform {
 
 impl Transform {
     /// Of so many samples a period.
-    pub(super) fn new(samples: usize) -> Self {
+    pub(crate) fn new(samples: usize) -> Self {
         Self(FftPlanner::new().plan_fft_forward(samples))
     }
 
     /// The number of samples.
-    pub(super) fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.0.len()
     }
 
     /// The harmonics of samples, up to `count`, which is at most half the number of samples.
-    pub(super) fn harmonics(&self, values: &[f64], count: usize) -> Harmonics {
+    pub(crate) fn harmonics(&self, values: &[f64], count: usize) -> Harmonics {
         let mut parts: Vec<Complex<f64>> = values.iter().map(|value| Complex::from(*value)).collect();
         self.0.process(&mut parts);
         let factor = 2.0 / values.len() as f64;
@@ -83,7 +83,7 @@ impl Transform {
     }
 
     /// The sum of waves, `(cosine, sine)` of the harmonics from 0 on, at the samples.
-    pub(super) fn sum_of_waves(&self, waves: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
+    pub(crate) fn sum_of_waves(&self, waves: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
         let mut parts: Vec<Complex<f64>> = waves.map(|[cosine, sine]| Complex::new(cosine, sine)).collect();
         parts.resize(self.samples(), Complex::from(0.0));
         self.0.process(&mut parts);

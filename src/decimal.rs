@@ -65,6 +65,15 @@ pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
     Rational::from_integer(mantissa) * Pow::pow(Rational::from_integer(10.into()), power)
 }
 
+/// The decimals of so many significant digits next to a fraction, the first not above it and the second not below: both are the fraction
+/// itself where it is one.
+pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
+    let (_, power) = scientific(value, digits);
+    let unit: Rational = Pow::pow(Rational::from_integer(10.into()), power);
+    let count = value / &unit;
+    [count.floor() * &unit, count.ceil() * unit]
+}
+
 /// A fraction with so many significant digits, as [`significant`] writes it, beyond the range of doubles as well.
 pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     let double = to_f64(value);

@@ -7,19 +7,21 @@
 use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
-use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
+use num_traits::{ToPrimitive as _, Zero as _};
 
 use super::cosine_series::WORKING;
 use super::force::along;
 use super::formula::{Errors, JudgedFormula};
 use super::theorem::{NotProved, correction, prove};
 use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula};
+use crate::decimal::neighbours;
 use crate::exact::ball::Balls;
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::method::motion::NoMotion;
+use crate::numeric::harmonics::Transform;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::values::Values;
@@ -232,16 +234,15 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
     const NOISE: f64 = 1e-11;
     let count = samples.len() - 1;
     let period = samples[count].0;
-    let coefficient = |k: usize| {
-        let waves = (0..count).map(|j| samples[j].1 * (TAU * ((j * k) % count) as f64 / count as f64).cos());
-        let sum: f64 = waves.sum();
-        match (odd && k.is_multiple_of(2), k) {
-            (true, _) => 0.0,
-            (false, 0) => sum / count as f64,
-            (false, _) => 2.0 * sum / count as f64,
-        }
-    };
-    let mut harmonics: Vec<f64> = (0..HIGHEST_HARMONIC.min(count / 2)).map(coefficient).collect();
+    let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
+    let mut harmonics = Transform::new(count)
+        .harmonics(&places, HIGHEST_HARMONIC.min(count / 2))
+        .cosines;
+    // Of the constant twice the mean.
+    harmonics[0] /= 2.0;
+    if odd {
+        harmonics.iter_mut().step_by(2).for_each(|even| *even = 0.0);
+    }
     let largest = harmonics.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     while harmonics.len() > 2 && harmonics.last().is_some_and(|last| last.abs() < NOISE * largest) {
         harmonics.pop();
@@ -254,42 +255,25 @@ fn proved(certificate: &mut Certificate) -> Result<Certified, NotProved> {
     certificate.inverse = inverse(certificate)?;
     certificate.sigma = weight_of_mu(certificate);
     let proof = prove(certificate)?;
-    certificate.claim = above(proof.radius.value());
+    let [_, claim] = claimed(proof.radius.value());
+    certificate.claim = claim;
     let certified = formula::certified(certificate, proof)?;
     if let (Some(claimed), Some(errors)) = (&mut certificate.formula, &certified.formula) {
-        claim(claimed, errors);
+        claim_errors(claimed, errors);
     }
     Ok(certified)
 }
 
-/// Three decimal digits, not below.
-fn above(value: f64) -> Rational {
-    decimal(value, 1)
+/// The neighbours among the decimals of three digits; of infinity zero, a claim that does not hold.
+fn claimed(value: f64) -> [Rational; 2] {
+    neighbours(&from_f64(value).unwrap_or_default(), 3)
 }
 
-/// Three decimal digits, not above.
-fn below(value: f64) -> Rational {
-    decimal(value, 0)
-}
-
-fn decimal(value: f64, up: i64) -> Rational {
-    let Some(exact) = from_f64(value).filter(|value| value.is_positive()) else {
-        return Rational::zero();
+fn claim_errors(formula: &mut JudgedFormula, errors: &Errors) {
+    let both = |range: formula::Range| {
+        let ([lower, _], [_, upper]) = (claimed(range.lower), claimed(range.upper));
+        [lower, upper]
     };
-    let places = 2 - value.log10().floor().to_i32().unwrap_or(0);
-    let ten = Integer::from(10).pow(places.unsigned_abs());
-    let unit = if places >= 0 {
-        Rational::new(1.into(), ten)
-    } else {
-        Rational::from_integer(ten)
-    };
-    let count = (&exact / &unit).floor();
-    let whole = count.clone() * &unit == exact;
-    (count + Rational::from_integer(if whole { 0 } else { up }.into())) * unit
-}
-
-fn claim(formula: &mut JudgedFormula, errors: &Errors) {
-    let both = |range: formula::Range| [below(range.lower), above(range.upper)];
     formula.deviation = both(errors.deviation);
     formula.frequency_error = both(errors.frequency);
     formula.drift = both(errors.drift);

@@ -13,14 +13,13 @@
 //! Source: J.-P. Lessard, J. D. Mireles James: Computer assisted Fourier analysis in sequence spaces of varying regularity,
 //! SIAM Journal on Mathematical Analysis 49 (2017), 530-561.
 
-use std::f64::consts::TAU;
-
 use num_traits::{Signed as _, Zero};
 
 use crate::exact::Integer;
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
+use crate::numeric::harmonics::Transform;
 
 /// The digits with which functions are computed. Those of an approximate motion are fewer.
 pub(super) const WORKING: Balls = Balls { bits: 224 };
@@ -396,25 +395,16 @@ impl CosineSeries {
     /// About `function` of it, from samples; nothing is proved of it. `None` where a sample has no value.
     fn sampled(&self, function: impl Fn(f64) -> f64) -> Option<Self> {
         const DIGITS: f64 = 1e-15;
-        let numbers: Vec<f64> = self.coefficients.iter().map(|ball| WORKING.nearest(ball)).collect();
-        let count = (8 * numbers.len()).next_power_of_two().clamp(64, 2048);
-        let waves: Vec<f64> = (0..count).map(|j| (TAU * j as f64 / count as f64).cos()).collect();
-        let samples: Option<Vec<f64>> = (0..count)
-            .map(|j| {
-                let terms = numbers.iter().enumerate().map(|(k, c)| c * waves[j * k % count]);
-                Some(function(terms.sum())).filter(|value| value.is_finite())
-            })
-            .collect();
-        let samples = samples?;
-        let coefficient = |k: usize| {
-            let sum: f64 = samples
-                .iter()
-                .enumerate()
-                .map(|(j, value)| value * waves[j * k % count])
-                .sum();
-            sum / count as f64 * if k == 0 { 1.0 } else { 2.0 }
-        };
-        let mut coefficients: Vec<f64> = (0..count / 2).map(coefficient).collect();
+        let waves = self.coefficients.iter().map(|ball| [WORKING.nearest(ball), 0.0]);
+        let count = (8 * self.coefficients.len()).next_power_of_two().clamp(64, 4096);
+        let transform = Transform::new(count);
+        let samples: Vec<f64> = transform.sum_of_waves(waves).into_iter().map(function).collect();
+        if samples.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let mut coefficients = transform.harmonics(&samples, count / 2 - 1).cosines;
+        // Of a constant twice the mean.
+        coefficients[0] /= 2.0;
         let largest = coefficients.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         // What an even or odd function has not must be missing: half of all products are those with zero.
         for coefficient in &mut coefficients {

@@ -210,45 +210,36 @@ impl<'a> Family<'a> {
             .value())
     }
 
-    /// What is known of the first of these amplitudes, and of the others where that is nothing.
-    fn beyond(&self, amplitudes: &[Rational], tolerance: f64) -> Beyond {
-        let mut known = Beyond::Stopped;
-        for amplitude in amplitudes {
-            let certified = certify(
+    /// The first of these amplitudes at which the formula is proved to be off by more, or what is known of the very first.
+    fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> Beyond {
+        let is_further = |amplitude: &Rational| {
+            let (_, certified) = certify(
                 self.oscillator,
                 self.solution,
                 &with(&self.at, self.solution, amplitude),
-            );
-            let found = match certified {
-                Ok((_, certified))
-                    if certified
-                        .formula
-                        .is_some_and(|errors| errors.relative.lower > tolerance) =>
-                {
-                    return Beyond::Further(amplitude.clone());
-                }
-                Ok(_) => Beyond::Open(amplitude.clone()),
-                Err(reason) => Beyond::Unproved(amplitude.clone(), reason),
-            };
-            if known == Beyond::Stopped {
-                known = found;
-            }
+            )?;
+            Ok(certified
+                .formula
+                .is_some_and(|errors| errors.relative.lower > tolerance))
+        };
+        let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
+        match (further, is_further(&amplitudes[0])) {
+            (Some(further), _) => Beyond::Further(further.clone()),
+            (None, Ok(_)) => Beyond::Open(amplitudes[0].clone()),
+            (None, Err(reason)) => Beyond::Unproved(amplitudes[0].clone(), reason),
         }
-        known
     }
 }
 
 /// The proof of all motions whose start is so near, with a larger block where that of the last one is too small.
 fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Proof, NotProved> {
-    let proof = |certificate: &mut Certificate| {
-        certificate.inverse = inverse(certificate)?;
-        certificate.sigma = weight_of_mu(certificate).min(HEAVIEST);
-        prove_around(certificate, spread)
-    };
-    match proof(certificate) {
+    certificate.sigma = weight_of_mu(certificate).min(HEAVIEST);
+    match prove_around(certificate, spread) {
         Err(NotProved::NoContraction(_)) if certificate.highest < HIGHEST_HARMONIC / 2 => {
             certificate.highest = (certificate.highest * 3 / 2) | 1;
-            proof(certificate)
+            certificate.inverse = inverse(certificate)?;
+            certificate.sigma = weight_of_mu(certificate).min(HEAVIEST);
+            prove_around(certificate, spread)
         }
         other => other,
     }

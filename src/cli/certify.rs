@@ -55,6 +55,12 @@ fn range(text: &str) -> Result<(Rational, Rational), String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    without_picture(&arguments.common)?;
+    if arguments.range.is_some() && format(&arguments.common) == Format::Json {
+        return Err(Failure::Usage(
+            "--range is not in a certificate, which is of one amplitude: print it as text".to_owned(),
+        ));
+    }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
     let (oscillator, values, solution) = derive::solved(&arguments.question)?;
     let values = values.unwrap_or_default();
@@ -86,6 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
+    without_picture(&arguments.common)?;
     let file = &arguments.file;
     let refused = |reason: &dyn std::fmt::Display| Failure::Refused(format!("{}: {reason}", file.display()));
     let text = read_at_most(file, LARGEST_CERTIFICATE)?;
@@ -105,31 +112,35 @@ pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     printed(&report, &arguments.common)
 }
 
-fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failure> {
-    let document = report::certificate(report);
-    // A file of this ending is read by `check`.
+/// The format asked for; a file whose name ends in .json is one that `check` reads.
+fn format(common: &Common) -> Format {
     let ending = common.output.as_ref().and_then(|path| path.extension());
-    let format = match common.format {
+    match common.format {
         Format::Text if ending.is_some_and(|ending| ending == "json") => Format::Json,
         format => format,
-    };
+    }
+}
+
+/// Refuses a picture, before any work is done for it.
+fn without_picture(common: &Common) -> Result<(), Failure> {
+    match common.plot {
+        None => Ok(()),
+        Some(_) => Err(Failure::Refused(
+            "a proof has no picture\n  help: `derive` draws the formula beside the true motion".to_owned(),
+        )),
+    }
+}
+
+fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failure> {
+    let document = report::certificate(report);
+    let format = format(common);
     let text = match format {
         Format::Text => text::document(&document, width(common.output.as_deref())),
         Format::Latex => latex::document(&document),
-        Format::Json if report.validity.is_some() => {
-            return Err(Failure::Usage(
-                "--range is not in a certificate, which is of one amplitude: print it as text".to_owned(),
-            ));
-        }
         Format::Json => json_text(&json::certificate(report.certificate))?,
         Format::Csv => super::no_table()?,
         Format::Code(language) => super::no_program(language)?,
     };
-    if common.plot.is_some() {
-        return Err(Failure::Refused(
-            "a proof has no picture\n  help: `derive` draws the formula beside the true motion".to_owned(),
-        ));
-    }
     Ok(Outcome {
         result: whole(text),
         picture: None,

@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{Beyond, Certificate, Certified, Enclosure, Errors, Range, Validity, coordinate};
-use crate::decimal::{decimal, plain_decimal, significant};
+use crate::decimal::{decimal, neighbours, plain_decimal, significant, significant_fraction};
 use crate::derivation::Line;
 use crate::exact::Rational;
-use crate::exact::rational::to_f64;
-use crate::expr::{Expr, parse_expression};
+use crate::exact::rational::{from_f64, to_f64};
+use crate::expr::Expr;
 use crate::solution::Solution;
 use crate::values::Values;
 use crate::verify::Verdict;
@@ -104,7 +104,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         vec![heading, Block::Facts(of_range(validity, report.tolerance))]
     }));
     let proof = report.certified.proof;
-    let upper = |bound: crate::exact::Bound| significant(rounded_up(bound.value()), 4);
+    let upper = |bound: crate::exact::Bound| above(bound.value());
     sections.push(vec![
         Block::Heading("The proof: exactly one pair (1/omega^2, X) within r of the certificate's".to_owned()),
         Block::Facts(vec![
@@ -121,8 +121,8 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
 fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> {
     let amplitude = |value: &Rational| significant(to_f64(value), 6);
     // What is not proved is not said: six digits, the last one towards the inside of the range.
-    let from = inside(&validity.from, |written, end| written >= end, 1);
-    let to = inside(&validity.to, |written, end| written <= end, 0);
+    let from = significant_fraction(&neighbours(&validity.from, 6)[1], 6);
+    let to = significant_fraction(&neighbours(&validity.to, 6)[0], 6);
     let within = significant(100.0 * tolerance, 3);
     let beyond = match &validity.beyond {
         Beyond::Asked => None,
@@ -159,7 +159,7 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
         lower: 100.0 * errors.relative.lower,
         upper: 100.0 * errors.relative.upper,
     };
-    let (deviation, drift) = (rounded_up(errors.deviation.upper), rounded_up(errors.drift.upper));
+    let (deviation, drift) = (above(errors.deviation.upper), above(errors.drift.upper));
     let within = significant(100.0 * report.tolerance, 3);
     let verdict = match report.verdict() {
         Some(Verdict::Pass) => format!("pass (omega within {within} %, proved)"),
@@ -173,11 +173,7 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
             ("largest deviation at one phase", between(errors.deviation, "")),
             (
                 "deviation in time",
-                format!(
-                    "|{letter}(t) - formula| <= {} + {}*|t| for all t",
-                    significant(deviation, 4),
-                    significant(drift, 4)
-                ),
+                format!("|{letter}(t) - formula| <= {} + {}*|t| for all t", deviation, drift),
             ),
             ("verdict", verdict),
         ])
@@ -203,21 +199,7 @@ fn enclosed(enclosure: &Enclosure) -> String {
         false => 1e-14 * value,
     };
     let printed = radius + rounding;
-    format!("{text} +- {}", significant(rounded_up(printed), 4))
-}
-
-/// An end of a range with six digits, on its inner side.
-fn inside(end: &Rational, is_inside: fn(&Rational, &Rational) -> bool, side: usize) -> String {
-    let nearest = significant(to_f64(end), 6);
-    let written = parse_expression(&nearest).ok();
-    let written = written.as_ref().and_then(Expr::as_number);
-    match written.is_some_and(|written| is_inside(written, end)) {
-        true => nearest,
-        false => {
-            let (below, above) = ends(to_f64(end), 6);
-            significant([below, above][side], 6)
-        }
-    }
+    format!("{text} +- {}", above(printed))
 }
 
 /// A number with its two ends, in one where they agree in what is printed.
@@ -230,33 +212,26 @@ fn between(range: Range, unit: &str) -> String {
         return format!("{middle}{unit}");
     }
     if range.lower == 0.0 || range.upper < 1e-9 {
-        return format!("at most {}{unit}", significant(rounded_up(range.upper), 4));
+        return format!("at most {}{unit}", above(range.upper));
     }
-    format!(
-        "between {}{unit} and {}{unit}",
-        significant(rounded_down(range.lower), 4),
-        significant(rounded_up(range.upper), 4)
-    )
+    format!("between {}{unit} and {}{unit}", below(range.lower), above(range.upper))
 }
 
-/// A little more, so that four digits of it are no less.
-fn rounded_up(value: f64) -> f64 {
-    ends(value, 4).1
+/// Four digits, not below.
+fn above(value: f64) -> String {
+    outward(value, 1)
 }
 
-/// A little less.
-fn rounded_down(value: f64) -> f64 {
-    ends(value, 4).0
+/// Four digits, not above.
+fn below(value: f64) -> String {
+    outward(value, 0)
 }
 
-/// The neighbours of a number among those of so many digits.
-fn ends(value: f64, digits: i32) -> (f64, f64) {
-    if !(value > 0.0 && value.is_finite()) {
-        return (value, value);
+fn outward(value: f64, side: usize) -> String {
+    match from_f64(value) {
+        Some(exact) => significant_fraction(&neighbours(&exact, 4)[side], 4),
+        None => value.to_string(),
     }
-    let unit = 10.0_f64.powi(value.log10().floor() as i32 + 1 - digits);
-    let count = value / unit;
-    (count.floor() * unit, count.ceil() * unit)
 }
 
 fn block(certificate: &Certificate) -> String {

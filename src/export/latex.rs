@@ -6,12 +6,13 @@
 //! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek letters and the named
 //! functions.
 
-mod comparison;
+pub(super) mod comparison;
 mod expression;
 mod impact;
 mod table;
 
 pub use expression::{expression, inside, symbol};
+pub(super) use table::Table;
 
 pub use super::steps::latex as steps;
 use num_traits::Zero;
@@ -259,43 +260,100 @@ struct Page {
     rows: Vec<String>,
 }
 
+/// How a block is set.
+pub(super) enum Setting {
+    /// Rows of `align*`.
+    Equations(Vec<String>),
+    /// A table.
+    Table(Table),
+    /// Words.
+    Words,
+}
+
+/// How a block is set, here and wherever formulas are handed on as LaTeX.
+pub(super) fn setting(block: &Block) -> Setting {
+    let equation_of = |left: String, right: String| Setting::Equations(vec![format!("{left} &= {right}")]);
+    match block {
+        Block::Question(question) => Setting::Equations(vec![equation(question).replacen(" = ", " &= ", 1)]),
+        Block::QuestionAsTyped(question) => Setting::Equations(vec![typed(question).replacen(" = ", " &= ", 1)]),
+        Block::Law { left, right } => equation_of(expression(left), sum(right)),
+        Block::Relation(relation) => Setting::Equations(vec![zero_is(relation)]),
+        Block::Equality { left, right } => equation_of(expression(left), expression(right)),
+        Block::Line(line) => Setting::Equations(super::steps::line_as_latex(line.as_ref())),
+        Block::CycleAmplitude {
+            symbol: name,
+            amplitude,
+        } => equation_of(symbol(*name), sum(amplitude)),
+        Block::Motion(solution) => Setting::Equations(motion(solution)),
+        Block::Definition(definition) => equation_of(symbol(definition.symbol), constant(&definition.meaning)),
+        Block::Value { name, value, .. } => equation_of(symbol(*name), scientific(*value)),
+        Block::Reading { reading, .. } => Setting::Equations(vec![impact::reading(*reading)]),
+        Block::Fitted {
+            fitted,
+            barrier,
+            rule,
+            letters,
+            per_stiffness,
+        } => Setting::Equations(vec![impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness)]),
+        Block::Phase { phase, letters, .. } => Setting::Equations(impact::phase(phase, *letters)),
+        Block::SiValue {
+            name,
+            formula,
+            value,
+            unit,
+            ..
+        } => Setting::Equations(vec![impact::si_value(name, *formula, *value, unit)]),
+        Block::Table { head, rows } => Setting::Table(table::table(head, rows)),
+        Block::Methods { rows, at, .. } => Setting::Table(comparison::methods(rows, at)),
+        Block::Quantities { columns, rows, .. } => Setting::Table(impact::quantities(columns, rows)),
+        Block::ContactLaws { rows } => Setting::Table(impact::contact_laws(rows)),
+        Block::ImpactMethods { rows, truth, .. } => Setting::Table(impact::methods(rows, *truth)),
+        Block::SiQuantities { columns, rows } => Setting::Table(impact::si_quantities(columns, rows)),
+        Block::Title { .. }
+        | Block::Heading(_)
+        | Block::Note(_)
+        | Block::Remark(_)
+        | Block::Sentence(_)
+        | Block::Detail(_)
+        | Block::Unknowns(_)
+        | Block::Entries { .. }
+        | Block::Facts(_)
+        | Block::Judged { .. }
+        | Block::Truth { .. }
+        | Block::Refused(_)
+        | Block::TrueMotion(_)
+        | Block::Closing(_)
+        | Block::Verdicts { .. }
+        | Block::Shortcoming { .. } => Setting::Words,
+    }
+}
+
 impl Page {
     fn add(&mut self, block: &Block) {
+        match (setting(block), block) {
+            (Setting::Table(table), _) => {
+                self.flush();
+                self.text.push_str(&table.written());
+            }
+            (Setting::Equations(rows), Block::Question(_) | Block::QuestionAsTyped(_)) => self.questions.extend(rows),
+            (Setting::Equations(rows), Block::Law { .. }) => self.laws.extend(rows),
+            (Setting::Equations(rows), _) => self.rows.extend(rows),
+            (Setting::Words, _) => {}
+        }
+        self.say(block);
+    }
+
+    /// The words of a block, as comments; an article says the rest in words of its own.
+    fn say(&mut self, block: &Block) {
         match block {
-            Block::Question(question) => self.questions.push(equation(question).replacen(" = ", " &= ", 1)),
-            Block::QuestionAsTyped(question) => self.questions.push(typed(question).replacen(" = ", " &= ", 1)),
             Block::Title { words, amplitude } => self.comment(Rank::Note, format!("{words}; {amplitude}")),
             Block::Note(words) | Block::Sentence(words) => self.comment(Rank::Note, words.clone()),
-            Block::Table { head, rows } => self.table(&table::table(head, rows)),
             Block::Remark(words) => self.comment(Rank::Remark, words.clone()),
-            // What an article says in words of its own.
-            Block::Heading(_)
-            | Block::Detail(_)
-            | Block::Unknowns(_)
-            | Block::Entries { .. }
-            | Block::Closing(_)
-            | Block::Shortcoming { .. } => {}
-            Block::Law { left, right } => self.laws.push(format!("{} &= {}", expression(left), sum(right))),
-            Block::Relation(relation) => self.rows.push(zero_is(relation)),
-            Block::Equality { left, right } => {
-                self.rows.push(format!("{} &= {}", expression(left), expression(right)));
-            }
-            Block::Line(line) => self.rows.extend(super::steps::line_as_latex(line.as_ref())),
-            Block::CycleAmplitude {
-                symbol: name,
-                amplitude,
-            } => self.rows.push(format!("{} &= {}", symbol(*name), sum(amplitude))),
-            Block::Motion(solution) => self.rows.extend(motion(solution)),
-            Block::Definition(definition) => {
-                let meaning = constant(&definition.meaning);
-                self.rows.push(format!("{} &= {meaning}", symbol(definition.symbol)));
-            }
-            Block::Value { name, value, source } => {
-                self.rows.push(format!("{} &= {}", symbol(*name), scientific(*value)));
-                if let Some(source) = source {
-                    self.comment(Rank::Note, format!("{name}: {source}"));
-                }
-            }
+            Block::Value {
+                name,
+                source: Some(source),
+                ..
+            } => self.comment(Rank::Note, format!("{name}: {source}")),
             Block::Judged {
                 verification,
                 series_of_omega,
@@ -304,37 +362,14 @@ impl Page {
             Block::Truth {
                 equation, frequency, ..
             } => self.comment(Rank::Note, comparison::truth(equation, frequency)),
-            Block::Methods { rows, at, .. } => self.table(&comparison::methods(rows, at)),
             Block::Facts(facts) => {
                 let facts = facts.iter().map(|(name, value)| format!("{name}: {value}"));
                 self.comments(Rank::Remark, facts);
             }
             Block::Refused(refused) => self.comments(Rank::Note, refused.iter().map(not_applicable)),
             Block::TrueMotion(lines) => self.comments(Rank::Note, lines.iter().cloned()),
-            Block::Reading { reading, .. } => self.rows.push(impact::reading(*reading)),
-            Block::Fitted {
-                fitted,
-                barrier,
-                rule,
-                letters,
-                per_stiffness,
-            } => {
-                let line = impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness);
-                self.rows.push(line);
-            }
-            Block::Phase { phase, letters, .. } => self.rows.extend(impact::phase(phase, *letters)),
-            Block::Quantities { columns, rows, .. } => self.table(&impact::quantities(columns, rows)),
-            Block::ContactLaws { rows } => self.table(&impact::contact_laws(rows)),
-            Block::ImpactMethods { rows, truth, .. } => self.table(&impact::methods(rows, *truth)),
-            Block::SiValue {
-                name,
-                formula,
-                value,
-                unit,
-                ..
-            } => self.rows.push(impact::si_value(name, *formula, *value, unit)),
-            Block::SiQuantities { columns, rows } => self.table(&impact::si_quantities(columns, rows)),
             Block::Verdicts { verdicts, .. } => self.comment(Rank::Verdict, in_one_line(verdicts)),
+            _ => {}
         }
     }
 
@@ -344,11 +379,6 @@ impl Page {
 
     fn comments(&mut self, rank: Rank, lines: impl Iterator<Item = String>) {
         lines.for_each(|words| self.comment(rank, words));
-    }
-
-    fn table(&mut self, table: &str) {
-        self.flush();
-        self.text.push_str(table);
     }
 
     /// Writes what waits: comments, and the equations with the laws behind the question.

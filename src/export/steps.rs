@@ -174,9 +174,14 @@ fn condition_as_text(condition: Condition, y: &str) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn latex(solution: &Solution) -> String {
-    if solution.steps.is_empty() && solution.derivation.is_empty() {
-        return String::new();
+    match rows(solution) {
+        rows if rows.is_empty() => String::new(),
+        rows => format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n")),
     }
+}
+
+/// The derivation as rows of `align*`; none where there is nothing to show.
+pub(super) fn rows(solution: &Solution) -> Vec<String> {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
         let (name, unit) = (symbol(solution.coordinate()), symbol(unit(solution)));
@@ -202,7 +207,7 @@ pub fn latex(solution: &Solution) -> String {
     for step in &solution.steps {
         lines.extend(order_as_latex(step, solution));
     }
-    format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"))
+    lines
 }
 
 fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {

@@ -3,11 +3,9 @@
 //! In come a result or its document of [`report`], and a width; out goes text of plain letters, of lines no longer than that
 //! where words allow it. Relative errors stand in percent.
 
-mod comparison;
-mod impact;
+pub(super) mod comparison;
+pub(super) mod impact;
 mod table;
-
-use std::fmt::Write as _;
 
 pub use super::steps::text as steps;
 use crate::audit::Audit;
@@ -291,15 +289,19 @@ fn facts_in_lines(facts: &[(&str, String)]) -> String {
     facts.iter().map(line).collect()
 }
 
+/// Why an answer has no motion.
+pub(super) fn without_motion(solution: &Solution) -> &'static str {
+    match solution.method {
+        // Whose motion is a formula: it was not asked for.
+        Method::LindstedtPoincare => "the motion is left out",
+        _ => "the motion follows by quadrature of the energy",
+    }
+}
+
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
     if solution.displacement.is_zero() {
-        let why = match solution.method {
-            // Whose motion is a formula: it was not asked for.
-            Method::LindstedtPoincare => "the motion is left out",
-            _ => "the motion follows by quadrature of the energy",
-        };
-        return format!("  {why}\n");
+        return format!("  {}\n", without_motion(solution));
     }
     let waves = terms::waves(
         &solution.displacement,
@@ -354,17 +356,28 @@ fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
 
 /// The verdict, number by number.
 fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbol, tolerance: f64) -> String {
+    let (heading, facts) = judgement(verification, series_of_omega, hbar, tolerance);
+    let line = |(name, value): (&str, String)| format!("  {name:<20}{value}\n");
+    facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
+}
+
+/// What was judged where, and each number with its name.
+pub(super) fn judgement(
+    verification: &Verification,
+    series_of_omega: Option<f64>,
+    hbar: Symbol,
+    tolerance: f64,
+) -> (String, Vec<(&'static str, String)>) {
     /// Of the frequency: no order that there is takes such an error into the last digits at once.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
     let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
-    let mut text = match at.is_empty() {
-        true => "Judged against the true motion\n".to_owned(),
-        false => format!("Judged against the true motion at {}\n", at.join(", ")),
+    let heading = match at.is_empty() {
+        true => "Judged against the true motion".to_owned(),
+        false => format!("Judged against the true motion at {}", at.join(", ")),
     };
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<20}{value}");
-    };
+    let mut facts = Vec::new();
+    let mut line = |name: &'static str, value: String| facts.push((name, value));
     let reason = || {
         verification
             .reason
@@ -432,5 +445,5 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbo
     let verdict = verification.verdict.name();
     let within = significant(100.0 * tolerance, 3);
     line("verdict", format!("{verdict} (|relative error| <= {within} %)"));
-    text
+    (heading, facts)
 }

@@ -1,5 +1,6 @@
 //! The blocks of a comparison as LaTeX.
 
+use super::table::{self, Table};
 use super::{constant, expression, scientific, scientific_text, sum, symbol};
 use crate::decimal::{decimal, significant};
 use crate::expr::{Equation, Expr};
@@ -17,7 +18,7 @@ pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> Str
 }
 
 /// The table, a formula at the end of each row.
-pub(super) fn methods(rows: &[MethodRow], at: &Values) -> String {
+pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
     let at = at.iter();
     let at: Vec<String> = at
         .map(|(name, value)| format!("{} = {}", symbol(name), expression(value)))
@@ -26,12 +27,16 @@ pub(super) fn methods(rows: &[MethodRow], at: &Values) -> String {
         true => String::new(),
         false => format!(" at ${}$", at.join(", ")),
     };
-    let head = format!("method & $\\omega${place} & error in \\% & deviation in \\% & formula \\\\\n\\hline\n");
-    let rows: String = rows.iter().map(row).collect();
-    format!("\\begin{{tabular}}{{lrrrl}}\n\\hline\n{head}{rows}\\hline\n\\end{{tabular}}\n")
+    let omega = format!("$\\omega${place}");
+    Table {
+        places: "lrrrl".to_owned(),
+        head: table::head(&["method", &omega, "error in \\%", "deviation in \\%", "formula"]),
+        rows: rows.iter().map(row).collect(),
+        framed: true,
+    }
 }
 
-fn row(method: &MethodRow) -> String {
+fn row(method: &MethodRow) -> Vec<String> {
     let percent = |value: Option<f64>| {
         value.map_or("--".to_owned(), |value| {
             let sign = if value < 0.0 { "-" } else { "" };
@@ -44,17 +49,17 @@ fn row(method: &MethodRow) -> String {
     };
     let frequency = method.row.frequency;
     let frequency = frequency.map_or("--".to_owned(), |value| format!("${}$", scientific(value)));
-    format!(
-        "{} & {frequency} & {} & {} & {} \\\\\n",
-        method.title,
+    vec![
+        method.title.clone(),
+        frequency,
         percent(method.row.relative_error),
         percent(method.row.max_deviation),
         with_hbar(method),
-    )
+    ]
 }
 
 /// The formula of a row, and the hbar with which it was evaluated.
-fn with_hbar(method: &MethodRow) -> String {
+pub(in crate::export) fn with_hbar(method: &MethodRow) -> String {
     let hbar = method.hbar.map(|(name, value)| {
         let value = scientific_text(&significant(value, 6));
         format!(", \\; {} = {value}", symbol(name))

@@ -1,5 +1,6 @@
 //! The blocks of an impact as LaTeX.
 
+use super::table::{self, Table};
 use super::{scientific, scientific_text};
 use crate::decimal::significant;
 use crate::export::latex::{symbol, typed};
@@ -35,23 +36,21 @@ pub(super) fn fitted(fitted: &FittedLine, barrier: f64, rule: Rule, letters: Let
 }
 
 /// A table: Runge-Kutta, and by every column the number and its error.
-pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> String {
+pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> Table {
     let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
     let row = |row: &Quantity| {
         let cells = row.closed_forms.iter().zip(row.errors());
-        let cells: String = cells
-            .map(|(value, error)| format!(" & ${}$ & {}", scientific(*value), percent(error)))
-            .collect();
-        format!("{} & ${}${cells} \\\\\n", row.name, scientific(row.runge_kutta))
+        let first = [row.name.to_owned(), number(row.runge_kutta)];
+        let rest = cells.flat_map(|(value, error)| [number(*value), percent(error)]);
+        first.into_iter().chain(rest).collect()
     };
-    let names: String = columns
-        .iter()
-        .map(|column| format!(" & {} & error", column.name()))
-        .collect();
-    let head = format!(" & Runge--Kutta{names} \\\\\n\\hline\n");
-    let rows: String = rows.iter().map(row).collect();
-    let places = "r".repeat(1 + 2 * columns.len());
-    format!("\\begin{{tabular}}{{l{places}}}\n{head}{rows}\\end{{tabular}}\n")
+    let names = columns.iter().flat_map(|column| [column.name(), "error"]);
+    let head: Vec<&str> = ["", "Runge--Kutta"].into_iter().chain(names).collect();
+    Table::of_numbers(table::head(&head), rows.iter().map(row).collect())
+}
+
+fn number(value: f64) -> String {
+    format!("${}$", scientific(value))
 }
 
 /// A quantity in SI units, with its formula.
@@ -73,57 +72,76 @@ fn upright(unit: &str) -> String {
 }
 
 /// A table in SI units: Runge-Kutta and every column.
-pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> String {
+pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> Table {
     let row = |(row, unit): &(Quantity, &str)| {
         let name = match *unit {
             "" => row.name.to_owned(),
             unit => format!("{}, ${}$", row.name, upright(unit)),
         };
         let values = std::iter::once(&row.runge_kutta).chain(&row.closed_forms);
-        let cells: String = values.map(|value| format!(" & ${}$", scientific(*value))).collect();
-        format!("{name}{cells} \\\\\n")
+        std::iter::once(name)
+            .chain(values.map(|value| number(*value)))
+            .collect()
     };
-    let names: String = columns.iter().map(|column| format!(" & {}", column.name())).collect();
-    let rows: String = rows.iter().map(row).collect();
-    let places = "r".repeat(1 + columns.len());
-    format!("\\begin{{tabular}}{{l{places}}}\n & Runge--Kutta{names} \\\\\n\\hline\n{rows}\\end{{tabular}}\n")
+    let names = columns.iter().map(|column| column.name());
+    let head: Vec<&str> = ["", "Runge--Kutta"].into_iter().chain(names).collect();
+    Table::of_numbers(table::head(&head), rows.iter().map(row).collect())
 }
 
 /// A table of laws: the numbers of each and their errors in percent.
-pub(super) fn contact_laws(rows: &[ContactRow]) -> String {
-    let percent = |error: f64| format!("${}$", scientific((1e5 * error).round() / 1e3));
-    let row = |row: &ContactRow| -> Option<String> {
+pub(super) fn contact_laws(rows: &[ContactRow]) -> Table {
+    let percent = |error: f64| number((1e5 * error).round() / 1e3);
+    let row = |row: &ContactRow| -> Option<Vec<String>> {
         let (motion, errors) = row.outcome.as_ref().ok()?;
         let pairs = [
             (motion.duration, errors.duration),
             (motion.depth, errors.depth),
             (motion.peak_force, errors.peak_force),
         ];
-        let pairs = pairs.map(|(value, error)| format!(" & ${}$ & {}", scientific(value), percent(error)));
-        let motion = percent(errors.motion);
-        Some(format!("{}{} & {motion} \\\\\n", row.law, pairs.concat()))
+        let pairs = pairs.map(|(value, error)| [number(value), percent(error)]);
+        let last = percent(errors.motion);
+        let cells = std::iter::once(row.law.to_string()).chain(pairs.into_iter().flatten());
+        Some(cells.chain([last]).collect())
     };
-    let rows: String = rows.iter().filter_map(row).collect();
-    let head = "law & duration & \\% & penetration & \\% & peak force & \\% & motion, \\% \\\\\n\\hline\n";
-    format!("\\begin{{tabular}}{{lrrrrrrr}}\n{head}{rows}\\end{{tabular}}\n")
+    let head = [
+        "law",
+        "duration",
+        "\\%",
+        "penetration",
+        "\\%",
+        "peak force",
+        "\\%",
+        "motion, \\%",
+    ];
+    Table::of_numbers(table::head(&head), rows.iter().filter_map(row).collect())
 }
 
 /// A table of methods: the errors of each in percent.
-pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> String {
+pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
     let percent = |value: f64| match value.abs() < 1e-9 {
         true => "$< 10^{-7}$".to_owned(),
         false => format!("${}$", scientific_text(&significant(100.0 * value, 3))),
     };
-    let known = truth.map(|value| format!(" & ${}$", scientific(value))).concat();
+    let known = truth.map(number).into_iter().chain(vec![String::new(); 3]);
+    let known = std::iter::once("Runge--Kutta".to_owned()).chain(known).collect();
     let row = |row: &ImpactRow| {
         let cells = row.errors.iter().chain(&row.deviations);
-        let cells: String = cells.map(|value| format!(" & {}", percent(*value))).collect();
-        format!("{}{cells} \\\\\n", row.title())
+        let cells = cells.map(|value| percent(*value));
+        std::iter::once(row.title()).chain(cells).collect()
     };
-    let rows: String = rows.iter().map(row).collect();
-    let head =
-        "errors in \\% & $t_1$ & speed & penetration & duration & period & approach & contact & return \\\\\n\\hline\n";
-    format!("\\begin{{tabular}}{{lrrrrrrrr}}\n{head}Runge--Kutta{known} & & & \\\\\n{rows}\\end{{tabular}}\n")
+    let head = [
+        "errors in \\%",
+        "$t_1$",
+        "speed",
+        "penetration",
+        "duration",
+        "period",
+        "approach",
+        "contact",
+        "return",
+    ];
+    let rows = std::iter::once(known).chain(rows.iter().map(row)).collect();
+    Table::of_numbers(table::head(&head), rows)
 }
 
 fn signed(value: f64) -> String {
@@ -161,7 +179,7 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
             frequency,
         } => {
             let angle = format!("\\left({}\\,{clock}\\right)", scientific(frequency));
-            let centre = significant(centre, 9);
+            let centre = scientific_text(&significant(centre, 9));
             waves.push(format!(
                 "{centre} {} \\cos{angle} {} \\sin{angle}",
                 signed(amplitude.re),
@@ -176,7 +194,7 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
                     signed(value)
                 };
                 waves.push(match term {
-                    Term::Constant => significant(value, 9),
+                    Term::Constant => scientific_text(&significant(value, 9)),
                     Term::Parabola => format!("{size}\\,{clock}(t_{{2}} - t)"),
                     Term::Wave { function, frequency } => {
                         format!("{size} \\{function}\\left({}\\,{clock}\\right)", scientific(frequency))

@@ -3,8 +3,46 @@
 use super::{scientific_text, words};
 use crate::report::{Heading, are_names};
 
-pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
-    let line = |cells: Vec<String>| cells.join(" & ") + " \\\\\n";
+/// A table whose cells are LaTeX already.
+pub(in crate::export) struct Table {
+    /// Where each column stands: `l`, `r`.
+    pub(in crate::export) places: String,
+    /// What stands above each column.
+    pub(in crate::export) head: Vec<String>,
+    /// A cell for each column.
+    pub(in crate::export) rows: Vec<Vec<String>>,
+    /// Whether a line is above it and one below.
+    pub(in crate::export) framed: bool,
+}
+
+impl Table {
+    /// A table whose first column stands on the left and every other one on the right.
+    pub(super) fn of_numbers(head: Vec<String>, rows: Vec<Vec<String>>) -> Self {
+        Self {
+            places: format!("l{}", "r".repeat(head.len().saturating_sub(1))),
+            head,
+            rows,
+            framed: false,
+        }
+    }
+
+    /// As it stands in an article.
+    pub(super) fn written(&self) -> String {
+        let line = |cells: &Vec<String>| cells.join(" & ") + " \\\\\n";
+        let frame = if self.framed { "\\hline\n" } else { "" };
+        let (places, head) = (&self.places, line(&self.head));
+        let rows: String = self.rows.iter().map(line).collect();
+        format!("\\begin{{tabular}}{{{places}}}\n{frame}{head}\\hline\n{rows}{frame}\\end{{tabular}}\n")
+    }
+}
+
+/// The head of a table, a name each.
+pub(super) fn head(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+/// A table of numbers and words.
+pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
     let cell = |cell: &String| match cell.parse::<f64>() {
         Ok(_) => format!("${}$", scientific_text(cell)),
         Err(_) => words(cell),
@@ -13,7 +51,10 @@ pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
     if are_names(rows) {
         places.replace_range(..1, "l");
     }
-    let names = line(head.iter().map(|heading| heading.latex.to_owned()).collect());
-    let rows: String = rows.iter().map(|row| line(row.iter().map(cell).collect())).collect();
-    format!("\\begin{{tabular}}{{{places}}}\n{names}\\hline\n{rows}\\end{{tabular}}\n")
+    Table {
+        places,
+        head: head.iter().map(|heading| heading.latex.to_owned()).collect(),
+        rows: rows.iter().map(|row| row.iter().map(cell).collect()).collect(),
+        framed: false,
+    }
 }

@@ -30,6 +30,11 @@ pub(super) fn longest_title(document: &Document) -> usize {
 }
 
 pub(super) fn truth(equation: &Equation, at: &Values, frequency: &Result<f64, String>) -> String {
+    format!("{equation}\n\n{}\n", true_frequency(at, frequency))
+}
+
+/// The frequency that a table is compared with.
+pub(in crate::export) fn true_frequency(at: &Values, frequency: &Result<f64, String>) -> String {
     let at: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let place = match at.is_empty() {
         true => String::new(),
@@ -39,7 +44,7 @@ pub(super) fn truth(equation: &Equation, at: &Values, frequency: &Result<f64, St
         Ok(frequency) => decimal(*frequency),
         Err(reason) => format!("not known: {reason}"),
     };
-    format!("{equation}\n\nTrue omega{place}: {truth}\n")
+    format!("True omega{place}: {truth}")
 }
 
 /// The table, and the formulas below it where it has no room for them.
@@ -59,15 +64,21 @@ pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &Page) -> String
     text
 }
 
-/// Names and what is said of each, those of which the same is said together.
-fn reasons(heading: &str, entries: &[(String, String)], page: &Page) -> String {
-    let mut groups: Vec<(Vec<&str>, &str)> = Vec::new();
+/// Names together of which the same is said, and that.
+pub(in crate::export) fn grouped(entries: impl Iterator<Item = (String, String)>) -> Vec<(Vec<String>, String)> {
+    let mut groups: Vec<(Vec<String>, String)> = Vec::new();
     for (name, words) in entries {
-        match groups.iter_mut().find(|(_, known)| known == words) {
+        match groups.iter_mut().find(|(_, known)| *known == words) {
             Some((names, _)) => names.push(name),
             None => groups.push((vec![name], words)),
         }
     }
+    groups
+}
+
+/// Names and what is said of each, those of which the same is said together.
+fn reasons(heading: &str, entries: impl Iterator<Item = (String, String)>, page: &Page) -> String {
+    let groups = grouped(entries);
     let groups = groups.iter().map(|(names, words)| match names.as_slice() {
         [name] => entry(name, words, page.longest_title, page.width),
         names => {
@@ -91,7 +102,7 @@ pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
         let reason = refused.reason.reason(refused.method);
         (refused.method.title().to_owned(), reason)
     };
-    reasons("Not applicable", &refused.iter().map(named).collect::<Vec<_>>(), page)
+    reasons("Not applicable", refused.iter().map(named), page)
 }
 
 pub(super) fn true_motion(lines: &[String], width: usize) -> String {
@@ -100,7 +111,7 @@ pub(super) fn true_motion(lines: &[String], width: usize) -> String {
 }
 
 /// Header and rows, without the formulas.
-fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
+pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
     let over_several_wells = rows
         .iter()
         .any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));

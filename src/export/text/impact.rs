@@ -192,7 +192,7 @@ pub(super) fn verdicts(verdicts: &[(Reading, Verdict)], tolerance: f64) -> Strin
     )
 }
 
-pub(super) fn shortcoming(reading: Reading, errors: &[(&'static str, f64)], cause: &str) -> String {
+pub(in crate::export) fn shortcoming(reading: Reading, errors: &[(&'static str, f64)], cause: &str) -> String {
     let errors: Vec<String> = errors
         .iter()
         .map(|(name, error)| format!("{name} {}", percent(*error)))

@@ -44,12 +44,13 @@
 //! | [`catalog`] | classical oscillators |
 //! | [`audit`] | claims of publications, computed again, each with a verdict |
 //! | [`report`] | what a report of a result says, for every format |
-//! | [`export`] | text, LaTeX, JSON, programs, pictures |
+//! | [`export`] | text, LaTeX, JSON, programs, pictures, pages |
 //!
 //! | feature | what it adds |
 //! | --- | --- |
-//! | `cli` | the command-line program, with `json`, `toml` and `parallel` |
+//! | `cli` | the command-line program, with `json`, `toml`, `html` and `parallel` |
 //! | `json` | documents, their readers and their schemas |
+//! | `html` | pages that stand alone |
 //! | `toml` | problem files |
 //! | `parallel` | sweeps on all cores |
 //! | `plot` | pictures in SVG |

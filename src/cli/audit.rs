@@ -4,18 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lindstedt::audit::{Claims, ClaimsError, audit};
-use lindstedt::export::{json, latex, text};
+use lindstedt::export::json;
+use lindstedt::report;
 use lindstedt::verify::Verdict;
 
+use super::answer::{Answer, no_such};
 use super::files::{is_standard, width};
-use super::{Common, Failure, Format, Outcome, json_text, read, whole};
+use super::{Common, Failure, Format, Outcome, json_text, read};
 
 /// Every claim of the paper, the file that `lindstedt paper` runs.
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::without_table))]
+#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
@@ -27,7 +29,7 @@ pub struct Arguments {
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::without_table))]
+#[command(mut_arg("format", super::words_only))]
 pub struct PaperArguments {
     #[command(flatten)]
     own: Own,
@@ -68,18 +70,17 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
         .parse()
         .map_err(|error: ClaimsError| Failure::refused(&format!("{name}: {error}"), error.help()))?;
     let audit = audit(claims);
-    let text = match common.format {
-        Format::Text => text::audit(&audit, width(common.output.as_deref())),
-        Format::Latex => latex::audit(&audit),
-        Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::audit(&audit))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::audit(&audit),
+        width: width(common.output.as_deref()),
+        picture: None,
+        other: &|format| match format {
+            Format::Json => json_text(&json::audit(&audit)),
+            format => no_such(format),
+        },
     };
     Ok(Outcome {
-        result: whole(text),
-        picture: None,
-        note: None,
         verdict: Some(Verdict::of(audit.passes(own.strict))),
-        partial: false,
+        ..answer.outcome(common)?
     })
 }

@@ -1,13 +1,14 @@
 //! `lindstedt catalog`.
 
 use clap::Args;
-use lindstedt::export::{catalog, json};
+use lindstedt::export::{catalog, html, json};
 
+use super::answer::{no_such, page};
 use super::{Common, Failure, Format, Outcome, json_text, whole};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::without_table))]
+#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     #[command(flatten)]
     pub common: Common,
@@ -23,9 +24,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let text = match arguments.common.format {
         Format::Text => catalog::text(),
         Format::Latex => catalog::latex(),
-        Format::Csv => return super::no_table(),
+        Format::Html => page(None, None, |page| html::lines(&catalog::text(), page)),
         Format::Json => json_text(&json::catalog())?,
-        Format::Code(language) => super::no_program(language)?,
+        format => no_such(format)?,
     };
     Ok(Outcome {
         result: whole(text),

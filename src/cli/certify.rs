@@ -6,20 +6,20 @@ use clap::Args;
 use lindstedt::certificate::{self, Beyond, NotCertified};
 use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument};
-use lindstedt::export::{latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::report::{self, CertificateReport};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Progress, Supervision};
 use num_traits::Signed as _;
 
+use super::answer::{Answer, no_such};
 use super::derive::{self, Question};
 use super::files::width;
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, json_text, read_at_most, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, json_text, read_at_most, tolerance};
 
 #[derive(Args)]
-#[command(mut_arg("format", super::without_table))]
+#[command(mut_arg("format", super::words_only))]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
 #[command(mut_arg("output", |output| output.help("Write the result to this file; if its name ends in .json, the certificate that `check` reads")))]
 pub struct Arguments {
@@ -34,7 +34,7 @@ pub struct Arguments {
 }
 
 #[derive(Args)]
-#[command(mut_arg("format", super::without_table))]
+#[command(mut_arg("format", super::words_only))]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
 pub struct CheckArguments {
     /// A certificate, as `certify` writes it; - for standard input
@@ -132,20 +132,21 @@ fn without_picture(common: &Common) -> Result<(), Failure> {
 }
 
 fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failure> {
-    let document = report::certificate(report);
-    let format = format(common);
-    let text = match format {
-        Format::Text => text::document(&document, width(common.output.as_deref())),
-        Format::Latex => latex::document(&document),
-        Format::Json => json_text(&json::certificate(report.certificate))?,
-        Format::Csv => super::no_table()?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::certificate(report),
+        width: width(common.output.as_deref()),
+        picture: None,
+        other: &|format| match format {
+            Format::Json => json_text(&json::certificate(report.certificate)),
+            format => no_such(format),
+        },
+    };
+    let common = Common {
+        format: format(common),
+        ..common.clone()
     };
     Ok(Outcome {
-        result: whole(text),
-        picture: None,
-        note: None,
         verdict: report.verdict().or(Some(Verdict::Pass)),
-        partial: false,
+        ..answer.outcome(&common)?
     })
 }

@@ -1,15 +1,17 @@
 //! `lindstedt compare PROBLEM --at A=1.5`.
 
 use clap::Args;
-use lindstedt::export::{json, latex, text};
+use lindstedt::export::json;
 use lindstedt::problem::Reader;
+use lindstedt::report;
 use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
+use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, oscillator, with_known_equilibrium};
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, files, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, files, json_text, tolerance};
 
 #[derive(Args)]
 #[command(mut_arg("format", super::without_table))]
@@ -57,25 +59,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         _ => Failure::refused(&error, None),
     })?;
-    let text = match arguments.common.format {
-        Format::Text => text::comparison(&comparison, files::width(arguments.common.output.as_deref())),
-        Format::Latex => latex::comparison(&comparison),
-        Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::comparison(&comparison))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::comparison(&comparison),
+        width: files::width(arguments.common.output.as_deref()),
+        picture: Some(&|| picture(&oscillator, &comparison)),
+        other: &|format| match format {
+            Format::Json => json_text(&json::comparison(&comparison)),
+            format => no_such(format),
+        },
     };
-    let picture = arguments
-        .common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), picture(&oscillator, &comparison)));
     let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
     Ok(Outcome {
-        result: whole(text),
-        picture,
-        note: None,
         verdict: Some(Verdict::of(passed)),
-        partial: false,
+        ..answer.outcome(&arguments.common)?
     })
 }
 

@@ -6,15 +6,17 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
-use lindstedt::export::{code, json, latex, text};
+use lindstedt::export::{code, html, json, latex, text};
 use lindstedt::expr::parse_expression;
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal, Unsuited};
 use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
+use lindstedt::report;
 use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
+use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, tolerance, whole};
@@ -181,11 +183,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let of_motion = [
         ("--steps", arguments.steps),
         ("--plot", arguments.common.plot.is_some()),
+        ("--format svg", arguments.common.format == Format::Svg),
     ];
     with_motion(&arguments.question, &of_motion)?;
     let (oscillator, values, solution) = solved(&arguments.question)?;
     let tolerance = tolerance(&arguments.common);
-    let judged = values.is_some() || arguments.common.plot.is_some() || arguments.common.tolerance.is_some();
+    let judged = values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
     let verification = match judged {
         false => None,
         true => {
@@ -193,6 +196,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             Some(judged.map_err(|error| unjudged(&error))?)
         }
     };
+    let place = verification.as_ref().filter(|_| !arguments.question.omega_only);
+    let draw = place.map(|verification| || picture(&oscillator, &solution, &verification.at));
+    let picture = draw.as_ref().map(|draw| draw as Draw);
     let derivation = match arguments.common.format {
         Format::Latex if arguments.steps => latex::steps(&solution),
         _ if arguments.steps => text::steps(&solution),
@@ -203,8 +209,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             let space = if arguments.steps { "\n" } else { "" };
             derivation + space + &text::solution(&solution, verification.as_ref(), tolerance)
         }
+        Format::Html => {
+            let document = report::solution(&solution, verification.as_ref(), tolerance);
+            let derivation = Some((&solution, arguments.steps));
+            page(picture, derivation, |page| html::document(&document, page))
+        }
+        Format::Svg => drawn(picture)?,
         Format::Latex => derivation + &latex::solution(&solution, verification.as_ref()),
-        Format::Csv => return super::no_table(),
+        format @ Format::Csv => no_such(format)?,
         Format::Json => {
             let mut document = json::solution(&solution, verification.as_ref());
             // The first line is the heading.
@@ -220,17 +232,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             language.comment(&(derivation + space)) + &program
         }
     };
-    let picture = match (&arguments.common.plot, &verification) {
-        (Some(path), Some(verification)) => Some((path.clone(), picture(&oscillator, &solution, &verification.at))),
-        _ => None,
-    };
     let asked = solution.validity.iter().find_map(|note| match note {
         Note::Stopped { asked } => Some(asked),
         _ => None,
     });
     Ok(Outcome {
         result: whole(text),
-        picture,
+        picture: pictured(&arguments.common, picture),
         note: asked.map(|asked| {
             format!(
                 "warning: stopped early, what there is is kept: order {} of {asked}",

@@ -1,10 +1,12 @@
 //! `lindstedt friction`.
 
 use clap::Args;
-use lindstedt::export::{friction, json, latex, text};
+use lindstedt::export::{friction, json};
 use lindstedt::impact::friction::{FrictionSetup, FrictionStudy, study};
+use lindstedt::report;
 
-use super::{Common, Failure, Format, Outcome, json_text, whole};
+use super::answer::{Answer, no_such};
+use super::{Common, Failure, Format, Outcome, json_text};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
@@ -35,25 +37,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         speeds: arguments.speed.clone(),
     };
     let study = study(setup).map_err(|error| Failure::refused(&error, None))?;
-    let text = match arguments.common.format {
-        Format::Text => text::friction(&study),
-        Format::Latex => latex::friction(&study),
-        Format::Csv => friction::csv(&study),
-        Format::Json => json_text(&json::friction(&study))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::friction(&study),
+        width: usize::MAX,
+        picture: Some(&|| picture(&study)),
+        other: &|format| match format {
+            Format::Csv => Ok(friction::csv(&study)),
+            Format::Json => json_text(&json::friction(&study)),
+            format => no_such(format),
+        },
     };
-    let picture = arguments
-        .common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), picture(&study)));
-    Ok(Outcome {
-        result: whole(text),
-        picture,
-        note: None,
-        verdict: None,
-        partial: false,
-    })
+    answer.outcome(&arguments.common)
 }
 
 #[cfg(not(feature = "plot"))]

@@ -1,15 +1,17 @@
 //! `lindstedt impact [FILE]`.
 
 use clap::Args;
-use lindstedt::export::{json, latex, text};
+use lindstedt::export::json;
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::{Impact, Setup, compare, solve};
 use lindstedt::problem::{BarrierSide, Problem};
+use lindstedt::report;
 use lindstedt::verify::Verdict;
 
+use super::answer::{Answer, no_such};
 use super::files::width;
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, json_text, tolerance};
 
 #[derive(Args, Default)]
 #[command(mut_arg("format", super::without_table))]
@@ -53,25 +55,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return every_method(setup, &arguments.common);
     }
     let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
-    let text = match arguments.common.format {
-        Format::Text => text::impact(&impact, tolerance),
-        Format::Latex => latex::impact(&impact, tolerance),
-        Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::impact(&impact, tolerance))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::impact(&impact, tolerance),
+        width: usize::MAX,
+        picture: Some(&|| picture(&impact)),
+        other: &|format| match format {
+            Format::Json => json_text(&json::impact(&impact, tolerance)),
+            format => no_such(format),
+        },
     };
-    let picture = arguments
-        .common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), picture(&impact)));
     let passes = impact.verdicts(tolerance).contains(&Verdict::Pass);
     Ok(Outcome {
-        result: whole(text),
-        picture,
-        note: None,
         verdict: Some(Verdict::of(passes)),
-        partial: false,
+        ..answer.outcome(&arguments.common)?
     })
 }
 
@@ -93,27 +89,26 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
                 .to_owned(),
         ));
     }
-    if common.plot.is_some() {
+    if common.draws() {
         return Err(Failure::Usage(
             "--compare draws no picture: leave out --plot, or --compare".to_owned(),
         ));
     }
     let tolerance = tolerance(common);
     let table = compare(setup).map_err(|error| Failure::refused(&error, None))?;
-    let text = match common.format {
-        Format::Text => text::impact_comparison(&table, tolerance, width(common.output.as_deref())),
-        Format::Latex => latex::impact_comparison(&table, tolerance),
-        Format::Csv => return super::no_table(),
-        Format::Json => json_text(&json::impact_comparison(&table, tolerance))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::impact_comparison(&table, tolerance),
+        width: width(common.output.as_deref()),
+        picture: None,
+        other: &|format| match format {
+            Format::Json => json_text(&json::impact_comparison(&table, tolerance)),
+            format => no_such(format),
+        },
     };
     let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
     Ok(Outcome {
-        result: whole(text),
-        picture: None,
-        note: None,
         verdict: Some(Verdict::of(passes)),
-        partial: false,
+        ..answer.outcome(common)?
     })
 }
 

@@ -3,18 +3,20 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lindstedt::export::{json, latex, text};
+use lindstedt::export::json;
 use lindstedt::mechanics::{MechanismQuestion, study};
 use lindstedt::problem::{Problem, Reader};
+use lindstedt::report;
 
+use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, json_text, no_table, whole};
+use super::{Common, Failure, Format, Outcome, json_text};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::without_table))]
+#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
@@ -54,18 +56,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         .unwrap_or_default()
         .numbers();
     let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
-    let text = match common.format {
-        Format::Text => text::mechanism(&study, width(common.output.as_deref())),
-        Format::Latex => latex::mechanism(&study),
-        Format::Json => json_text(&json::lagrangian(&study))?,
-        Format::Code(language) => super::no_program(language)?,
-        Format::Csv => no_table()?,
-    };
-    Ok(Outcome {
-        result: whole(text),
+    let answer = Answer {
+        document: &report::mechanism(&study),
+        width: width(common.output.as_deref()),
         picture: None,
-        note: None,
-        verdict: None,
-        partial: false,
-    })
+        other: &|format| match format {
+            Format::Json => json_text(&json::lagrangian(&study)),
+            format => no_such(format),
+        },
+    };
+    answer.outcome(common)
 }

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lindstedt::Interrupt;
-use lindstedt::export::{json, latex, materials, text};
+use lindstedt::export::{json, materials};
 use lindstedt::impact::{Integrator, MaterialStudy, MaterialsError, Settings, study_materials};
 use lindstedt::problem::Problem;
+use lindstedt::report;
 
+use super::answer::{Answer, no_such};
 use super::files::width;
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
+use super::{Common, Failure, Format, Outcome, STOP, json_text};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
@@ -55,25 +57,25 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             none.then(|| "leave out --only-own, or list materials in a file".to_owned()),
         )
     })?;
-    let text = match common.format {
-        Format::Text => text::materials(&study, width(common.output.as_deref())),
-        Format::Latex => latex::materials(&study),
-        Format::Csv => materials::csv(&study),
-        Format::Json => json_text(&json::materials(&study))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::materials(&study),
+        width: width(common.output.as_deref()),
+        picture: Some(&|| picture(&study)),
+        other: &|format| match format {
+            Format::Csv => Ok(materials::csv(&study)),
+            Format::Json => json_text(&json::materials(&study)),
+            format => no_such(format),
+        },
     };
-    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&study)));
     let broken = study.rows.iter().find(|row| !row.course.stop.is_complete());
     let note = broken.map(|row| {
         let (name, stop) = (&row.material.name, row.course.stop);
         format!("warning: {name} stopped early, what there is is kept: {stop}")
     });
     Ok(Outcome {
-        result: whole(text),
-        picture,
         note,
-        verdict: None,
         partial: broken.is_some(),
+        ..answer.outcome(common)?
     })
 }
 

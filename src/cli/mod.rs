@@ -6,6 +6,7 @@
 //! Results go to standard output or the file of `--output`, all else to standard error. Exit codes: 0 done, 1 refused or
 //! failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a partial result, 70 internal error.
 
+mod answer;
 mod audit;
 mod catalog;
 mod certify;
@@ -96,7 +97,7 @@ enum Command {
 #[derive(Args, Clone, Default)]
 struct Common {
     /// What to print
-    #[arg(long, default_value = "text", value_parser = formats([Format::Csv]))]
+    #[arg(long, default_value = "text", value_parser = formats([Format::Svg, Format::Csv]))]
     format: Format,
     /// Write the result to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
@@ -125,17 +126,19 @@ enum Format {
     Latex,
     Json,
     Csv,
+    Svg,
+    Html,
     Code(Language),
 }
 
 impl Format {
     /// Those of every command that has a result.
-    const OF_ALL: [Self; 3] = [Self::Text, Self::Latex, Self::Json];
+    const OF_ALL: [Self; 4] = [Self::Text, Self::Latex, Self::Json, Self::Html];
 
     /// All of them.
     fn all() -> impl Iterator<Item = Self> {
         let programs = Language::ALL.map(Self::Code);
-        Self::OF_ALL.into_iter().chain([Self::Csv]).chain(programs)
+        Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
     }
 
     /// The name on the command line.
@@ -145,6 +148,8 @@ impl Format {
             Self::Latex => "latex",
             Self::Json => "json",
             Self::Csv => "csv",
+            Self::Svg => "svg",
+            Self::Html => "html",
             Self::Code(language) => language.name(),
         }
     }
@@ -161,18 +166,32 @@ fn formats(listed: impl IntoIterator<Item = Format>) -> impl TypedValueParser<Va
 
 /// The option of a command that has no table.
 fn without_table(format: clap::Arg) -> clap::Arg {
+    format.value_parser(formats([Format::Svg]))
+}
+
+/// The option of a command that has neither a table nor a picture.
+fn words_only(format: clap::Arg) -> clap::Arg {
     format.value_parser(formats([]))
 }
 
 /// The option of a command that writes programs.
 fn with_programs(format: clap::Arg) -> clap::Arg {
-    format.value_parser(formats(Language::ALL.map(Format::Code)))
+    format.value_parser(formats(
+        [Format::Svg].into_iter().chain(Language::ALL.map(Format::Code)),
+    ))
 }
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number".to_owned()),
+    }
+}
+
+impl Common {
+    /// Whether the picture is asked for, beside the result or as it.
+    fn draws(&self) -> bool {
+        self.plot.is_some() || self.format == Format::Svg
     }
 }
 
@@ -291,7 +310,16 @@ impl Command {
     fn takes(&self, format: Format) -> Result<(), Failure> {
         match (self, format) {
             (Self::Derive(_), _) => Ok(()),
-            (_, Format::Code(language)) => no_program(language),
+            (_, Format::Code(_)) => answer::no_such(format),
+            (
+                Self::Audit(_)
+                | Self::Paper(_)
+                | Self::Lagrange(_)
+                | Self::Certify(_)
+                | Self::Check(_)
+                | Self::Catalog(_),
+                Format::Svg,
+            ) => answer::no_such(format),
             _ => Ok(()),
         }
     }
@@ -483,22 +511,6 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
 fn fail(code: u8, message: &str) -> ExitCode {
     let _ = writeln!(std::io::stderr(), "error: {message}");
     ExitCode::from(code)
-}
-
-/// Refuses `--format csv` where there is no trajectory.
-fn no_table<T>() -> Result<T, Failure> {
-    Err(Failure::Usage(
-        "there is no table of comma-separated values here: --format csv belongs to `lindstedt simulate`, `response`, `stability`, `friction`, `materials` or `optimize`"
-            .to_owned(),
-    ))
-}
-
-/// Refuses `--format python` and its like where there is no formula of a motion.
-fn no_program<T>(language: Language) -> Result<T, Failure> {
-    Err(Failure::Usage(format!(
-        "there is no program here: --format {} belongs to `lindstedt derive`",
-        language.name()
-    )))
 }
 
 /// The text of a file, or of standard input for `-`; never more than a problem may have.

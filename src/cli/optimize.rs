@@ -10,14 +10,16 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::export::json::optimization::{read_record, record_head, record_line};
-use lindstedt::export::{json, latex, optimization, text};
+use lindstedt::export::{json, optimization};
 use lindstedt::genetic::OptionsError;
 use lindstedt::optimize::{OptimizeError, Question, SearchRun, Study, Watch, optimize, optimize_on};
 use lindstedt::problem::Problem;
+use lindstedt::report;
 
+use super::answer::{Answer, no_such};
 use super::files::{is_standard, same, width};
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, STOP, count, json_text, read_at_most, whole};
+use super::{Common, Failure, Format, Outcome, STOP, count, json_text, read_at_most};
 
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
@@ -94,14 +96,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     question.check().map_err(refused)?;
     let record = Record::open(arguments, &question)?;
     let study = search(arguments, question, &record, deadline)?;
-    let text = match common.format {
-        Format::Text => text::optimization(&study, width(common.output.as_deref())),
-        Format::Latex => latex::optimization(&study),
-        Format::Csv => optimization::csv(&study),
-        Format::Json => json_text(&json::optimization(&study))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::optimization(&study),
+        width: width(common.output.as_deref()),
+        picture: Some(&|| picture(&study)),
+        other: &|format| match format {
+            Format::Csv => Ok(optimization::csv(&study)),
+            Format::Json => json_text(&json::optimization(&study)),
+            format => no_such(format),
+        },
     };
-    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&study)));
     let note = match (record.trouble(), study.complete) {
         (Some(trouble), _) => Some(format!("warning: the record is not complete: {trouble}")),
         (None, false) => Some(format!(
@@ -116,11 +120,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         (None, true) => None,
     };
     Ok(Outcome {
-        result: whole(text),
-        picture,
         note: note.filter(|_| !arguments.quiet),
-        verdict: None,
         partial: !study.complete,
+        ..answer.outcome(common)?
     })
 }
 

@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Interrupt;
-use lindstedt::export::{json, primary, significant, text};
+use lindstedt::export::{json, primary, significant};
 use lindstedt::impact::Units;
 use lindstedt::impact::primary::{PrimaryRow, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary};
 use lindstedt::impact::sweep::Axis;
@@ -10,8 +10,9 @@ use lindstedt::problem::Problem;
 use lindstedt::report::{self, PrimaryReport};
 use lindstedt::verify::Verdict;
 
+use super::answer::{Answer, no_such};
 use super::files::width;
-use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
+use super::{Common, Failure, Format, Outcome, STOP, json_text};
 
 /// What is asked of a main mass.
 pub(super) struct Asked<'a> {
@@ -66,17 +67,18 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
         units: &file.units,
         samples: asked.samples,
     };
-    let text = match common.format {
-        Format::Csv => primary::csv(&report),
-        Format::Json => json_text(&json::primary(&report))?,
-        Format::Code(language) => super::no_program(language)?,
-        Format::Text | Format::Latex => text::document(&report::primary(&report), width(common.output.as_deref())),
+    let answer = Answer {
+        document: &report::primary(&report),
+        width: width(common.output.as_deref()),
+        picture: Some(&|| picture(&report)),
+        other: &|format| match format {
+            Format::Csv => Ok(primary::csv(&report)),
+            Format::Json => json_text(&json::primary(&report)),
+            format => no_such(format),
+        },
     };
-    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&report)));
     let kept = motion.energy.residual <= common.tolerance.unwrap_or(ENERGY_TOLERANCE);
     Ok(Outcome {
-        result: whole(text),
-        picture,
         note: match (motion.is_complete(), motion.energy.residual <= ENERGY_TOLERANCE) {
             (false, _) => Some(format!(
                 "warning: stopped early, what there is is kept: {}",
@@ -90,6 +92,7 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
         },
         verdict: Some(Verdict::of(kept && motion.is_complete())),
         partial: !motion.is_complete(),
+        ..answer.outcome(common)?
     })
 }
 
@@ -119,26 +122,22 @@ fn many(problem: &Problem, asked: &Asked, axis: &Axis) -> Result<Outcome, Failur
     let rows =
         sweep_primary(file.case, &frequencies, &settings, progress).map_err(|error| Failure::refused(&error, None))?;
     bar.finish_and_clear();
-    let text = match common.format {
-        Format::Csv => primary::sweep_csv(&rows),
-        Format::Json => json_text(&json::primary_sweep(&rows, &file.units))?,
-        Format::Code(language) => super::no_program(language)?,
-        Format::Text | Format::Latex => text::document(
-            &report::primary_sweep(&rows, &file.units),
-            width(common.output.as_deref()),
-        ),
+    let answer = Answer {
+        document: &report::primary_sweep(&rows, &file.units),
+        width: width(common.output.as_deref()),
+        picture: Some(&|| sweep_picture(&rows, &file.units)),
+        other: &|format| match format {
+            Format::Csv => Ok(primary::sweep_csv(&rows)),
+            Format::Json => json_text(&json::primary_sweep(&rows, &file.units)),
+            format => no_such(format),
+        },
     };
-    let picture = common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), sweep_picture(&rows, &file.units)));
     let broken = rows.iter().filter(|row| row.stop != PrimaryStop::Duration).count();
     Ok(Outcome {
-        result: whole(text),
-        picture,
         note: (broken > 0).then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),
         verdict: Some(Verdict::of(broken == 0)),
         partial: broken > 0,
+        ..answer.outcome(common)?
     })
 }
 

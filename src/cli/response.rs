@@ -1,17 +1,18 @@
 //! `lindstedt response PROBLEM --vary Omega=0.5:1.5`.
 
 use clap::Args;
-use lindstedt::export::{self, json, latex, text};
+use lindstedt::export::{self, json};
 use lindstedt::expr::parse_expression;
 use lindstedt::problem::{Order, Reader};
 use lindstedt::response::{MOST_HARMONICS, Question, Response, ResponseError, respond};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
 
+use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, files, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, files, json_text, tolerance};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -79,22 +80,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(solution) = slow {
         response = response.beside(solution);
     }
-    let document = || report::response(&response);
-    let text = match arguments.common.format {
-        Format::Text => text::document(&document(), files::width(arguments.common.output.as_deref())),
-        Format::Latex => latex::document(&document()),
-        Format::Csv => export::response::csv(&response),
-        Format::Json => json_text(&json::response(&response))?,
-        Format::Code(language) => super::no_program(language)?,
+    let answer = Answer {
+        document: &report::response(&response),
+        width: files::width(arguments.common.output.as_deref()),
+        picture: Some(&|| picture(&response)),
+        other: &|format| match format {
+            Format::Csv => Ok(export::response::csv(&response)),
+            Format::Json => json_text(&json::response(&response)),
+            format => no_such(format),
+        },
     };
-    let picture = arguments
-        .common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), picture(&response)));
     Ok(Outcome {
-        result: whole(text),
-        picture,
         note: (!response.complete).then(|| {
             format!(
                 "warning: stopped early, what there is is kept: {} branches",
@@ -103,6 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }),
         verdict: Some(response.slow.as_ref().map_or(response.verdict, |slow| slow.verdict)),
         partial: !response.complete,
+        ..answer.outcome(&arguments.common)?
     })
 }
 

@@ -2,8 +2,8 @@
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::export::json;
 use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
+use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
     BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline, known_until, simulate,
@@ -12,6 +12,7 @@ use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, system};
 
+use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::primary;
 use super::problem::problem;
 use super::trajectory::{self, Asked};
@@ -244,18 +245,17 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         units,
         known_until: if arguments.chain { None } else { known_until(&motion) },
     };
+    let draw: Option<Draw> = Some(&|| picture(&report));
     let text = match arguments.common.format {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
-        Format::Code(language) => super::no_program(language)?,
         Format::Text => text(&report),
         Format::Latex => latex(&report),
+        Format::Html => page(draw, None, |page| html::lines(&text(&report), page)),
+        Format::Svg => drawn(draw)?,
+        format => no_such(format)?,
     };
-    let picture = arguments
-        .common
-        .plot
-        .as_ref()
-        .map(|path| (path.clone(), picture(&report)));
+    let picture = pictured(&arguments.common, draw);
     let broken = [Some(&motion), judge.as_ref()]
         .into_iter()
         .flatten()
@@ -412,25 +412,37 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         axes: &arguments.sweep,
         rows: &rows,
     };
-    let path = arguments.common.plot.as_ref();
-    let picture = path.map(|path| (path.clone(), sweep_picture(&report)));
+    let draw: Option<Draw> = Some(&|| sweep_picture(&report));
+    let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
     let write = match arguments.common.format {
         Format::Csv => sweep_csv,
         Format::Json => json::sweep,
-        Format::Code(language) => super::no_program(language)?,
-        Format::Text | Format::Latex => sweep_text,
+        _ => sweep_text,
+    };
+    let made_whole = match arguments.common.format {
+        Format::Svg => Some(drawn(draw)?),
+        Format::Html => {
+            let mut lines = Vec::new();
+            write(&report, &mut lines).map_err(|error| Failure::Refused(error.to_string()))?;
+            let lines = String::from_utf8_lossy(&lines);
+            Some(page(draw, None, |page| html::lines(&lines, page)))
+        }
+        _ => None,
     };
     let axes = arguments.sweep.clone();
     Ok(Outcome {
-        result: Box::new(move |to| {
-            let report = SweepReport {
-                axes: &axes,
-                rows: &rows,
-            };
-            write(&report, to)
-        }),
+        result: match made_whole {
+            Some(text) => whole(text),
+            None => Box::new(move |to| {
+                let report = SweepReport {
+                    axes: &axes,
+                    rows: &rows,
+                };
+                write(&report, to)
+            }),
+        },
         picture,
         note,
         verdict: Some(Verdict::of(incomplete == 0)),
@@ -440,7 +452,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
 
 /// What a sweep leaves no place for.
 fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.sweep.len() > 2 && arguments.common.plot.is_some() {
+    if arguments.sweep.len() > 2 && arguments.common.draws() {
         return Err(Failure::Usage(
             "--plot draws curves over one parameter or a map over two, but more are swept: leave out --plot, or draw a map \
              for each value of the others, given in the file"

@@ -1,17 +1,18 @@
 //! `lindstedt stability PROBLEM`.
 
 use clap::Args;
-use lindstedt::export::{json, latex, stability, text};
+use lindstedt::export::{json, stability};
 use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves, TruthError};
 use lindstedt::problem::{Order, Reader};
 use lindstedt::report::{self, StabilityReport};
 use lindstedt::verify::Verdict;
 use lindstedt::{Symbol, Values};
 
+use super::answer::{Answer, Draw, no_such};
 use super::derive::{exact_values, formula, oscillator};
 use super::files::width;
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, json_text, tolerance};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -76,29 +77,29 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         judged: judged.as_deref().map(|judged| (&values, judged)),
         tolerance,
     };
-    let charted = arguments.common.plot.is_some() || arguments.common.format == Format::Csv;
+    let charted = arguments.common.draws() || arguments.common.format == Format::Csv;
     let charts = match charted {
+        // A page has the curves where it is known how far they go.
+        false if arguments.common.format == Format::Html => charts(&curves, &values).ok(),
         false => None,
         true => Some(charts(&curves, &values)?),
     };
-    let text = match (arguments.common.format, &charts) {
-        (Format::Text, _) => text::document(&report::stability(&report), width(arguments.common.output.as_deref())),
-        (Format::Latex, _) => latex::document(&report::stability(&report)),
-        (Format::Json, _) => json_text(&json::stability(&report))?,
-        (Format::Code(language), _) => super::no_program(language)?,
-        (Format::Csv, Some((by, charts))) => stability::csv(&curves, *by, charts),
-        (Format::Csv, None) => super::no_table()?,
-    };
-    let picture = match (&arguments.common.plot, &charts) {
-        (Some(path), Some((by, charts))) => Some((path.clone(), picture(&curves, *by, charts, &values))),
-        _ => None,
+    let drawn = charts
+        .as_ref()
+        .map(|(by, charts)| || picture(&curves, *by, charts, &values));
+    let answer = Answer {
+        document: &report::stability(&report),
+        width: width(arguments.common.output.as_deref()),
+        picture: drawn.as_ref().map(|draw| draw as Draw),
+        other: &|format| match (format, &charts) {
+            (Format::Json, _) => json_text(&json::stability(&report)),
+            (Format::Csv, Some((by, charts))) => Ok(stability::csv(&curves, *by, charts)),
+            (format, _) => no_such(format),
+        },
     };
     Ok(Outcome {
-        result: whole(text),
-        picture,
-        note: None,
         verdict: report.passes().map(Verdict::of),
-        partial: false,
+        ..answer.outcome(&arguments.common)?
     })
 }
 

@@ -1,7 +1,7 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::export::{decimal, json, significant, text, trajectory};
+use lindstedt::export::{decimal, json, significant, trajectory};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
@@ -11,9 +11,10 @@ use lindstedt::trajectory::{Course, DISPLACEMENT, Section, SweptMotion, Trajecto
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
 
+use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
-use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
+use super::{Common, Failure, Format, Outcome, STOP, json_text};
 
 /// What is asked of a motion of one's own.
 pub(super) struct Asked<'a> {
@@ -75,13 +76,16 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         samples: asked.samples,
         known_until: motion.known_until(),
     };
-    let text = match common.format {
-        Format::Csv => trajectory::csv(&report),
-        Format::Json => json_text(&json::motion(&report))?,
-        Format::Code(language) => super::no_program(language)?,
-        Format::Text | Format::Latex => text::document(&report::trajectory(&report), width(common.output.as_deref())),
+    let answer = Answer {
+        document: &report::trajectory(&report),
+        width: width(common.output.as_deref()),
+        picture: Some(&|| picture(&report)),
+        other: &|format| match format {
+            Format::Csv => Ok(trajectory::csv(&report)),
+            Format::Json => json_text(&json::motion(&report)),
+            format => no_such(format),
+        },
     };
-    let picture = common.plot.as_ref().map(|path| (path.clone(), picture(&report)));
     let broken = [Some(&motion), judge.as_ref()]
         .into_iter()
         .flatten()
@@ -105,8 +109,6 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         }),
     };
     Ok(Outcome {
-        result: whole(text),
-        picture,
         note: match broken {
             Some(motion) => Some(format!(
                 "warning: stopped early, what there is is kept: {}",
@@ -116,6 +118,7 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         },
         verdict: Some(verdict(&motion, judge.as_ref(), allowed)),
         partial: broken.is_some(),
+        ..answer.outcome(common)?
     })
 }
 
@@ -259,7 +262,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
                 .to_owned(),
         ));
     }
-    if asked.sweep.len() > 1 && common.plot.is_some() {
+    if asked.sweep.len() > 1 && common.draws() {
         return Err(Failure::Usage(
             "--plot draws the motions over one parameter, but more are swept: leave out --plot".to_owned(),
         ));
@@ -303,19 +306,21 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
         names: &names,
         motions: &motions,
     };
-    let text = match common.format {
-        Format::Csv => trajectory::sweep_csv(&report),
-        Format::Json => json_text(&json::motion_sweep(&report))?,
-        Format::Code(language) => super::no_program(language)?,
-        Format::Text | Format::Latex => text::document(&report::motion_sweep(&report), width(common.output.as_deref())),
+    let answer = Answer {
+        document: &report::motion_sweep(&report),
+        width: width(common.output.as_deref()),
+        picture: Some(&|| sweep_picture(&report)),
+        other: &|format| match format {
+            Format::Csv => Ok(trajectory::sweep_csv(&report)),
+            Format::Json => json_text(&json::motion_sweep(&report)),
+            format => no_such(format),
+        },
     };
     let note = stopped_early(&motions, total);
     Ok(Outcome {
-        result: whole(text),
-        picture: common.plot.as_ref().map(|path| (path.clone(), sweep_picture(&report))),
         partial: note.is_some(),
         note,
-        verdict: None,
+        ..answer.outcome(common)?
     })
 }
 

@@ -1,5 +1,5 @@
 //! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an article, [`code`] to
-//! compute with, `figure` (feature `plot`) to look at.
+//! compute with, `figure` (feature `plot`) to look at, `html` (feature `html`) for all of it on one page.
 //!
 //! In come documents of [`report`](crate::report); JSON, pictures, tables of comma-separated values and simulations take the
 //! results themselves. Out goes text in
@@ -10,6 +10,8 @@ pub mod code;
 #[cfg(feature = "plot")]
 pub mod figure;
 pub mod friction;
+#[cfg(feature = "html")]
+pub mod html;
 #[cfg(feature = "json")]
 pub mod json;
 pub mod latex;

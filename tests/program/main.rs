@@ -11,6 +11,8 @@ mod materials;
 mod optimize;
 mod options;
 #[cfg(feature = "plot")]
+mod pages;
+#[cfg(feature = "plot")]
 mod pictures;
 mod programs;
 mod simulate_cli;

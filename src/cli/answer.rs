@@ -1,0 +1,134 @@
+//! A result in the format that was asked for: what every command has in common once its work is done.
+
+use std::path::PathBuf;
+
+use lindstedt::export::html::{self, Page};
+use lindstedt::export::{latex, text};
+use lindstedt::report::Document;
+use lindstedt::solution::Solution;
+
+use super::{Common, Failure, Format, Outcome, whole};
+
+/// A result, and how it is written in each format.
+pub(super) struct Answer<'a> {
+    /// What it says.
+    pub(super) document: &'a Document<'a>,
+    /// How many characters a line of its text has at most.
+    pub(super) width: usize,
+    /// Its picture, drawn when it is asked for; none where a kind of result has none.
+    pub(super) picture: Option<Draw<'a>>,
+    /// What no document is made into: JSON, tables of comma-separated values, programs.
+    pub(super) other: &'a dyn Fn(Format) -> Result<String, Failure>,
+}
+
+/// Draws a picture, or says why there is none.
+pub(super) type Draw<'a> = &'a dyn Fn() -> Result<String, Failure>;
+
+impl Answer<'_> {
+    /// The result and the picture that were asked for, without a verdict.
+    pub(super) fn outcome(&self, common: &Common) -> Result<Outcome, Failure> {
+        let text = match common.format {
+            Format::Text => text::document(self.document, self.width),
+            Format::Latex => latex::document(self.document),
+            Format::Html => page(self.picture, None, |page| html::document(self.document, page)),
+            Format::Svg => drawn(self.picture)?,
+            format => (self.other)(format)?,
+        };
+        Ok(Outcome {
+            result: whole(text),
+            picture: pictured(common, self.picture),
+            note: None,
+            verdict: None,
+            partial: false,
+        })
+    }
+}
+
+/// The picture of `--plot` and its place, where there is one.
+pub(super) fn pictured(common: &Common, picture: Option<Draw>) -> Option<(PathBuf, Result<String, Failure>)> {
+    Some((common.plot.clone()?, picture?()))
+}
+
+/// The picture as the result.
+pub(super) fn drawn(picture: Option<Draw>) -> Result<String, Failure> {
+    match picture {
+        Some(draw) => draw(),
+        None => no_such(Format::Svg),
+    }
+}
+
+/// The page that `write` makes, with its picture and the command that made it. A page without a picture says why there is none.
+pub(super) fn page(
+    picture: Option<Draw>,
+    derivation: Option<(&Solution, bool)>,
+    write: impl FnOnce(&Page) -> String,
+) -> String {
+    let drawn = picture.map(|draw| {
+        draw().map_err(|failure| match failure {
+            Failure::Refused(reason) | Failure::Usage(reason) => reason,
+        })
+    });
+    let picture = drawn.as_ref().map(|drawn| match drawn {
+        Ok(picture) => Ok(picture.as_str()),
+        Err(reason) => Err(reason.as_str()),
+    });
+    let words: Vec<String> = std::env::args_os()
+        .skip(1)
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    write(&Page {
+        title: &command(&what_is_asked(&words)),
+        picture,
+        derivation,
+        made_by: &command(&words),
+    })
+}
+
+/// The words of a command without those that say how its result is handed on.
+fn what_is_asked(words: &[String]) -> Vec<String> {
+    const HANDED_ON: [&str; 3] = ["--format", "--output", "--plot"];
+    let mut asked = Vec::new();
+    let mut words = words.iter();
+    while let Some(word) = words.next() {
+        let option = word.split_once('=').map_or(word.as_str(), |(option, _)| option);
+        if !HANDED_ON.contains(&option) {
+            asked.push(word.clone());
+        } else if option == word {
+            words.next();
+        }
+    }
+    asked
+}
+
+/// A command as it can be typed again.
+fn command(words: &[String]) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+".contains(letter);
+    let quoted = |word: &String| match !word.is_empty() && word.chars().all(plain) {
+        true => word.clone(),
+        false => format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\"")),
+    };
+    std::iter::once("lindstedt".to_owned())
+        .chain(words.iter().map(quoted))
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// Refuses a format that a kind of result does not have.
+pub(super) fn no_such<T>(format: Format) -> Result<T, Failure> {
+    let (what, has_it) = match format {
+        Format::Csv => (
+            "table of comma-separated values",
+            "`lindstedt simulate`, `response`, `stability`, `friction`, `materials` or `optimize`",
+        ),
+        Format::Code(_) => ("program", "`lindstedt derive`"),
+        Format::Svg => (
+            "picture",
+            "`lindstedt derive`, `compare`, `impact`, `simulate`, `response`, `stability`, `friction`, `materials` or `optimize`",
+        ),
+        Format::Text | Format::Latex | Format::Json | Format::Html => ("result in this format", "other commands"),
+    };
+    Err(Failure::Usage(format!(
+        "there is no {what} here: --format {} belongs to {has_it}",
+        format.name()
+    )))
+}

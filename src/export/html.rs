@@ -1,0 +1,328 @@
+//! Documents as a page that stands alone: one file with its formulas, tables and picture in it, for a browser or a printer.
+//!
+//! In come a document of [`report`](crate::report), or a text, and what belongs on its page; out goes HTML. Formulas are those of the LaTeX
+//! format, set as MathML Core, which browsers draw without help; nothing is loaded from anywhere. The page is the same byte for
+//! byte on every run.
+
+mod math;
+mod words;
+
+use math::Typesetter;
+use words::{definitions, escaped, list, verdict};
+
+use super::latex::{self, Setting, Table};
+use super::{steps, text};
+use crate::decimal::significant;
+use crate::report::{Block, Document, MethodRow};
+use crate::solution::Solution;
+use crate::verify::comparison::Refused;
+
+/// What a page has beside its document.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Page<'a> {
+    /// What a browser shows as its title.
+    pub title: &'a str,
+    /// A picture as SVG, or why there is none.
+    pub picture: Option<Result<&'a str, &'a str>>,
+    /// The answer whose derivation can be unfolded, and whether it is unfolded from the start.
+    pub derivation: Option<(&'a Solution, bool)>,
+    /// What made the page: the command that can be typed again.
+    pub made_by: &'a str,
+}
+
+/// A document as a page.
+///
+/// ```
+/// use lindstedt::export::html::{self, Page};
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// let solution = solve(&duffing, &Options::default())?;
+/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// let page = html::document(&document, &Page { title: "Duffing", ..Page::default() });
+/// assert!(page.starts_with("<!doctype html>") && page.contains("<math"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn document(document: &Document, page: &Page) -> String {
+    let typesetter = Typesetter::default();
+    let mut body = Body {
+        typesetter: &typesetter,
+        text: String::new(),
+        rows: Vec::new(),
+        titled: false,
+    };
+    for section in &document.sections {
+        section.iter().for_each(|block| body.add(block));
+        body.flush();
+    }
+    let derivation = page.derivation.map(|(solution, open)| (steps::rows(solution), open));
+    if let Some((rows, open)) = derivation.filter(|(rows, _)| !rows.is_empty()) {
+        let open = if open { " open" } else { "" };
+        let rows = typesetter.display(&rows);
+        body.text.push_str(&format!(
+            "<details{open}>\n<summary>Derivation</summary>\n{rows}</details>\n"
+        ));
+    }
+    let heading = match body.titled {
+        true => String::new(),
+        false => heading(page),
+    };
+    whole(&(heading + &body.text), page)
+}
+
+/// The heading of a page that has no equation as its own.
+fn heading(page: &Page) -> String {
+    match page.title {
+        "" => String::new(),
+        title => format!("<h1>{}</h1>\n", escaped(title)),
+    }
+}
+
+/// A text whose lines stand below each other as they are, as a page.
+///
+/// ```
+/// use lindstedt::export::html::{self, Page};
+///
+/// let page = html::lines("a < b\n", &Page::default());
+/// assert!(page.contains("<pre>a &lt; b\n</pre>"));
+/// ```
+pub fn lines(text: &str, page: &Page) -> String {
+    whole(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
+}
+
+/// The page around its body.
+fn whole(body: &str, page: &Page) -> String {
+    let picture = match page.picture {
+        Some(Ok(picture)) => format!("<figure>\n{}\n</figure>\n", scaled(picture)),
+        Some(Err(reason)) => format!("<p class=\"soft\">No picture: {}</p>\n", escaped(reason)),
+        None => String::new(),
+    };
+    let title = escaped(page.title);
+    let made_by = match page.made_by {
+        "" => String::new(),
+        command => format!("<code>{}</code>, ", escaped(command)),
+    };
+    let (version, style) = (env!("CARGO_PKG_VERSION"), include_str!("html/page.css"));
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
+         <style>\n{style}</style>\n</head>\n<body>\n<main>\n{body}{picture}\
+         <footer>{made_by}lindstedt {version}</footer>\n</main>\n</body>\n</html>\n"
+    )
+}
+
+/// A picture that may become narrower than it was drawn.
+fn scaled(picture: &str) -> String {
+    let attribute = |name: &str| {
+        let (_, rest) = picture.split_once(&format!(" {name}=\""))?;
+        rest.split_once('"').map(|(value, _)| value)
+    };
+    match (attribute("width"), attribute("height")) {
+        (Some(width), Some(height)) if !picture.contains("viewBox") => {
+            picture.replacen("<svg ", &format!("<svg viewBox=\"0 0 {width} {height}\" "), 1)
+        }
+        _ => picture.to_owned(),
+    }
+}
+
+/// What has been written, and the equations that wait for the end of their display.
+struct Body<'a> {
+    typesetter: &'a Typesetter,
+    text: String,
+    rows: Vec<String>,
+    /// Whether the page has its heading.
+    titled: bool,
+}
+
+impl Body<'_> {
+    fn add(&mut self, block: &Block) {
+        let question = match block {
+            Block::Question(equation) | Block::Truth { equation, .. } => Some(latex::equation(equation)),
+            Block::QuestionAsTyped(equation) => Some(latex::typed(equation)),
+            _ => None,
+        };
+        if let (Some(question), false) = (question, self.titled) {
+            self.titled = true;
+            let heading = format!("<h1>{}</h1>\n", self.typesetter.inline(&question));
+            self.html(&heading);
+            if !matches!(block, Block::Truth { .. }) {
+                return;
+            }
+        }
+        match (latex::setting(block), block) {
+            // The columns that only text and pages have room for.
+            (_, Block::Methods { rows, tolerance, .. }) => self.table(&methods(rows, *tolerance)),
+            (_, Block::Reading { words, .. }) => self.html(&format!("<h3>{}</h3>\n", escaped(words))),
+            (Setting::Table(table), _) => self.table(&table),
+            (Setting::Equations(mut rows), _) => {
+                if let (Some(aside), Some(last)) = (aside(block), rows.last_mut()) {
+                    last.push_str(&format!(" \\qquad \\text{{({})}}", latex::words(&aside)));
+                }
+                self.rows.extend(rows);
+            }
+            (Setting::Words, _) => {}
+        }
+        let words = self.words(block);
+        if !words.is_empty() {
+            self.html(&words);
+        }
+    }
+
+    /// The words of a block.
+    fn words(&self, block: &Block) -> String {
+        let paragraph = |words: &str| format!("<p>{}</p>\n", escaped(words));
+        let heading = |words: &str| format!("<h3>{}</h3>\n", escaped(words));
+        match block {
+            Block::Title { words, amplitude } => {
+                format!(
+                    "<h2>{}</h2>\n<p class=\"soft\">{}</p>\n",
+                    escaped(words),
+                    escaped(amplitude)
+                )
+            }
+            Block::Heading(words) => heading(words),
+            Block::Note(words)
+            | Block::Remark(words)
+            | Block::Sentence(words)
+            | Block::Detail(words)
+            | Block::Closing(words) => paragraph(words),
+            Block::Unknowns(names) => {
+                let names: Vec<&str> = names.iter().map(|name| name.name()).collect();
+                paragraph(&format!("for {}:", names.join(", ")))
+            }
+            Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
+            Block::Facts(facts) => definitions("", facts),
+            Block::Judged {
+                verification,
+                series_of_omega,
+                hbar,
+                tolerance,
+            } => {
+                let (of, facts) = text::judgement(verification, *series_of_omega, *hbar, *tolerance);
+                heading(&of) + &definitions("", &facts)
+            }
+            Block::Truth { at, frequency, .. } => paragraph(&text::comparison::true_frequency(at, frequency)),
+            Block::Refused(refused) => heading("Not applicable") + &definitions("long", &refusals(refused)),
+            Block::TrueMotion(lines) => heading("True motion") + &list(lines),
+            Block::Motion(solution) => match solution.displacement.is_zero() {
+                true => paragraph(text::without_motion(solution)),
+                false => String::new(),
+            },
+            Block::Quantities {
+                columns,
+                deviations,
+                shapes,
+                ..
+            } => {
+                let size = |size: f64| format!("{} %", significant(100.0 * size, 3));
+                let of = |(column, (deviation, [approach, contact, back])): (
+                    &crate::impact::Reading,
+                    (&f64, &[f64; 3]),
+                )| {
+                    let words = format!(
+                        "{} in real time; {} of the approach, {} of the contact, {} of the return, each on its own clock",
+                        size(*deviation),
+                        size(*approach),
+                        size(*contact),
+                        size(*back)
+                    );
+                    (column.name(), words)
+                };
+                let facts: Vec<(&str, String)> = columns.iter().zip(deviations.iter().zip(shapes)).map(of).collect();
+                heading("Largest deviation") + &definitions("", &facts)
+            }
+            Block::Verdicts { verdicts, tolerance } => {
+                let within = significant(100.0 * tolerance, 3);
+                let facts = verdicts
+                    .iter()
+                    .map(|(reading, verdict)| (reading.name(), verdict.name().to_owned()));
+                heading(&format!("Verdict: every number and phase within {within} %"))
+                    + &definitions("", &facts.collect::<Vec<_>>())
+            }
+            Block::Shortcoming { reading, errors, cause } => {
+                paragraph(text::impact::shortcoming(*reading, errors, cause).trim())
+            }
+            // Formulas and tables have been set.
+            _ => String::new(),
+        }
+    }
+
+    fn html(&mut self, html: &str) {
+        self.flush();
+        self.text.push_str(html);
+    }
+
+    fn table(&mut self, table: &Table) {
+        let is_number = |cell: &String| {
+            let first = cell.trim_start_matches('$').chars().next();
+            first.is_none_or(|first| first.is_ascii_digit() || "+-<".contains(first))
+        };
+        let place = |(column, place): (usize, char)| {
+            let numbers = || table.rows.iter().filter_map(|row| row.get(column)).all(is_number);
+            match place == 'r' && numbers() {
+                true => " class=\"number\"",
+                false => "",
+            }
+        };
+        let places: Vec<&str> = table.places.chars().enumerate().map(place).collect();
+        let line = |cells: &[String], tag: &str| {
+            let cells = cells.iter().zip(&places);
+            let cells =
+                cells.map(|(cell, place)| format!("<{tag}{place}>{}</{tag}>", verdict(&self.typesetter.mixed(cell))));
+            format!("<tr>{}</tr>\n", cells.collect::<String>())
+        };
+        let rows: String = table.rows.iter().map(|row| line(row, "td")).collect();
+        let head = line(&table.head, "th");
+        self.html(&format!(
+            "<div class=\"table\"><table>\n<thead>\n{head}</thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
+        ));
+    }
+
+    /// Writes the equations that wait.
+    fn flush(&mut self) {
+        if !self.rows.is_empty() {
+            let rows = std::mem::take(&mut self.rows);
+            self.text.push_str(&self.typesetter.display(&rows));
+        }
+    }
+}
+
+/// What is said beside an equation.
+fn aside(block: &Block) -> Option<String> {
+    match block {
+        Block::Value { source, .. } => source.map(str::to_owned),
+        Block::SiValue { words, .. } => Some((*words).to_owned()),
+        _ => None,
+    }
+}
+
+/// Every method with its numbers and its formula.
+fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
+    let cells = text::comparison::cells(rows, tolerance);
+    let formulas = std::iter::once("formula".to_owned()).chain(rows.iter().map(latex::comparison::with_hbar));
+    let plain = |cell: String| latex::words(&cell);
+    let mut lines: Vec<Vec<String>> = cells
+        .into_iter()
+        .zip(formulas)
+        .map(|(cells, formula)| cells.map(plain).into_iter().chain([formula]).collect())
+        .collect();
+    let head = lines.remove(0);
+    Table {
+        places: "lrrrlrl".to_owned(),
+        head,
+        rows: lines,
+        framed: true,
+    }
+}
+
+/// Methods that do not apply, those for the same reason together.
+fn refusals(refused: &[Refused]) -> Vec<(String, String)> {
+    let named = refused
+        .iter()
+        .map(|refused| (refused.method.title().to_owned(), refused.reason.reason(refused.method)));
+    let grouped = text::comparison::grouped(named);
+    grouped
+        .into_iter()
+        .map(|(names, reason)| (names.join(", "), reason))
+        .collect()
+}

@@ -27,7 +27,7 @@ pub(super) type Draw<'a> = &'a dyn Fn() -> Result<String, Failure>;
 impl Answer<'_> {
     /// The result and the picture that were asked for, without a verdict.
     pub(super) fn outcome(&self, common: &Common) -> Result<Outcome, Failure> {
-        let text = match common.format {
+        let text = match common.format() {
             Format::Text => text::document(self.document, self.width),
             Format::Latex => latex::document(self.document),
             Format::Html => page(self.picture, None, |page| html::document(self.document, page)),

@@ -21,7 +21,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.common.tolerance.is_some() {
         return Err(Failure::Usage("--tolerance: the catalogue has no verdict".to_owned()));
     }
-    let text = match arguments.common.format {
+    let text = match arguments.common.format() {
         Format::Text => catalog::text(),
         Format::Latex => catalog::latex(),
         Format::Html => page(None, None, |page| html::lines(&catalog::text(), page)),

@@ -56,7 +56,7 @@ fn range(text: &str) -> Result<(Rational, Rational), String> {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
-    if arguments.range.is_some() && format(&arguments.common) == Format::Json {
+    if arguments.range.is_some() && arguments.common.format() == Format::Json {
         return Err(Failure::Usage(
             "--range is not in a certificate, which is of one amplitude: print it as text".to_owned(),
         ));
@@ -112,15 +112,6 @@ pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     printed(&report, &arguments.common)
 }
 
-/// The format asked for; a file whose name ends in .json is one that `check` reads.
-fn format(common: &Common) -> Format {
-    let ending = common.output.as_ref().and_then(|path| path.extension());
-    match common.format {
-        Format::Text if ending.is_some_and(|ending| ending == "json") => Format::Json,
-        format => format,
-    }
-}
-
 /// Refuses a picture, before any work is done for it.
 fn without_picture(common: &Common) -> Result<(), Failure> {
     match common.plot {
@@ -141,12 +132,8 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
             format => no_such(format),
         },
     };
-    let common = Common {
-        format: format(common),
-        ..common.clone()
-    };
     Ok(Outcome {
         verdict: report.verdict().or(Some(Verdict::Pass)),
-        ..answer.outcome(&common)?
+        ..answer.outcome(common)?
     })
 }

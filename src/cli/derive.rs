@@ -183,7 +183,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let of_motion = [
         ("--steps", arguments.steps),
         ("--plot", arguments.common.plot.is_some()),
-        ("--format svg", arguments.common.format == Format::Svg),
+        ("--format svg", arguments.common.format() == Format::Svg),
     ];
     with_motion(&arguments.question, &of_motion)?;
     let (oscillator, values, solution) = solved(&arguments.question)?;
@@ -199,12 +199,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let place = verification.as_ref().filter(|_| !arguments.question.omega_only);
     let draw = place.map(|verification| || picture(&oscillator, &solution, &verification.at));
     let picture = draw.as_ref().map(|draw| draw as Draw);
-    let derivation = match arguments.common.format {
+    let derivation = match arguments.common.format() {
         Format::Latex if arguments.steps => latex::steps(&solution),
         _ if arguments.steps => text::steps(&solution),
         _ => String::new(),
     };
-    let text = match arguments.common.format {
+    let text = match arguments.common.format() {
         Format::Text => {
             let space = if arguments.steps { "\n" } else { "" };
             derivation + space + &text::solution(&solution, verification.as_ref(), tolerance)

@@ -96,9 +96,9 @@ enum Command {
 /// What every command takes.
 #[derive(Args, Clone, Default)]
 struct Common {
-    /// What to print
-    #[arg(long, default_value = "text", value_parser = formats([Format::Svg, Format::Csv]))]
-    format: Format,
+    /// What to print; without it what the name of --output ends in (.tex, .json, .html, .svg, .csv, .py), else text
+    #[arg(long, value_parser = formats([Format::Svg, Format::Csv]))]
+    format: Option<Format>,
     /// Write the result to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -139,6 +139,21 @@ impl Format {
     fn all() -> impl Iterator<Item = Self> {
         let programs = Language::ALL.map(Self::Code);
         Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
+    }
+
+    /// That of files whose names end so; none for `txt` and everything unknown.
+    fn of_ending(ending: &str) -> Option<Self> {
+        Some(match ending.to_ascii_lowercase().as_str() {
+            "tex" => Self::Latex,
+            "htm" => Self::Html,
+            "rs" => Self::Code(Language::Rust),
+            "c" => Self::Code(Language::C),
+            "py" => Self::Code(Language::Python),
+            "jl" => Self::Code(Language::Julia),
+            "m" => Self::Code(Language::Matlab),
+            name @ ("json" | "html" | "svg" | "csv") => Self::all().find(|format| format.name() == name)?,
+            _ => return None,
+        })
     }
 
     /// The name on the command line.
@@ -189,9 +204,17 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl Common {
+    /// The format asked for: by name, or by the ending of the file.
+    fn format(&self) -> Format {
+        let ending = || self.output.as_ref()?.extension()?.to_str();
+        self.format
+            .or_else(|| ending().and_then(Format::of_ending))
+            .unwrap_or_default()
+    }
+
     /// Whether the picture is asked for, beside the result or as it.
     fn draws(&self) -> bool {
-        self.plot.is_some() || self.format == Format::Svg
+        self.plot.is_some() || self.format() == Format::Svg
     }
 }
 
@@ -308,20 +331,19 @@ impl Command {
 
     /// Refuses a format that it does not have, before any work is done for it.
     fn takes(&self, format: Format) -> Result<(), Failure> {
-        match (self, format) {
-            (Self::Derive(_), _) => Ok(()),
-            (_, Format::Code(_)) => answer::no_such(format),
-            (
-                Self::Audit(_)
-                | Self::Paper(_)
-                | Self::Lagrange(_)
-                | Self::Certify(_)
-                | Self::Check(_)
-                | Self::Catalog(_),
-                Format::Svg,
-            ) => answer::no_such(format),
-            _ => Ok(()),
-        }
+        let in_words = matches!(
+            self,
+            Self::Audit(_) | Self::Paper(_) | Self::Lagrange(_) | Self::Certify(_) | Self::Check(_) | Self::Catalog(_)
+        );
+        let refused = match (self, format) {
+            (Self::Schema(_), _) => false,
+            (Self::Derive(_) | Self::Compare(_) | Self::Impact(_), Format::Csv) => true,
+            (Self::Derive(_), _) => false,
+            (_, Format::Code(_)) => true,
+            (_, Format::Svg | Format::Csv) => in_words,
+            _ => false,
+        };
+        if refused { answer::no_such(format) } else { Ok(()) }
     }
 
     /// How long to wait for what there is, once the time is up. Only a simulation, a search, branches and an expansion have parts worth waiting
@@ -381,7 +403,8 @@ pub fn run() -> ExitCode {
     let common = command.common();
     let judged = common.tolerance.is_some() || command.is_judged();
     match command
-        .takes(common.format)
+        .takes(common.format())
+        .map_err(|failure| by_ending(failure, &common))
         .and_then(|()| files::check(&common, command.input()))
     {
         Err(Failure::Refused(message)) => return fail(1, &message),
@@ -395,6 +418,16 @@ pub fn run() -> ExitCode {
         (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
         (None, Some((code, message))) => fail(code, &message),
         (Some(None), _) | (None, None) => fail(70, "internal error: please report the command and its input"),
+    }
+}
+
+/// A refusal of a format, and who asked for it where it was the name of a file.
+fn by_ending(failure: Failure, common: &Common) -> Failure {
+    match failure {
+        Failure::Usage(message) if common.format.is_none() => Failure::Usage(format!(
+            "{message}\n  help: the name of --output asks for it; --format text writes text there"
+        )),
+        failure => failure,
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Asked<'a> {
 const ENERGY_TOLERANCE: f64 = 1e-6;
 
 pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
-    if asked.common.format == Format::Latex {
+    if asked.common.format() == Format::Latex {
         return Err(Failure::Usage(
             "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv".to_owned(),
         ));

@@ -113,12 +113,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if problem.primary.is_some() {
         return main_mass(arguments, &problem);
     }
-    if arguments.common.format == Format::Latex && !arguments.sweep.is_empty() {
+    if arguments.common.format() == Format::Latex && !arguments.sweep.is_empty() {
         return Err(Failure::Usage(
             "a sweep has no LaTeX form: choose --format text, json or csv".to_owned(),
         ));
     }
-    if arguments.common.format == Format::Latex && !arguments.chain {
+    if arguments.common.format() == Format::Latex && !arguments.chain {
         return Err(Failure::Usage(
             "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv, or --chain"
                 .to_owned(),
@@ -246,7 +246,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         known_until: if arguments.chain { None } else { known_until(&motion) },
     };
     let draw: Option<Draw> = Some(&|| picture(&report));
-    let text = match arguments.common.format {
+    let text = match arguments.common.format() {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
         Format::Text => text(&report),
@@ -416,12 +416,12 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
-    let write = match arguments.common.format {
+    let write = match arguments.common.format() {
         Format::Csv => sweep_csv,
         Format::Json => json::sweep,
         _ => sweep_text,
     };
-    let made_whole = match arguments.common.format {
+    let made_whole = match arguments.common.format() {
         Format::Svg => Some(drawn(draw)?),
         Format::Html => {
             let mut lines = Vec::new();

@@ -77,10 +77,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         judged: judged.as_deref().map(|judged| (&values, judged)),
         tolerance,
     };
-    let charted = arguments.common.draws() || arguments.common.format == Format::Csv;
+    let charted = arguments.common.draws() || arguments.common.format() == Format::Csv;
     let charts = match charted {
         // A page has the curves where it is known how far they go.
-        false if arguments.common.format == Format::Html => charts(&curves, &values).ok(),
+        false if arguments.common.format() == Format::Html => charts(&curves, &values).ok(),
         false => None,
         true => Some(charts(&curves, &values)?),
     };

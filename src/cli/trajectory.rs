@@ -46,7 +46,7 @@ const TOLERANCE: f64 = 1e-6;
 
 pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     let common = asked.common;
-    if common.format == Format::Latex {
+    if common.format() == Format::Latex {
         return Err(Failure::Usage(
             "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv".to_owned(),
         ));

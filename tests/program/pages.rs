@@ -213,3 +213,39 @@ fn what_has_no_picture_says_so_before_the_work() {
     assert_eq!(output.status.code(), Some(1));
     assert!(!page(&general).contains("<svg"));
 }
+
+/// Without `--format` the name of the file says what is in it.
+#[test]
+fn the_name_of_the_output_decides_where_no_format_is_given() {
+    let folder = std::env::temp_dir().join(format!("lindstedt-pages-{}-names", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let question = ["derive", "pendulum", "--at", "A=3/2"];
+    let written = |name: &str, more: &[&str]| {
+        let place = folder.join(name);
+        let place = place.to_str().expect("a path in text");
+        result(&[question.as_slice(), &["--output", place], more].concat());
+        std::fs::read_to_string(place).expect("the result")
+    };
+    for (name, format) in [
+        ("law.json", "json"),
+        ("law.tex", "latex"),
+        ("law.svg", "svg"),
+        ("law.py", "python"),
+        ("law.c", "c"),
+        ("law.m", "matlab"),
+        ("law.txt", "text"),
+        ("law", "text"),
+        ("law.sh", "text"),
+    ] {
+        let asked = result(&[question.as_slice(), &["--format", format]].concat());
+        assert_eq!(written(name, &[]), asked, "{name}");
+    }
+    check(&written("LAW.HTML", &[]));
+    assert_eq!(written("text.json", &["--format", "text"]), result(&question));
+    let place = folder.join("impact.c");
+    let refused = run(&["impact", "--output", place.to_str().expect("a path in text")]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(message.contains("--format text writes text there"), "{message}");
+    std::fs::remove_dir_all(&folder).expect("the folder is removed");
+}

@@ -21,7 +21,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
     let cubic = "x'' + x + eps*x^3 + eps*x^5 = 0";
     let well = "x'' - x + x^3 = 0";
     let cycles = "x'' + x - eps*(1 - x^2 + x^4/20)*x' = 0";
-    let file = path("output").with_extension("svg");
+    let file = path("output").with_extension("txt");
     let file = file.to_str().expect("a path in text");
     let simulated = ["simulate"];
     let swept = [

@@ -108,6 +108,9 @@ struct Common {
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
+    /// Print results only, no notes and no progress
+    #[arg(long)]
+    quiet: bool,
     /// Give up after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     timeout: Option<f64>,
@@ -402,6 +405,7 @@ pub fn run() -> ExitCode {
         .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
     let common = command.common();
     let judged = common.tolerance.is_some() || command.is_judged();
+    progress::QUIET.store(common.quiet, Ordering::Relaxed);
     match command
         .takes(common.format())
         .map_err(|failure| by_ending(failure, &common))
@@ -525,7 +529,7 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
         Some((_, Err(Failure::Refused(reason) | Failure::Usage(reason)))) => no_picture = Some(reason),
         None => {}
     }
-    if let Some(note) = outcome.note {
+    if let Some(note) = outcome.note.filter(|_| !common.quiet) {
         eprintln!("{note}");
     }
     let written = files::write(common.output.as_deref(), outcome.result);

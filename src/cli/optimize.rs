@@ -8,7 +8,6 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::export::json::optimization::{read_record, record_head, record_line};
 use lindstedt::export::{json, optimization};
 use lindstedt::genetic::OptionsError;
@@ -19,6 +18,7 @@ use lindstedt::report;
 use super::answer::{Answer, no_such};
 use super::files::{is_standard, same, width};
 use super::problem::from_file;
+use super::progress;
 use super::{Common, Failure, Format, Outcome, STOP, count, json_text, read_at_most};
 
 #[derive(Args)]
@@ -44,9 +44,6 @@ pub struct Arguments {
     /// Take the runs of this record over, do the missing ones, and add them to it: the result is the same as in one go
     #[arg(long, value_name = "FILE.jsonl")]
     resume: Option<PathBuf>,
-    /// Print results only, no notes and no progress
-    #[arg(long)]
-    quiet: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -120,7 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         (None, true) => None,
     };
     Ok(Outcome {
-        note: note.filter(|_| !arguments.quiet),
+        note,
         partial: !study.complete,
         ..answer.outcome(common)?
     })
@@ -132,14 +129,10 @@ fn search(
     record: &Record,
     deadline: Option<Instant>,
 ) -> Result<Study, Failure> {
-    // Draws on standard error, and only where that is a terminal.
-    let bar = match arguments.quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(question.most_work() as u64),
-    };
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} % of the generations, {eta} left at most") {
-        bar.set_style(style);
-    }
+    let bar = progress::bar(
+        question.most_work(),
+        "{bar:40} {percent} % of the generations, {eta} left at most",
+    );
     let watch = Watch {
         stop: &|| STOP.load(Ordering::Relaxed) || deadline.is_some_and(|deadline| Instant::now() >= deadline),
         done: &|run| record.write(run),

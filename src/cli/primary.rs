@@ -1,6 +1,5 @@
 //! `lindstedt simulate FILE` of a file with a main mass, `[primary]`.
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Interrupt;
 use lindstedt::export::{json, primary, significant};
 use lindstedt::impact::Units;
@@ -12,6 +11,7 @@ use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, no_such};
 use super::files::width;
+use super::progress;
 use super::{Common, Failure, Format, Outcome, STOP, json_text};
 
 /// What is asked of a main mass.
@@ -20,8 +20,6 @@ pub(super) struct Asked<'a> {
     pub samples: &'a [f64],
     /// The frequencies of the force, in rad/s.
     pub sweep: &'a [Axis],
-    /// No progress bar.
-    pub quiet: bool,
     pub common: &'a Common,
 }
 
@@ -111,13 +109,7 @@ fn many(problem: &Problem, asked: &Asked, axis: &Axis) -> Result<Outcome, Failur
         interrupt: Interrupt::by(&STOP),
         ..file.settings
     };
-    let bar = match asked.quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(frequencies.len() as u64),
-    };
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} frequencies, {eta} left") {
-        bar.set_style(style);
-    }
+    let bar = progress::bar(frequencies.len(), "{bar:40} {pos}/{len} frequencies, {eta} left");
     let progress = |done: usize| bar.inc(done as u64);
     let rows =
         sweep_primary(file.case, &frequencies, &settings, progress).map_err(|error| Failure::refused(&error, None))?;

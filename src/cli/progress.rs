@@ -1,5 +1,6 @@
-//! A bar on standard error for long work, where that is a terminal.
+//! A bar on standard error for long work, where that is a terminal and `--quiet` is not given.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -8,6 +9,24 @@ use lindstedt::Counter;
 
 /// How far the work has come.
 pub(super) static PROGRESS: Counter = Counter::new();
+
+/// Set by `--quiet`.
+pub(super) static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// What stands beside the bar of a sweep.
+pub(super) const MOTIONS: &str = "{bar:40} {pos}/{len} motions, {eta} left";
+
+/// A bar of so much work; `template` says what stands beside it.
+pub(super) fn bar(length: usize, template: &str) -> ProgressBar {
+    let bar = match QUIET.load(Ordering::Relaxed) {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(length as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
 
 /// Does long work with a bar, `40 % of the calculation`.
 pub(super) fn with_progress<T>(of_what: &str, work: impl FnOnce() -> T) -> T {
@@ -21,10 +40,7 @@ pub(super) fn with_progress<T>(of_what: &str, work: impl FnOnce() -> T) -> T {
         if is_done(SOON) {
             return;
         }
-        let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
-        }
+        let bar = bar(0, &template);
         while !is_done(EVERY) {
             let (position, length) = PROGRESS.read();
             bar.set_length(length);

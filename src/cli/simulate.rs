@@ -1,7 +1,6 @@
 //! `lindstedt simulate [PROBLEM]`.
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
 use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
@@ -15,6 +14,7 @@ use lindstedt::{Interrupt, system};
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::primary;
 use super::problem::problem;
+use super::progress::{self, MOTIONS};
 use super::trajectory::{self, Asked};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
 
@@ -61,9 +61,6 @@ pub struct Arguments {
     /// Threads of a sweep; all cores without it. The result is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Print results only, no notes
-    #[arg(long)]
-    quiet: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -129,12 +126,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             "--jobs are the threads of a sweep: leave it out, or give --sweep".to_owned(),
         ));
     }
-    let outcome = match arguments.sweep.is_empty() {
+    match arguments.sweep.is_empty() {
         true => one(arguments, &problem),
         false => many(arguments, &problem),
-    }?;
-    let note = outcome.note.filter(|_| !arguments.quiet);
-    Ok(Outcome { note, ..outcome })
+    }
 }
 
 /// A main mass that carries the pendulum.
@@ -151,17 +146,14 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
              is swept"
         )));
     }
-    let outcome = primary::run(
+    primary::run(
         problem,
         &primary::Asked {
             samples: &arguments.sample,
             sweep: &arguments.sweep,
-            quiet: arguments.quiet,
             common: &arguments.common,
         },
-    )?;
-    let note = outcome.note.filter(|_| !arguments.quiet);
-    Ok(Outcome { note, ..outcome })
+    )
 }
 
 /// An equation or a mechanism of one's own.
@@ -183,7 +175,7 @@ fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Some(Method::RungeKutta) => &[system::Integrator::RungeKutta],
         Some(Method::Both) => &[system::Integrator::Taylor, system::Integrator::RungeKutta],
     };
-    let outcome = trajectory::run(
+    trajectory::run(
         problem,
         &Asked {
             from: &arguments.from,
@@ -194,13 +186,10 @@ fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
             section: arguments.section.as_deref(),
             after: arguments.after,
             sweep: &arguments.sweep,
-            quiet: arguments.quiet,
             integrators,
             common: &arguments.common,
         },
-    )?;
-    let note = outcome.note.filter(|_| !arguments.quiet);
-    Ok(Outcome { note, ..outcome })
+    )
 }
 
 fn refused(error: SimulateError) -> Failure {
@@ -390,7 +379,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     check_sweep(arguments)?;
     let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();
-    let bar = bar_of(if arguments.baseline { 3 * total } else { total }, arguments.quiet);
+    let bar = progress::bar(if arguments.baseline { 3 * total } else { total }, MOTIONS);
     let route = match arguments.chain {
         true => Integrator::Chain,
         false => Integrator::Taylor,
@@ -468,18 +457,6 @@ fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     Ok(())
-}
-
-/// How many of the motions are done: on standard error, and only where that is a terminal.
-fn bar_of(motions: usize, quiet: bool) -> ProgressBar {
-    let bar = match quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(motions as u64),
-    };
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 #[cfg(not(feature = "plot"))]

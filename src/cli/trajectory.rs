@@ -1,6 +1,5 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::export::{decimal, json, significant, trajectory};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
@@ -14,6 +13,7 @@ use lindstedt::{Interrupt, Symbol};
 use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
+use super::progress::{self, MOTIONS};
 use super::{Common, Failure, Format, Outcome, STOP, json_text};
 
 /// What is asked of a motion of one's own.
@@ -34,8 +34,6 @@ pub(super) struct Asked<'a> {
     pub after: Option<f64>,
     /// What is varied.
     pub sweep: &'a [Axis],
-    /// Without a bar of progress.
-    pub quiet: bool,
     /// By Runge-Kutta alone, by power series alone or by both.
     pub integrators: &'a [Integrator],
     pub common: &'a Common,
@@ -286,14 +284,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     }
     let total = grid_size(asked.sweep).map_err(|error| Failure::refused(&error, None))?;
     let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(asked.sweep, number)).collect();
-    // Draws on standard error, and only where that is a terminal.
-    let bar = match asked.quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(total as u64),
-    };
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} motions, {eta} left") {
-        bar.set_style(style);
-    }
+    let bar = progress::bar(total, MOTIONS);
     let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
         let Failure::Refused(message) = refused(error) else {
             return Failure::Refused(format!("motion {} cannot begin", number + 1));

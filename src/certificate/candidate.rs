@@ -9,9 +9,9 @@ use std::f64::consts::TAU;
 use nalgebra::DMatrix;
 use num_traits::{ToPrimitive as _, Zero as _};
 
-use super::cosine_series::WORKING;
 use super::force::along;
 use super::formula::{Errors, JudgedFormula};
+use super::fourier_series::WORKING;
 use super::theorem::{NotProved, correction, prove};
 use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula};
 use crate::decimal::neighbours;
@@ -282,7 +282,7 @@ fn claim_errors(formula: &mut JudgedFormula, errors: &Errors) {
 /// The inverse of the derivative on the block, in doubles.
 pub(super) fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, NotProved> {
     let motion = certificate.motion();
-    let nearest = |series: &super::CosineSeries, k: usize| WORKING.nearest(&series.coefficient(k));
+    let nearest = |series: &super::FourierSeries, k: usize| WORKING.nearest(&series.cosine(k));
     let force = along(&certificate.force, &motion)?;
     let slope = along(&certificate.force.differentiate(coordinate())?, &motion)?;
     let mu = WORKING.nearest(&certificate.mu_ball());

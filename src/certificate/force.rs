@@ -7,7 +7,7 @@
 use num_traits::{One as _, Signed as _, ToPrimitive as _};
 
 use super::coordinate;
-use super::cosine_series::{CosineSeries, WORKING};
+use super::fourier_series::{FourierSeries, WORKING};
 use crate::exact::Rational;
 use crate::exact::bound::Bound;
 use crate::expr::{Expr, ExprError, Function, Node};
@@ -23,8 +23,8 @@ pub(super) struct NoValue(
 ///
 /// # Errors
 /// [`NoValue`].
-pub(super) fn along(force: &Expr, motion: &CosineSeries) -> Result<CosineSeries, NoValue> {
-    force.fold(|node, parts: &[CosineSeries]| {
+pub(super) fn along(force: &Expr, motion: &FourierSeries) -> Result<FourierSeries, NoValue> {
+    force.fold(|node, parts: &[FourierSeries]| {
         let value = value(node, motion, parts);
         value
             .filter(|value| value.norm() < Bound::UNKNOWN)
@@ -32,10 +32,10 @@ pub(super) fn along(force: &Expr, motion: &CosineSeries) -> Result<CosineSeries,
     })
 }
 
-fn value(node: &Expr, motion: &CosineSeries, parts: &[CosineSeries]) -> Option<CosineSeries> {
+fn value(node: &Expr, motion: &FourierSeries, parts: &[FourierSeries]) -> Option<FourierSeries> {
     match node.node() {
-        Node::Number(value) => Some(CosineSeries::constant(WORKING.fraction(value))),
-        Node::Pi => Some(CosineSeries::constant(WORKING.pi())),
+        Node::Number(value) => Some(FourierSeries::constant(WORKING.fraction(value))),
+        Node::Pi => Some(FourierSeries::constant(WORKING.pi())),
         Node::Symbol(symbol) => (*symbol == coordinate()).then(|| motion.clone()),
         Node::Sum(_) => parts.iter().cloned().reduce(|sum, part| sum.sum(&part)),
         Node::Product(coefficient, _) => {
@@ -47,17 +47,17 @@ fn value(node: &Expr, motion: &CosineSeries, parts: &[CosineSeries]) -> Option<C
     }
 }
 
-fn times(series: CosineSeries, coefficient: &Rational) -> CosineSeries {
+fn times(series: FourierSeries, coefficient: &Rational) -> FourierSeries {
     match coefficient.is_one() {
         true => series,
-        false => series.product(&CosineSeries::constant(WORKING.fraction(coefficient))),
+        false => series.product(&FourierSeries::constant(WORKING.fraction(coefficient))),
     }
 }
 
 /// Powers up to this come of products.
 const HIGHEST_POWER: u32 = 200;
 
-fn power(base: &CosineSeries, exponent: &Rational) -> Option<CosineSeries> {
+fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
     let times = exponent
         .numer()
         .abs()
@@ -73,7 +73,7 @@ fn power(base: &CosineSeries, exponent: &Rational) -> Option<CosineSeries> {
     }
 }
 
-fn function_of(function: Function, argument: &CosineSeries) -> Option<CosineSeries> {
+fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSeries> {
     let hyperbolic = || {
         let growing = argument.exponential()?;
         let falling = argument.scaled(-1).exponential()?;

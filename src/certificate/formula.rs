@@ -1,7 +1,7 @@
 //! What a proved motion says about a formula: how far it is off, from both sides.
 //!
 //! ```text
-//! x~(t) = X~(omega~ t),   D(theta) = Xbar(theta) - X~(theta), a cosine series of degree K;   theta_j = pi j/M
+//! x~(t) = X~(omega~ t),   D(theta) = Xbar(theta) - X~(theta), a series of degree K;   theta_j = pi j/M
 //! max_j |D(theta_j)| - r <= max |X - X~| <= max_j |D(theta_j)|/cos(K pi/(2 M)) + r
 //! |x(t) - x~(t)| <= max |X - X~| + max |X~'| |omega - omega~| |t|
 //! ```
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use num_traits::Zero as _;
 
-use super::cosine_series::{CosineSeries, WORKING};
+use super::fourier_series::{FourierSeries, WORKING};
 use super::theorem::{NotProved, Proof};
 use super::{Certificate, Certified, CheckError};
 use crate::exact::ball::{Ball, Balls};
@@ -103,8 +103,8 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
 
 fn errors(certificate: &Certificate, proof: Proof, frequency: &Ball, formula: &JudgedFormula) -> Errors {
     let own = |units: &Integer| WORKING.dyadic(units, certificate.bits);
-    let own_motion = CosineSeries::exactly(formula.coefficients.iter().map(own).collect());
-    let (lower, upper) = largest(&certificate.motion().difference(&own_motion).coefficients, Wave::Cosine);
+    let own_motion = FourierSeries::exactly(formula.coefficients.iter().map(own).collect(), vec![]);
+    let (lower, upper) = largest(&certificate.motion().difference(&own_motion));
     let own_frequency = own(&formula.frequency);
     let off = WORKING.difference(&own_frequency, frequency);
     let frequency_error = Range {
@@ -113,9 +113,7 @@ fn errors(certificate: &Certificate, proof: Proof, frequency: &Ball, formula: &J
     };
     let slowest = WORKING.distance_from_zero(frequency);
     let fastest = WORKING.magnitude(frequency).value();
-    let by_harmonic = formula.coefficients.iter().enumerate();
-    let slopes: Vec<Ball> = by_harmonic.map(|(k, c)| WORKING.scaled(&own(c), k as i64)).collect();
-    let (flattest, steepest) = largest(&slopes, Wave::Sine);
+    let (flattest, steepest) = largest(&own_motion.derivative());
     Errors {
         deviation: Range {
             lower: (lower - proof.radius.value()).next_down().max(0.0),
@@ -133,30 +131,37 @@ fn errors(certificate: &Certificate, proof: Proof, frequency: &Ball, formula: &J
     }
 }
 
-/// Which functions a series consists of.
-#[derive(Clone, Copy, PartialEq)]
-enum Wave {
-    Cosine,
-    Sine,
-}
-
-/// The largest value of a series of cosines or sines, from below and from above.
-fn largest(coefficients: &[Ball], wave: Wave) -> (f64, Bound) {
+/// The largest size of a series, from below and from above.
+fn largest(series: &FourierSeries) -> (f64, Bound) {
     const BALLS: Balls = Balls { bits: 80 };
-    let degree = coefficients.len();
-    if coefficients.iter().all(Ball::is_zero) {
-        return (0.0, Bound::ZERO);
+    let degree = series.length();
+    let parts = [&series.cosines, &series.sines];
+    let empty = parts.map(|balls| balls.iter().all(Ball::is_zero));
+    if empty == [true, true] {
+        return (0.0, series.tail);
     }
     let points = (64 * degree).min(4096).max(16 * degree);
-    let short: Vec<Ball> = coefficients.iter().map(|ball| BALLS.converted(ball, WORKING)).collect();
-    let table = waves(points, wave, BALLS);
+    let table = waves(points, BALLS);
+    // Of an even or odd function half a turn is enough.
+    let all = match empty == [false, false] {
+        true => 2 * points,
+        false => points + 1,
+    };
+    let short = parts.map(|balls| {
+        balls
+            .iter()
+            .map(|ball| BALLS.converted(ball, WORKING))
+            .collect::<Vec<Ball>>()
+    });
     let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
-    for j in 0..=points {
+    for j in 0..all {
         let (mut units, mut radius) = (Integer::zero(), Bound::ZERO);
-        for (k, coefficient) in short.iter().enumerate().filter(|(_, ball)| !ball.is_zero()) {
-            let value = &table[j * k % (2 * points)];
-            units += &coefficient.middle * &value.middle;
-            radius += BALLS.radius_of_product(coefficient, value);
+        for (wave, coefficients) in short.iter().enumerate() {
+            for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, ball)| !ball.is_zero()) {
+                let value = &table[j * k % (2 * points)][wave];
+                units += &coefficient.middle * &value.middle;
+                radius += BALLS.radius_of_product(coefficient, value);
+            }
         }
         let value = BALLS.rounded(&units, radius);
         lower = lower.max(BALLS.distance_from_zero(&value));
@@ -165,31 +170,37 @@ fn largest(coefficients: &[Ball], wave: Wave) -> (f64, Bound) {
     // cos y >= 1 - y^2/2.
     let half_step = Bound::of_nearest(PI) * Bound::exactly(degree as f64) / (2 * points as u32);
     let between = (half_step * half_step / 2).below_complement();
-    (lower, upper.over(between))
+    (
+        (lower - series.tail.value()).next_down().max(0.0),
+        upper.over(between) + series.tail,
+    )
 }
 
-/// The function at the angles `pi j/points`, `j` below twice their number.
-fn waves(points: usize, wave: Wave, balls: Balls) -> Vec<Ball> {
+/// Cosine and sine of the angles `pi j/points`, `j` below twice their number.
+fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
     let step = WORKING.divided(&WORKING.pi(), u32::try_from(points).unwrap_or(u32::MAX));
     let unknown = || {
-        let all = CosineSeries::exactly(vec![]).widened(Bound::exactly(1.0));
+        let all = FourierSeries::exactly(vec![], vec![]).widened(Bound::exactly(1.0));
         (all.clone(), all)
     };
-    let (sine, cosine) = CosineSeries::constant(step).sine_and_cosine().unwrap_or_else(unknown);
-    let (sine, cosine) = (sine.at_zero(), cosine.at_zero());
-    let mut at = (WORKING.integer(1), Ball::zero());
+    let (sine, cosine) = FourierSeries::constant(step).sine_and_cosine().unwrap_or_else(unknown);
+    let turn = [cosine.at_zero(), sine.at_zero()];
+    let mut at = [WORKING.integer(1), Ball::zero()];
     let mut table = Vec::with_capacity(2 * points);
     for _ in 0..2 * points {
-        let value = if wave == Wave::Cosine { &at.0 } else { &at.1 };
-        table.push(balls.converted(value, WORKING));
-        let turned = |left: (&Ball, &Ball), right: (&Ball, &Ball)| {
-            (WORKING.product(left.0, left.1), WORKING.product(right.0, right.1))
-        };
-        let (cc, ss) = turned((&at.0, &cosine), (&at.1, &sine));
-        let (sc, cs) = turned((&at.1, &cosine), (&at.0, &sine));
-        at = (WORKING.difference(&cc, &ss), WORKING.sum(&sc, &cs));
+        table.push(at.each_ref().map(|value| balls.converted(value, WORKING)));
+        at = turned(&at, &turn);
     }
     table
+}
+
+/// Cosine and sine of the sum of two angles.
+fn turned(one: &[Ball; 2], other: &[Ball; 2]) -> [Ball; 2] {
+    let product = |i: usize, j: usize| WORKING.product(&one[i], &other[j]);
+    [
+        WORKING.difference(&product(0, 0), &product(1, 1)),
+        WORKING.sum(&product(1, 0), &product(0, 1)),
+    ]
 }
 
 /// Whether everything claimed is proved.

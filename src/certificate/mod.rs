@@ -10,13 +10,13 @@
 //! ```
 //!
 //! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what is proved rests on
-//! `theorem.rs` and what it is computed with, `force.rs`, `cosine_series.rs` and balls. A certificate that fails says nothing
+//! `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs` and balls. A certificate that fails says nothing
 //! about the formula.
 
 mod candidate;
-mod cosine_series;
 mod force;
 mod formula;
+mod fourier_series;
 mod theorem;
 mod validity;
 
@@ -32,7 +32,7 @@ use crate::exact::ball::{Ball, Balls};
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
-use cosine_series::{CosineSeries, WORKING};
+use fourier_series::{FourierSeries, WORKING};
 
 /// The letter of the displacement in every certificate.
 pub fn coordinate() -> Symbol {
@@ -173,9 +173,9 @@ impl Certificate {
     }
 
     /// The approximate motion.
-    fn motion(&self) -> CosineSeries {
+    fn motion(&self) -> FourierSeries {
         let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
-        CosineSeries::exactly(balls.collect()).of_digits(self.bits)
+        FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
     }
 
     /// Not above `mu`.
@@ -188,7 +188,7 @@ impl Certificate {
 
     /// Not above `|c_1|`.
     fn size_of_first_harmonic(&self) -> f64 {
-        WORKING.distance_from_zero(&self.motion().coefficient(1))
+        WORKING.distance_from_zero(&self.motion().cosine(1))
     }
 
     /// Whether the force is odd and the motion has odd harmonics alone.

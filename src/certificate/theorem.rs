@@ -19,8 +19,8 @@
 
 use std::fmt;
 
-use super::cosine_series::{CosineSeries, WORKING};
 use super::force::{NoValue, along};
+use super::fourier_series::{FourierSeries, WORKING};
 use super::{Certificate, HIGHEST_HARMONIC, coordinate};
 use crate::exact::Integer;
 use crate::exact::ball::{Ball, Balls};
@@ -222,16 +222,16 @@ pub(super) fn correction(certificate: &Certificate) -> Result<Correction, NotPro
 
 /// `f'(c)`, by which the derivative multiplies.
 struct Slope {
-    series: CosineSeries,
+    series: FourierSeries,
     /// Its coefficients by harmonic as those of exponentials, `s_0 = g_0`, `s_m = g_m/2`.
     halves: Vec<Ball>,
 }
 
 impl Slope {
-    fn of(series: CosineSeries) -> Self {
+    fn of(series: FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
         Self {
-            halves: series.coefficients.iter().enumerate().map(halved).collect(),
+            halves: series.cosines.iter().enumerate().map(halved).collect(),
             series,
         }
     }
@@ -240,7 +240,7 @@ impl Slope {
     fn at(&self, k: usize, j: usize) -> Ball {
         let half = |m: usize| self.halves.get(m).cloned().unwrap_or_else(Ball::zero);
         match (k, j) {
-            (_, 0) => self.series.coefficient(k),
+            (_, 0) => self.series.cosine(k),
             (0, _) => half(j),
             _ => WORKING.sum(&half(k.abs_diff(j)), &half(k + j)),
         }
@@ -251,10 +251,10 @@ impl Slope {
 struct System<'a> {
     certificate: &'a Certificate,
     inverse: Inverse,
-    motion: CosineSeries,
+    motion: FourierSeries,
     mu: Ball,
     /// `f(c)`.
-    force: CosineSeries,
+    force: FourierSeries,
     /// The harmonics of the block.
     block: Vec<usize>,
     /// The norm of the column of the condition at `t = 0`.
@@ -307,29 +307,25 @@ impl<'a> System<'a> {
 
     /// `mu f_k`.
     fn accelerated(&self, k: usize) -> Ball {
-        WORKING.product(&self.mu, &self.force.coefficient(k))
+        WORKING.product(&self.mu, &self.force.cosine(k))
     }
 
     /// `B F`: the correction of `mu` and of every harmonic, by which the approximation is the further off.
     fn correction(&self) -> Correction {
-        let last = self.motion.coefficients.len().max(self.force.coefficients.len());
+        let last = self.motion.cosines.len().max(self.force.cosines.len());
         let zero = Ball::zero();
-        let mut start = self
-            .motion
-            .coefficients
-            .iter()
-            .fold(zero, |sum, c| WORKING.sum(&sum, c));
+        let mut start = self.motion.cosines.iter().fold(zero, |sum, c| WORKING.sum(&sum, c));
         start = WORKING.difference(&start, &WORKING.fraction(&self.certificate.start));
         let mut beyond = vec![];
         for k in self.beyond(last) {
             let image = WORKING.divided(&self.accelerated(k), Self::square(k));
-            let y = WORKING.difference(&self.motion.coefficient(k), &image);
+            let y = WORKING.difference(&self.motion.cosine(k), &image);
             start = WORKING.difference(&start, &y);
             beyond.push((k, y));
         }
         let mut vector = vec![start];
         vector.extend(self.block.iter().map(|&k| {
-            let inertia = WORKING.scaled(&self.motion.coefficient(k), -i64::from(Self::square(k)));
+            let inertia = WORKING.scaled(&self.motion.cosine(k), -i64::from(Self::square(k)));
             WORKING.sum(&inertia, &self.accelerated(k))
         }));
         Correction {
@@ -349,7 +345,7 @@ impl<'a> System<'a> {
     /// Z1.
     fn contraction(&self, slope: &Slope) -> Result<Bound, NotProved> {
         let mu = WORKING.magnitude(&self.mu);
-        let last = slope.series.coefficients.len();
+        let last = slope.series.cosines.len();
         let highest = self.certificate.highest;
         let mut largest = self.column_of_mu();
         for (index, &j) in self.block.iter().enumerate() {
@@ -382,20 +378,20 @@ impl<'a> System<'a> {
     fn column_of_mu(&self) -> Bound {
         let short = |ball: &Ball| SHORT.converted(ball, WORKING);
         let (mut start, mut tail) = (Ball::zero(), Bound::ZERO);
-        for k in self.beyond(self.force.coefficients.len()) {
-            let part = WORKING.divided(&self.force.coefficient(k), Self::square(k));
+        for k in self.beyond(self.force.cosines.len()) {
+            let part = WORKING.divided(&self.force.cosine(k), Self::square(k));
             start = WORKING.sum(&start, &part);
             tail += WORKING.magnitude(&part);
         }
         let mut vector = vec![short(&start)];
-        vector.extend(self.block.iter().map(|&k| short(&self.force.coefficient(k))));
+        vector.extend(self.block.iter().map(|&k| short(&self.force.cosine(k))));
         let block = self.distance_from_unit(&vector, Some(0));
         (block + tail + self.size * self.force.tail).over(self.inverse.sigma.value())
     }
 
     /// The column of a harmonic, in the block at this place or beyond it.
     fn column(&self, slope: &Slope, j: usize, place: Option<usize>) -> Bound {
-        let last = slope.series.coefficients.len();
+        let last = slope.series.cosines.len();
         let part = |k: usize| WORKING.product(&self.mu, &slope.at(k, j));
         let (mut start, mut tail) = (Ball::zero(), Bound::ZERO);
         let from = (self.certificate.highest + 1).max((j + 1).saturating_sub(last));

@@ -9,8 +9,8 @@
 //! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.
 
 use super::candidate::{NotCertified, certify, inverse, refine, weight_of_mu};
-use super::cosine_series::{CosineSeries, WORKING};
 use super::force::along;
+use super::fourier_series::{FourierSeries, WORKING};
 use super::theorem::{NotProved, Proof, prove_around};
 use super::{Certificate, HIGHEST_HARMONIC, coordinate};
 use crate::exact::bound::Bound;
@@ -201,7 +201,7 @@ impl<'a> Family<'a> {
         mu.radius += proof.radius.over(Bound::power_of_two(certificate.sigma).value());
         let mut amplitude = WORKING.fraction(&middle);
         amplitude.radius += spread;
-        let law = along(&self.squared, &CosineSeries::constant(amplitude))?;
+        let law = along(&self.squared, &FourierSeries::constant(amplitude))?;
         let ratio = WORKING.product(&law.at_zero(), &mu);
         let root = WORKING.root(&ratio, 2).ok_or(NotProved::TooLarge(proof.radius))?;
         self.certificate = certificate;

@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use num_traits::Zero as _;
 
 use super::fourier_series::{FourierSeries, WORKING};
-use super::theorem::{NotProved, Proof};
+use super::radii_polynomial::{NotProved, Proof};
 use super::{Certificate, Certified, CheckError};
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;

@@ -13,10 +13,12 @@
 //! `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs` and balls. A certificate that fails says nothing
 //! about the formula.
 
+mod approximate_inverse;
 mod candidate;
 mod force;
 mod formula;
 mod fourier_series;
+mod radii_polynomial;
 mod theorem;
 mod validity;
 
@@ -24,7 +26,7 @@ use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
-pub use theorem::{NotProved, Proof};
+pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{Beyond, Validity, validity};
 
 use crate::decimal::decimal;

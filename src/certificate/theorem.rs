@@ -17,137 +17,17 @@
 //! 45 (2007), 1398-1424; J. B. van den Berg, J.-P. Lessard: Rigorous numerics in dynamics, Notices of the AMS 62 (2015),
 //! 1057-1061. The cost is that of N^3 products of short integers.
 
-use std::fmt;
-
-use super::force::{NoValue, along};
+use super::approximate_inverse::{Inverse, SHORT, image};
+use super::force::along;
 use super::fourier_series::{FourierSeries, WORKING};
+use super::radii_polynomial::{NotProved, Proof, radius};
 use super::{Certificate, HIGHEST_HARMONIC, coordinate};
-use crate::exact::Integer;
-use crate::exact::ball::{Ball, Balls};
+use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
-use crate::expr::{Expr, ExprError};
-
-/// What has been proved: there is exactly one motion near the approximate one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Proof {
-    /// `r`: `sigma |1/omega^2 - mu| + sum |difference of the harmonics|` is at most this.
-    pub radius: Bound,
-    /// How far the approximation is from fulfilling the equation, Y0.
-    pub defect: Bound,
-    /// How far the approximate inverse is from being one, Z1.
-    pub contraction: Bound,
-    /// The Lipschitz constant Z2.
-    pub curvature: Bound,
-}
-
-/// Which inequality does not hold. This says nothing about the motion: another block, or more digits, may prove it.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum NotProved {
-    /// The force, or one of its derivatives, has no value over cosine series.
-    NoValue(String),
-    /// A derivative of the force is too large to be written.
-    Derivative(ExprError),
-    /// The motion is said to have odd harmonics alone, and the force is not odd, or the approximation has others.
-    NotOdd,
-    /// `Z1 >= 1`: the block does not hold enough harmonics.
-    NoContraction(Bound),
-    /// `D <= 0`: the approximation is too far from fulfilling the equation.
-    TooFar(Bound),
-    /// The radius is beyond that on which Z2 was computed, or so large that the motion might be at rest or of another period.
-    TooLarge(Bound),
-}
-
-impl fmt::Display for NotProved {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::NoValue(part) => write!(
-                formatter,
-                "`{part}` has no value on a whole ball of motions: no convergent series was found for it"
-            ),
-            Self::Derivative(error) => write!(formatter, "the derivatives of the force: {error}"),
-            Self::NotOdd => formatter.write_str("the force is not odd, or there are even harmonics"),
-            Self::NoContraction(bound) => write!(formatter, "Z1 <= {:.3e} is not below 1", bound.value()),
-            Self::TooFar(bound) => write!(formatter, "Y0 <= {:.3e} is too large", bound.value()),
-            Self::TooLarge(bound) => write!(formatter, "the radius {:.3e} is too large", bound.value()),
-        }
-    }
-}
-
-impl From<NoValue> for NotProved {
-    fn from(part: NoValue) -> Self {
-        Self::NoValue(part.0)
-    }
-}
-
-impl From<ExprError> for NotProved {
-    fn from(error: ExprError) -> Self {
-        Self::Derivative(error)
-    }
-}
-
-/// The numbers in which the inverse is held against the derivative: only the size of their difference counts.
-const SHORT: Balls = Balls { bits: 80 };
+use crate::expr::Expr;
 
 /// Columns beyond which those of all further harmonics are bounded together.
 const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
-
-/// The approximate inverse on `mu` and the harmonics of the block; a column each, that of the condition at `t = 0` first.
-struct Inverse {
-    /// Its entries in full, row by row.
-    entries: Vec<Vec<Ball>>,
-    /// The same in [`SHORT`].
-    short: Vec<Vec<Ball>>,
-    sigma: Bound,
-}
-
-impl Inverse {
-    fn of(certificate: &Certificate) -> Self {
-        let rows = |balls: Balls| {
-            let row = |row: &Vec<Integer>| {
-                row.iter()
-                    .map(|entry| balls.dyadic(entry, certificate.inverse_bits))
-                    .collect()
-            };
-            certificate.inverse.iter().map(row).collect()
-        };
-        Self {
-            entries: rows(WORKING),
-            short: rows(SHORT),
-            sigma: Bound::power_of_two(certificate.sigma),
-        }
-    }
-
-    /// The norm of a vector on `mu` and the harmonics of the block.
-    fn norm(&self, vector: &[Ball], balls: Balls) -> Bound {
-        let sizes = vector.iter().enumerate();
-        sizes.map(|(row, ball)| self.weight(row) * balls.magnitude(ball)).sum()
-    }
-
-    /// The norm of a column.
-    fn norm_of_column(&self, column: usize) -> Bound {
-        let column: Vec<Ball> = self.entries.iter().map(|row| row[column].clone()).collect();
-        self.norm(&column, WORKING)
-    }
-
-    fn weight(&self, row: usize) -> Bound {
-        if row == 0 { self.sigma } else { Bound::exactly(1.0) }
-    }
-}
-
-/// A matrix times a vector, each sum rounded once.
-fn image(matrix: &[Vec<Ball>], vector: &[Ball], balls: Balls) -> Vec<Ball> {
-    let row = |row: &Vec<Ball>| {
-        let (mut units, mut radius) = (Integer::default(), Bound::ZERO);
-        for (entry, number) in row.iter().zip(vector).filter(|(_, number)| !number.is_zero()) {
-            units += &entry.middle * &number.middle;
-            radius += balls.radius_of_product(entry, number);
-        }
-        balls.rounded(&units, radius)
-    };
-    matrix.iter().map(row).collect()
-}
 
 /// Checks a certificate. The numbers in it may be anything.
 ///
@@ -171,36 +51,12 @@ pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<P
     let second = first.differentiate(coordinate())?;
     let defect = system.defect() + spread * system.start;
     let contraction = system.contraction(&Slope::of(along(&first, &system.motion)?))?;
-    let left = contraction.below_complement();
-    if left <= 0.0 {
-        return Err(NotProved::NoContraction(contraction));
-    }
-    let smallest = (defect + defect).over(left);
-    let mut reason = NotProved::TooFar(defect);
-    for wider in [1.05, 8.0, 64.0] {
-        let within = smallest * Bound::exactly(wider);
-        let curvature = system.curvature([&first, &second], within)?;
-        // D >= (1 - Z1)^2 - 2 Y0 Z2.
-        let discriminant = ((left * left).next_down() - ((defect + defect) * curvature).value()).next_down();
-        if discriminant <= 0.0 {
-            continue;
-        }
-        let divisor = (left + discriminant.sqrt().next_down()).next_down();
-        let radius = (defect + defect).over(divisor);
-        let contracts = (contraction + curvature * radius) < Bound::exactly(1.0);
-        let apart = radius.over(system.inverse.sigma.value()).value() < certificate.size_of_mu()
-            && radius.value() < certificate.size_of_first_harmonic();
-        if radius <= within && contracts && apart {
-            return Ok(Proof {
-                radius,
-                defect,
-                contraction,
-                curvature,
-            });
-        }
-        reason = NotProved::TooLarge(radius);
-    }
-    Err(reason)
+    let curvature = |within| system.curvature([&first, &second], within);
+    let distinct = |radius: Bound| {
+        radius.over(system.inverse.sigma.value()).value() < certificate.size_of_mu()
+            && radius.value() < certificate.size_of_first_harmonic()
+    };
+    radius(defect, contraction, curvature, distinct)
 }
 
 /// A step towards the solution.
@@ -267,7 +123,7 @@ impl<'a> System<'a> {
     fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
         let motion = certificate.motion();
         let force = along(&certificate.force, &motion)?;
-        let inverse = Inverse::of(certificate);
+        let inverse = Inverse::of(&certificate.inverse, certificate.inverse_bits, certificate.sigma);
         let block = certificate.block();
         let start = inverse.norm_of_column(0);
         let columns = (1..=block.len()).map(|column| inverse.norm_of_column(column));
@@ -385,7 +241,7 @@ impl<'a> System<'a> {
         }
         let mut vector = vec![short(&start)];
         vector.extend(self.block.iter().map(|&k| short(&self.force.cosine(k))));
-        let block = self.distance_from_unit(&vector, Some(0));
+        let block = self.inverse.distance_from_unit(&vector, Some(0));
         (block + tail + self.size * self.force.tail).over(self.inverse.sigma.value())
     }
 
@@ -415,16 +271,7 @@ impl<'a> System<'a> {
             }
             SHORT.converted(&entry, WORKING)
         }));
-        self.distance_from_unit(&vector, place) + tail
-    }
-
-    /// How far the inverse makes of a column of the derivative something else than one at this place.
-    fn distance_from_unit(&self, column: &[Ball], place: Option<usize>) -> Bound {
-        let mut image = image(&self.inverse.short, column, SHORT);
-        if let Some(place) = place {
-            image[place] = SHORT.difference(&image[place], &SHORT.integer(1));
-        }
-        self.inverse.norm(&image, SHORT)
+        self.inverse.distance_from_unit(&vector, place) + tail
     }
 
     /// Z2 on the ball of this radius.

@@ -11,7 +11,8 @@
 use super::candidate::{NotCertified, certify, inverse, refine, weight_of_mu};
 use super::force::along;
 use super::fourier_series::{FourierSeries, WORKING};
-use super::theorem::{NotProved, Proof, prove_around};
+use super::radii_polynomial::{NotProved, Proof};
+use super::theorem::prove_around;
 use super::{Certificate, HIGHEST_HARMONIC, coordinate};
 use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};

@@ -10,9 +10,9 @@ use nalgebra::DMatrix;
 use num_traits::{ToPrimitive as _, Zero as _};
 
 use super::force::along;
-use super::formula::{Errors, JudgedFormula};
+use super::formula::JudgedFormula;
 use super::fourier_series::WORKING;
-use super::radii_polynomial::NotProved;
+use super::radii_polynomial::{Correction, NotProved};
 use super::theorem::{correction, prove};
 use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula};
 use crate::decimal::neighbours;
@@ -29,19 +29,33 @@ use crate::values::Values;
 use crate::verify::{self, VerificationError};
 
 /// Binary digits behind the point of the harmonics: thirty-three decimal ones.
-const BITS: usize = 112;
+pub(super) const BITS: usize = 112;
 /// Those of the inverse, which need not be exact.
-const INVERSE_BITS: usize = 56;
+pub(super) const INVERSE_BITS: usize = 56;
 
 /// Why there is no certificate. This is no evidence against a formula, but for a motion that the judge does not find either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotCertified {
-    /// A force that depends on velocity or time.
+    /// A force that depends on velocity or time, of a motion that is none on a limit cycle.
     #[error(
-        "`{0}` depends on the velocity or on time: certificates are of motions whose force is that of their position alone"
+        "`{0}` depends on the velocity or on time: certificates are of limit cycles and of motions whose force is that of their position alone"
     )]
     NotConservative(String),
+    /// A limit cycle of an equation of another form.
+    #[error("`{term}` is not linear in the velocity: certificates of limit cycles are of x'' + g(x)*x' + h(x) = 0")]
+    NotLienard {
+        /// What is not.
+        term: String,
+        /// The equation of the velocity, where that has this form.
+        of_velocity: Option<String>,
+    },
+    /// An answer about the way to a limit cycle.
+    #[error("with an amplitude the formula is about the way to the limit cycle, and a certificate is of the cycle")]
+    OffCycle,
+    /// A motion with more harmonics than a certificate ever has.
+    #[error("not certified: the motion has more than {0} harmonics, more than a proof can hold")]
+    TooManyHarmonics(usize),
     /// A formula in the amplitude of the first harmonic.
     #[error(
         "the formula is one in the amplitude of the first harmonic, a: a certificate needs to know where exactly the motion starts"
@@ -83,19 +97,33 @@ pub enum NotCertified {
 
 impl NotCertified {
     /// What to do about it.
-    pub fn help(&self) -> Option<&'static str> {
-        match self {
-            Self::NotConservative(_) => Some("`simulate` and the verdict of `derive` follow such motions in numbers"),
-            Self::Law(_) => Some("without a range it is certified at one amplitude"),
-            Self::Start(_) => Some("give the amplitude as a decimal or a fraction, and an equilibrium that is one"),
-            Self::NoSeries(_) => Some(
-                "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion",
-            ),
-            Self::NotProved { .. } => Some(
-                "a smaller amplitude: near the edge of a well, or where the force turns sharply, a motion has more harmonics than a proof can hold; or units in which frequency and amplitude are nearer to one",
-            ),
-            _ => None,
-        }
+    pub fn help(&self) -> Option<String> {
+        let help = match self {
+            Self::NotConservative(_) => {
+                "a limit cycle is the motion of a formula by lindstedt-poincare or multiple-scales; `simulate` and the verdict of `derive` follow other motions in numbers"
+            }
+            Self::NotLienard {
+                of_velocity: Some(equation),
+                ..
+            } => {
+                return Some(format!(
+                    "the velocity is a motion on the limit cycle of `{equation}`, of the same frequency: certify that"
+                ));
+            }
+            Self::NotLienard { .. } => "`simulate` and the verdict of `derive` follow such motions in numbers",
+            Self::OffCycle => "leave the amplitude out",
+            Self::Law(_) => "without a range it is certified at one amplitude",
+            Self::Start(_) => "give the amplitude as a decimal or a fraction, and an equilibrium that is one",
+            Self::NoSeries(_) => {
+                "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion"
+            }
+            Self::TooManyHarmonics(_) => "a smaller parameter: where a motion jumps, it has many harmonics",
+            Self::NotProved { .. } => {
+                "a smaller amplitude or parameter: near the edge of a well, or where a motion turns sharply, it has more harmonics than a proof can hold; or units in which frequency and amplitude are nearer to one"
+            }
+            _ => return None,
+        };
+        Some(help.to_owned())
     }
 }
 
@@ -109,7 +137,10 @@ pub fn certify(
     at: &Values,
 ) -> Result<(Certificate, Certified), NotCertified> {
     let question = Question::of(oscillator, solution, at)?;
-    let judged = judged(solution, at)?;
+    let judged = judged(solution, at, BITS)?;
+    if !judged.sines.is_empty() {
+        return Err(NotCertified::Sines);
+    }
     let samples = verify::motions(oscillator, solution, at)?
         .ok_or(NoMotion::NotReal)?
         .truth;
@@ -117,31 +148,28 @@ pub fn certify(
     let mut certificate = question.certificate(mu, &harmonics, judged);
     // Many harmonics bring it near in few steps; how many a proof needs is another question.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
-    refine(&mut certificate, Bound::ZERO).map_err(|reason| not_proved(reason, &certificate))?;
+    refine(&mut certificate, Bound::ZERO).map_err(|reason| not_proved(reason, certificate.block().len()))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
     for highest in blocks(harmonics.len()) {
         certificate.highest = highest;
         match proved(&mut certificate) {
             Ok(certified) => return Ok((certificate, certified)),
-            Err(error @ NotProved::NoValue(_)) => return Err(not_proved(error, &certificate)),
+            Err(error @ NotProved::NoValue(_)) => return Err(not_proved(error, certificate.block().len())),
             Err(error) => reason = error,
         }
     }
-    Err(not_proved(reason, &certificate))
+    Err(not_proved(reason, certificate.block().len()))
 }
 
-fn not_proved(reason: NotProved, certificate: &Certificate) -> NotCertified {
+pub(super) fn not_proved(reason: NotProved, harmonics: usize) -> NotCertified {
     match reason {
         NotProved::NoValue(_) => NotCertified::NoSeries(reason),
-        _ => NotCertified::NotProved {
-            reason,
-            harmonics: certificate.block().len(),
-        },
+        _ => NotCertified::NotProved { reason, harmonics },
     }
 }
 
 /// The last harmonics of the blocks that are tried, all odd: about a half of those that a double sees, and more.
-fn blocks(seen: usize) -> impl Iterator<Item = usize> {
+pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
     let first = (seen / 2).max(5) | 1;
     let sizes = std::iter::successors(Some(first), |size| Some((size * 3 / 2) | 1));
     sizes.take_while(|size| *size < HIGHEST_HARMONIC).take(8)
@@ -175,12 +203,7 @@ impl Question {
             .as_number()
             .ok_or_else(|| NotCertified::Start(start.to_string()))?
             .clone();
-        let force = force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?;
-        // Written out, as it is in a document.
-        let written = force
-            .to_polynomial(&mut |_| None)?
-            .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
-        let force = written.as_ref().map_or(force, Expr::from);
+        let force = written_out(force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)?;
         // In one of two wells beside each other a motion has all harmonics, whatever the symmetry of the force.
         let odd = equilibrium.is_zero() && super::force::is_odd(&force)?;
         Ok(Self { force, start, odd })
@@ -204,35 +227,44 @@ impl Question {
     }
 }
 
+/// A polynomial written out, as it is in a document; anything else as it is.
+pub(super) fn written_out(force: Expr) -> Result<Expr, ExprError> {
+    let written = force
+        .to_polynomial(&mut |_| None)?
+        .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
+    Ok(written.as_ref().map_or(force, Expr::from))
+}
+
 /// The nearest number of units of `2^-bits`, or below it.
-fn units(value: f64, bits: usize) -> Integer {
+pub(super) fn units(value: f64, bits: usize) -> Integer {
     from_f64(value).map_or_else(Integer::zero, |value| Balls { bits }.fraction(&value).middle)
 }
 
-/// The formula with its numbers; nothing is claimed yet.
-fn judged(solution: &Solution, at: &Values) -> Result<JudgedFormula, NotCertified> {
+/// The formula with its numbers; nothing is claimed yet. Where it is one of cosines alone it has no sines.
+pub(super) fn judged(solution: &Solution, at: &Values, bits: usize) -> Result<JudgedFormula, NotCertified> {
     let motion = solution.motion_at(at)?;
     let displacement = motion.displacement();
     let harmonics = 0..=displacement.highest_harmonic();
-    if harmonics.clone().any(|k| displacement.sine(k).mean().0 != 0.0) {
-        return Err(NotCertified::Sines);
-    }
+    let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
+    let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
     Ok(JudgedFormula {
         law: solution.formula(),
-        frequency: units(motion.frequency(), BITS),
+        frequency: units(motion.frequency(), bits),
         coefficients: harmonics
-            .map(|k| units(displacement.cosine(k).mean().0, BITS))
+            .map(|k| units(displacement.cosine(k).mean().0, bits))
             .collect(),
+        sines: sines[..length].iter().map(|sine| units(*sine, bits)).collect(),
         deviation: [Rational::zero(), Rational::zero()],
         frequency_error: [Rational::zero(), Rational::zero()],
         drift: [Rational::zero(), Rational::zero()],
     })
 }
 
+/// What the numbers of Runge-Kutta have no digits for.
+pub(super) const NOISE: f64 = 1e-11;
+
 /// `1/omega^2` and the cosine coefficients of one period.
 fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
-    /// What the numbers of Runge-Kutta have no digits for.
-    const NOISE: f64 = 1e-11;
     let count = samples.len() - 1;
     let period = samples[count].0;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
@@ -254,23 +286,25 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
 /// Checks a certificate with its block, and claims what is proved.
 fn proved(certificate: &mut Certificate) -> Result<Certified, NotProved> {
     certificate.inverse = inverse(certificate)?;
-    certificate.sigma = weight_of_mu(certificate);
+    certificate.sigma = weight(&certificate.inverse);
     let proof = prove(certificate)?;
     let [_, claim] = claimed(proof.radius.value());
     certificate.claim = claim;
     let certified = formula::certified(certificate, proof)?;
-    if let (Some(claimed), Some(errors)) = (&mut certificate.formula, &certified.formula) {
-        claim_errors(claimed, errors);
-    }
+    claim_errors(certificate.formula.as_mut(), &certified);
     Ok(certified)
 }
 
 /// The neighbours among the decimals of three digits; of infinity zero, a claim that does not hold.
-fn claimed(value: f64) -> [Rational; 2] {
+pub(super) fn claimed(value: f64) -> [Rational; 2] {
     neighbours(&from_f64(value).unwrap_or_default(), 3)
 }
 
-fn claim_errors(formula: &mut JudgedFormula, errors: &Errors) {
+/// Claims of a formula what is proved of it.
+pub(super) fn claim_errors(formula: Option<&mut JudgedFormula>, certified: &Certified) {
+    let Some((formula, errors)) = formula.zip(certified.formula.as_ref()) else {
+        return;
+    };
     let both = |range: formula::Range| {
         let ([lower, _], [_, upper]) = (claimed(range.lower), claimed(range.upper));
         [lower, upper]
@@ -304,6 +338,12 @@ pub(super) fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, No
             mu * product(k, j) - if k == j { (k * k) as f64 } else { 0.0 }
         }
     });
+    inverted(derivative)
+}
+
+/// The inverse of a matrix, in units.
+pub(super) fn inverted(derivative: DMatrix<f64>) -> Result<Vec<Vec<Integer>>, NotProved> {
+    let size = derivative.nrows();
     let inverse = derivative
         .try_inverse()
         .ok_or(NotProved::NoContraction(Bound::UNKNOWN))?;
@@ -317,59 +357,82 @@ pub(super) fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, No
 
 /// Newton's iteration with one inverse, until it is so near, nothing changes, or it does not get nearer.
 pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), NotProved> {
+    let bits = certificate.bits;
+    certificate.inverse = inverse(certificate)?;
+    iterate(
+        certificate,
+        near.max(few_units(bits)),
+        correction,
+        |certificate, step| {
+            let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
+            certificate.mu -= short(&step.block[0]);
+            let block = certificate.block();
+            let corrections = block.iter().zip(&step.block[1..]);
+            for (k, ball) in corrections.chain(step.beyond.iter().map(|(k, ball)| (k, ball))) {
+                subtract(&mut certificate.coefficients, *k, short(ball));
+            }
+            shorten(&mut certificate.coefficients);
+        },
+    )
+}
+
+/// So near that the digits of the numbers end.
+pub(super) fn few_units(bits: usize) -> Bound {
+    Bound::power_of_two(-(bits as i32)) * Bound::exactly(64.0)
+}
+
+/// Newton's iteration, until it is so near, nothing changes, or it does not get nearer.
+pub(super) fn iterate<Candidate, Place>(
+    candidate: &mut Candidate,
+    near: Bound,
+    correction: impl Fn(&Candidate) -> Result<Correction<Place>, NotProved>,
+    subtract: impl Fn(&mut Candidate, &Correction<Place>),
+) -> Result<(), NotProved> {
     /// The steps of an iteration that gains a digit a step.
     const STEPS: usize = 40;
-    let bits = certificate.bits;
-    let unit = Bound::power_of_two(-(bits as i32));
-    certificate.inverse = inverse(certificate)?;
     let mut before = Bound::UNKNOWN;
     for _ in 0..STEPS {
-        let step = correction(certificate)?;
+        let step = correction(candidate)?;
         let all = step.block.iter().chain(step.beyond.iter().map(|(_, ball)| ball));
         let size: Bound = all.map(|ball| WORKING.magnitude(ball)).sum();
         if size >= before || size == Bound::UNKNOWN {
             break;
         }
         before = size;
-        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
-        let block = certificate.block();
-        certificate.mu -= short(&step.block[0]);
-        let last = step
-            .beyond
-            .iter()
-            .map(|(k, _)| *k)
-            .chain(block.iter().copied())
-            .max()
-            .unwrap_or(0);
-        let length = certificate.coefficients.len().max(last + 1);
-        certificate.coefficients.resize(length, Integer::zero());
-        let corrections = block.iter().copied().zip(&step.block[1..]);
-        let corrections = corrections.chain(step.beyond.iter().map(|(k, ball)| (*k, ball)));
-        for (k, ball) in corrections {
-            certificate.coefficients[k] -= short(ball);
-        }
-        while certificate.coefficients.len() > 2
-            && (certificate.coefficients.len() > 2 * HIGHEST_HARMONIC
-                || certificate.coefficients.last().is_some_and(|last| last.bits() < 4))
-        {
-            certificate.coefficients.pop();
-        }
-        if size < near.max(unit * Bound::exactly(64.0)) {
+        subtract(candidate, &step);
+        if size < near {
             break;
         }
     }
     Ok(())
 }
 
-/// The weight with which an error of `mu` counts as much as the harmonics that come with it.
-pub(super) fn weight_of_mu(certificate: &Certificate) -> i32 {
+/// Subtracts from a coefficient, which need not be there yet.
+pub(super) fn subtract(coefficients: &mut Vec<Integer>, harmonic: usize, correction: Integer) {
+    if coefficients.len() <= harmonic {
+        coefficients.resize(harmonic + 1, Integer::zero());
+    }
+    coefficients[harmonic] -= correction;
+}
+
+/// Leaves out the coefficients at the end that have no digits, and those beyond all length.
+pub(super) fn shorten(coefficients: &mut Vec<Integer>) {
+    while coefficients.len() > 2
+        && (coefficients.len() > 2 * HIGHEST_HARMONIC || coefficients.last().is_some_and(|last| last.bits() < 4))
+    {
+        coefficients.pop();
+    }
+}
+
+/// The weight with which an error of the number that is looked for counts as much as the harmonics that come with it.
+pub(super) fn weight(inverse: &[Vec<Integer>]) -> i32 {
     let balls = Balls { bits: INVERSE_BITS };
     let number = |units: &Integer| {
         let ball = balls.dyadic(units, INVERSE_BITS);
         balls.nearest(&ball).abs()
     };
-    let of_mu = number(&certificate.inverse[0][0]);
-    let of_harmonics: f64 = certificate.inverse[1..].iter().map(|row| number(&row[0])).sum();
-    let ratio = (of_harmonics / of_mu).log2().round();
+    let of_number = number(&inverse[0][0]);
+    let of_harmonics: f64 = inverse[1..].iter().map(|row| number(&row[0])).sum();
+    let ratio = (of_harmonics / of_number).log2().round();
     ratio.to_i32().map_or(0, |ratio| ratio.clamp(-20, 20))
 }

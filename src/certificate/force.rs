@@ -105,6 +105,21 @@ fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSe
 /// # Errors
 /// A point at which the force has no value is written in it.
 pub(super) fn is_odd(force: &Expr) -> Result<bool, ExprError> {
-    let even = force + &force.substitute(coordinate(), &-&Expr::from(coordinate()))?;
-    Ok(even.is_zero() || even.expand().is_ok_and(|even| even.is_zero()))
+    Ok(is_nothing(&(force + &mirrored(force)?)))
+}
+
+/// Whether `f(-x) = f(x)`, likewise.
+///
+/// # Errors
+/// As [`is_odd`].
+pub(super) fn is_even(force: &Expr) -> Result<bool, ExprError> {
+    Ok(is_nothing(&(force - &mirrored(force)?)))
+}
+
+fn mirrored(force: &Expr) -> Result<Expr, ExprError> {
+    force.substitute(coordinate(), &-&Expr::from(coordinate()))
+}
+
+fn is_nothing(expression: &Expr) -> bool {
+    expression.is_zero() || expression.expand().is_ok_and(|expression| expression.is_zero())
 }

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use num_traits::Zero as _;
 
-use super::fourier_series::{FourierSeries, WORKING};
+use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
 use super::radii_polynomial::{NotProved, Proof};
 use super::{Certificate, Certified, CheckError};
 use crate::exact::ball::{Ball, Balls};
@@ -32,7 +32,7 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    fn of(ball: &Ball) -> Self {
+    pub(super) fn of(ball: &Ball) -> Self {
         Self {
             middle: WORKING.middle(ball),
             radius: ball.radius,
@@ -58,6 +58,8 @@ pub struct JudgedFormula {
     pub frequency: Integer,
     /// The cosine coefficients of the motion, likewise.
     pub coefficients: Vec<Integer>,
+    /// Its sine coefficients by harmonic, likewise; none of a motion that begins at rest.
+    pub sines: Vec<Integer>,
     /// What is claimed of `max |X - X~|`.
     pub deviation: [Rational; 2],
     /// What is claimed of `|omega - omega~|`.
@@ -80,6 +82,29 @@ pub struct Errors {
     pub drift: Range,
 }
 
+impl JudgedFormula {
+    /// The frequency, of units of `2^-bits`.
+    pub(super) fn frequency_ball(&self, bits: usize) -> Ball {
+        WORKING.dyadic(&self.frequency, bits)
+    }
+
+    /// The motion, likewise.
+    pub(super) fn motion(&self, bits: usize) -> FourierSeries {
+        let balls = |units: &[Integer]| units.iter().map(|units| WORKING.dyadic(units, bits)).collect();
+        FourierSeries::exactly(balls(&self.coefficients), balls(&self.sines))
+    }
+}
+
+/// A motion that is proved, against which a formula is held.
+pub(super) struct Truth<'a> {
+    /// The approximate motion.
+    pub(super) motion: &'a FourierSeries,
+    /// omega.
+    pub(super) frequency: &'a Ball,
+    /// The true motion is so near.
+    pub(super) radius: Bound,
+}
+
 /// What follows from a proof.
 ///
 /// # Errors
@@ -90,44 +115,49 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
     let inverse = WORKING.quotient(&WORKING.integer(1), &mu);
     let frequency = inverse.and_then(|inverse| WORKING.root(&inverse, 2));
     let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
-    let formula = certificate
-        .formula
-        .as_ref()
-        .map(|formula| errors(certificate, proof, &frequency, formula));
+    let motion = certificate.motion();
+    let truth = Truth {
+        motion: &motion,
+        frequency: &frequency,
+        radius: proof.radius,
+    };
+    let bits = certificate.bits;
+    let errors = |formula: &JudgedFormula| truth.errors(&formula.frequency_ball(bits), &formula.motion(bits));
     Ok(Certified {
         proof,
         frequency: Enclosure::of(&frequency),
-        formula,
+        exponent: None,
+        formula: certificate.formula.as_ref().map(errors),
     })
 }
 
-fn errors(certificate: &Certificate, proof: Proof, frequency: &Ball, formula: &JudgedFormula) -> Errors {
-    let own = |units: &Integer| WORKING.dyadic(units, certificate.bits);
-    let own_motion = FourierSeries::exactly(formula.coefficients.iter().map(own).collect(), vec![]);
-    let (lower, upper) = largest(&certificate.motion().difference(&own_motion));
-    let own_frequency = own(&formula.frequency);
-    let off = WORKING.difference(&own_frequency, frequency);
-    let frequency_error = Range {
-        lower: WORKING.distance_from_zero(&off).max(0.0),
-        upper: WORKING.magnitude(&off).value(),
-    };
-    let slowest = WORKING.distance_from_zero(frequency);
-    let fastest = WORKING.magnitude(frequency).value();
-    let (flattest, steepest) = largest(&own_motion.derivative());
-    Errors {
-        deviation: Range {
-            lower: (lower - proof.radius.value()).next_down().max(0.0),
-            upper: (upper + proof.radius).value(),
-        },
-        relative: Range {
-            lower: (frequency_error.lower / fastest).next_down().max(0.0),
-            upper: Bound::exactly(frequency_error.upper).over(slowest).value(),
-        },
-        drift: Range {
-            lower: (flattest * frequency_error.lower).next_down().max(0.0),
-            upper: (steepest * Bound::exactly(frequency_error.upper)).value(),
-        },
-        frequency: frequency_error,
+impl Truth<'_> {
+    /// How far a formula of this frequency and motion is off.
+    pub(super) fn errors(&self, own_frequency: &Ball, own_motion: &FourierSeries) -> Errors {
+        let (lower, upper) = largest(&self.motion.difference(own_motion));
+        let off = WORKING.difference(own_frequency, self.frequency);
+        let frequency_error = Range {
+            lower: WORKING.distance_from_zero(&off).max(0.0),
+            upper: WORKING.magnitude(&off).value(),
+        };
+        let slowest = WORKING.distance_from_zero(self.frequency);
+        let fastest = WORKING.magnitude(self.frequency).value();
+        let (flattest, steepest) = largest(&own_motion.derivative());
+        Errors {
+            deviation: Range {
+                lower: (lower - self.radius.value()).next_down().max(0.0),
+                upper: (upper + self.radius).value(),
+            },
+            relative: Range {
+                lower: (frequency_error.lower / fastest).next_down().max(0.0),
+                upper: Bound::exactly(frequency_error.upper).over(slowest).value(),
+            },
+            drift: Range {
+                lower: (flattest * frequency_error.lower).next_down().max(0.0),
+                upper: (steepest * Bound::exactly(frequency_error.upper)).value(),
+            },
+            frequency: frequency_error,
+        }
     }
 }
 
@@ -189,25 +219,20 @@ fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
     let mut table = Vec::with_capacity(2 * points);
     for _ in 0..2 * points {
         table.push(at.each_ref().map(|value| balls.converted(value, WORKING)));
-        at = turned(&at, &turn);
+        at = sum_of_angles(&at, &turn);
     }
     table
-}
-
-/// Cosine and sine of the sum of two angles.
-fn turned(one: &[Ball; 2], other: &[Ball; 2]) -> [Ball; 2] {
-    let product = |i: usize, j: usize| WORKING.product(&one[i], &other[j]);
-    [
-        WORKING.difference(&product(0, 0), &product(1, 1)),
-        WORKING.sum(&product(1, 0), &product(0, 1)),
-    ]
 }
 
 /// Whether everything claimed is proved.
 ///
 /// # Errors
 /// The first claim that is not.
-pub(super) fn hold_claims(certificate: &Certificate, certified: &Certified) -> Result<(), CheckError> {
+pub(super) fn hold_claims(
+    radius: &Rational,
+    formula: Option<&JudgedFormula>,
+    certified: &Certified,
+) -> Result<(), CheckError> {
     let above = |what, proved, claim: &Rational| match from_f64(proved).is_some_and(|proved| proved <= *claim) {
         true => Ok(()),
         false => Err(CheckError::ClaimedLess { what, proved }),
@@ -216,8 +241,8 @@ pub(super) fn hold_claims(certificate: &Certificate, certified: &Certified) -> R
         true => Ok(()),
         false => Err(CheckError::ClaimedMore { what, proved }),
     };
-    above("the radius", certified.proof.radius.value(), &certificate.claim)?;
-    if let (Some(claimed), Some(errors)) = (&certificate.formula, &certified.formula) {
+    above("the radius", certified.proof.radius.value(), radius)?;
+    if let (Some(claimed), Some(errors)) = (formula, &certified.formula) {
         let both = [
             ("the deviation", errors.deviation, &claimed.deviation),
             ("the error of the frequency", errors.frequency, &claimed.frequency_error),

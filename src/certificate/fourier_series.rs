@@ -40,6 +40,36 @@ const STEPS: usize = 3;
 /// No Taylor series has more terms.
 const MOST_TERMS: u32 = 28;
 
+/// One of the functions that a series consists of, by its harmonic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wave {
+    Cosine(usize),
+    Sine(usize),
+}
+
+impl Wave {
+    /// Its harmonic.
+    pub(super) const fn harmonic(self) -> usize {
+        match self {
+            Self::Cosine(harmonic) | Self::Sine(harmonic) => harmonic,
+        }
+    }
+
+    /// The square of its harmonic.
+    pub(super) fn squared(self) -> u32 {
+        u32::try_from(self.harmonic() * self.harmonic()).unwrap_or(u32::MAX)
+    }
+}
+
+/// Cosine and sine of the sum of two angles.
+pub(super) fn sum_of_angles(one: &[Ball; 2], other: &[Ball; 2]) -> [Ball; 2] {
+    let product = |i: usize, j: usize| WORKING.product(&one[i], &other[j]);
+    [
+        WORKING.difference(&product(0, 0), &product(1, 1)),
+        WORKING.sum(&product(1, 0), &product(0, 1)),
+    ]
+}
+
 /// A function of an angle, known up to a distance.
 #[derive(Clone, Debug)]
 pub(super) struct FourierSeries {
@@ -124,6 +154,34 @@ impl FourierSeries {
         self.sines.get(harmonic).cloned().unwrap_or_else(Ball::zero)
     }
 
+    /// The coefficient of a wave.
+    pub(super) fn coefficient(&self, wave: Wave) -> Ball {
+        match wave {
+            Wave::Cosine(harmonic) => self.cosine(harmonic),
+            Wave::Sine(harmonic) => self.sine(harmonic),
+        }
+    }
+
+    /// The same function at an angle that is larger by one whose cosine and sine are given.
+    pub(super) fn turned(&self, by: &[Ball; 2]) -> Self {
+        let (mut cosines, mut sines) = (vec![], vec![]);
+        let mut angle = [WORKING.integer(1), Ball::zero()];
+        for k in 0..self.length() {
+            // a cos(u + v) + b sin(u + v) has (a cos v + b sin v) cos u and (b cos v - a sin v) sin u.
+            let [cosine, sine] = &angle;
+            let (a, b) = (self.cosine(k), self.sine(k));
+            cosines.push(WORKING.sum(&WORKING.product(&a, cosine), &WORKING.product(&b, sine)));
+            sines.push(WORKING.difference(&WORKING.product(&b, cosine), &WORKING.product(&a, sine)));
+            angle = sum_of_angles(&angle, by);
+        }
+        Self {
+            cosines,
+            sines,
+            tail: self.tail,
+            negligible: self.negligible,
+        }
+    }
+
     /// The derivative by the angle; nothing is known of that of a tail.
     pub(super) fn derivative(&self) -> Self {
         let by_harmonic = |balls: &[Ball], sign: i64| {
@@ -148,6 +206,13 @@ impl FourierSeries {
         self
     }
 
+    /// Without the tail, for what is not proved.
+    #[cfg(test)]
+    pub(super) fn without_tail(mut self) -> Self {
+        self.tail = Bound::ZERO;
+        self
+    }
+
     /// Moves into the tail what is at the end and negligible, or beyond all length.
     fn trimmed(mut self) -> Self {
         let negligible = Bound::power_of_two(-self.negligible);
@@ -162,6 +227,12 @@ impl FourierSeries {
             }
         }
         self
+    }
+
+    /// The same, its harmonics at the end that are smaller than `2^-digits` moved into the tail.
+    pub(super) fn shortened(mut self, digits: i32) -> Self {
+        self.negligible = self.negligible.min(digits);
+        self.trimmed()
     }
 
     fn zip(&self, other: &Self, join: impl Fn(&Ball, &Ball) -> Ball) -> Self {

@@ -9,12 +9,16 @@
 //! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
 //! ```
 //!
+//! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own, have a [`CycleCertificate`] and a theorem in
+//! `cycle/`.
+//!
 //! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what is proved rests on
 //! `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs` and balls. A certificate that fails says nothing
 //! about the formula.
 
 mod approximate_inverse;
 mod candidate;
+mod cycle;
 mod force;
 mod formula;
 mod fourier_series;
@@ -25,6 +29,7 @@ mod validity;
 use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify};
+pub use cycle::{CycleCertificate, certify_cycle, check_cycle};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{Beyond, Validity, validity};
@@ -86,6 +91,9 @@ pub struct Certified {
     pub proof: Proof,
     /// `omega`.
     pub frequency: Enclosure,
+    /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions approach it, where it is negative, or leave
+    /// it; `None` of a motion whose energy is conserved.
+    pub exponent: Option<Enclosure>,
     /// Of the formula, where one is judged.
     pub formula: Option<Errors>,
 }
@@ -142,7 +150,7 @@ pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
     certificate.well_formed().map_err(CheckError::Malformed)?;
     let proof = theorem::prove(certificate).map_err(CheckError::NotProved)?;
     let certified = formula::certified(certificate, proof).map_err(CheckError::NotProved)?;
-    formula::hold_claims(certificate, &certified)?;
+    formula::hold_claims(&certificate.claim, certificate.formula.as_ref(), &certified)?;
     Ok(certified)
 }
 
@@ -200,11 +208,43 @@ impl Certificate {
 
     /// What does not fit together.
     fn well_formed(&self) -> Result<(), &'static str> {
+        let fits = Sizes {
+            bits: [self.bits, self.inverse_bits],
+            sigma: self.sigma,
+            highest: self.highest,
+            odd: self.odd,
+            number: &self.mu,
+            coefficients: &[&self.coefficients],
+            inverse: &self.inverse,
+            expressions: &[&self.force],
+        };
+        fits.of_numbers()?;
+        fits.of_inverse(self.block().len() + 1)
+    }
+}
+
+/// What of a certificate may be too large, or may not fit together.
+struct Sizes<'a> {
+    /// Those of the numbers, and of the inverse.
+    bits: [usize; 2],
+    sigma: i32,
+    highest: usize,
+    odd: bool,
+    /// That which is looked for beside the harmonics.
+    number: &'a Integer,
+    coefficients: &'a [&'a [Integer]],
+    inverse: &'a [Vec<Integer>],
+    expressions: &'a [&'a Expr],
+}
+
+impl Sizes<'_> {
+    /// Whether no number is too large.
+    fn of_numbers(&self) -> Result<(), &'static str> {
+        let mut letters = self.expressions.iter().flat_map(|force| force.symbols());
+        let coefficients = self.coefficients.iter().copied().flatten();
+        let all = coefficients.chain([self.number]).chain(self.inverse.iter().flatten());
         let demands = [
-            (
-                self.bits <= MOST_BITS && self.inverse_bits <= MOST_BITS,
-                "more than 224 bits",
-            ),
+            (self.bits.iter().all(|bits| *bits <= MOST_BITS), "more than 224 bits"),
             ((-64..=64).contains(&self.sigma), "a weight of mu beyond 2^64"),
             (
                 (1..=HIGHEST_HARMONIC).contains(&self.highest),
@@ -215,28 +255,27 @@ impl Certificate {
                 "odd harmonics, and a block that ends with an even one",
             ),
             (
-                self.coefficients.len() <= 2 * HIGHEST_HARMONIC,
+                self.coefficients.iter().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
                 "more than 800 harmonics",
             ),
             (
-                self.force.symbols().iter().all(|name| *name == coordinate()),
+                letters.all(|name| name == coordinate()),
                 "a force with letters that have no value",
             ),
             (
-                [&self.mu]
-                    .into_iter()
-                    .chain(&self.coefficients)
-                    .chain(self.inverse.iter().flatten())
-                    .all(|integer| integer.bits() <= 700),
+                all.into_iter().all(|integer| integer.bits() <= 700),
                 "a number of more than 200 digits",
             ),
         ];
-        if let Some((_, reason)) = demands.into_iter().find(|(holds, _)| !holds) {
-            return Err(reason);
+        match demands.into_iter().find(|(holds, _)| !holds) {
+            Some((_, reason)) => Err(reason),
+            None => Ok(()),
         }
-        let size = self.block().len() + 1;
-        let square = self.inverse.len() == size && self.inverse.iter().all(|row| row.len() == size);
-        match square {
+    }
+
+    /// Whether the inverse has as many rows and columns as there are unknowns.
+    fn of_inverse(&self, unknowns: usize) -> Result<(), &'static str> {
+        match self.inverse.len() == unknowns && self.inverse.iter().all(|row| row.len() == unknowns) {
             true => Ok(()),
             false => Err("an inverse of another size than the block"),
         }

@@ -14,6 +14,7 @@
 use std::fmt;
 
 use super::force::NoValue;
+use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::expr::ExprError;
 
@@ -57,7 +58,7 @@ impl fmt::Display for NotProved {
                 "`{part}` has no value on a whole ball of motions: no convergent series was found for it"
             ),
             Self::Derivative(error) => write!(formatter, "the derivatives of the force: {error}"),
-            Self::NotOdd => formatter.write_str("the force is not odd, or there are even harmonics"),
+            Self::NotOdd => formatter.write_str("the equation is not odd, or there are even harmonics"),
             Self::NoContraction(bound) => write!(formatter, "Z1 <= {:.3e} is not below 1", bound.value()),
             Self::TooFar(bound) => write!(formatter, "Y0 <= {:.3e} is too large", bound.value()),
             Self::TooLarge(bound) => write!(formatter, "the radius {:.3e} is too large", bound.value()),
@@ -75,6 +76,14 @@ impl From<ExprError> for NotProved {
     fn from(error: ExprError) -> Self {
         Self::Derivative(error)
     }
+}
+
+/// A step of Newton's iteration with the approximate inverse, `B F`.
+pub(super) struct Correction<Place> {
+    /// Of the number, and of the harmonics of the block.
+    pub(super) block: Vec<Ball>,
+    /// Of those beyond it, each with its place.
+    pub(super) beyond: Vec<(Place, Ball)>,
 }
 
 /// The radius of the ball, with the bounds Y0 and Z1 as they are and Z2 for each R that is tried. `distinct` says whether what is in

@@ -20,7 +20,7 @@
 use super::approximate_inverse::{Inverse, SHORT, image};
 use super::force::along;
 use super::fourier_series::{FourierSeries, WORKING};
-use super::radii_polynomial::{NotProved, Proof, radius};
+use super::radii_polynomial::{Correction, NotProved, Proof, radius};
 use super::{Certificate, HIGHEST_HARMONIC, coordinate};
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
@@ -59,20 +59,12 @@ pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<P
     radius(defect, contraction, curvature, distinct)
 }
 
-/// A step towards the solution.
-pub(super) struct Correction {
-    /// Of `mu`, and of the harmonics of the block.
-    pub(super) block: Vec<Ball>,
-    /// Of the harmonics beyond it, by their number.
-    pub(super) beyond: Vec<(usize, Ball)>,
-}
-
 /// What is to be subtracted from `mu` and the harmonics of a certificate, so that it is nearer to the solution; nothing is proved
 /// of it.
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn correction(certificate: &Certificate) -> Result<Correction, NotProved> {
+pub(super) fn correction(certificate: &Certificate) -> Result<Correction<usize>, NotProved> {
     Ok(System::of(certificate)?.correction())
 }
 
@@ -167,7 +159,7 @@ impl<'a> System<'a> {
     }
 
     /// `B F`: the correction of `mu` and of every harmonic, by which the approximation is the further off.
-    fn correction(&self) -> Correction {
+    fn correction(&self) -> Correction<usize> {
         let last = self.motion.cosines.len().max(self.force.cosines.len());
         let zero = Ball::zero();
         let mut start = self.motion.cosines.iter().fold(zero, |sum, c| WORKING.sum(&sum, c));

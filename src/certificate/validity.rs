@@ -8,7 +8,7 @@
 //! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far the formula is proved to
 //! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.
 
-use super::candidate::{NotCertified, certify, inverse, refine, weight_of_mu};
+use super::candidate::{NotCertified, certify, inverse, refine, weight};
 use super::force::along;
 use super::fourier_series::{FourierSeries, WORKING};
 use super::radii_polynomial::{NotProved, Proof};
@@ -234,12 +234,12 @@ impl<'a> Family<'a> {
 
 /// The proof of all motions whose start is so near, with a larger block where that of the last one is too small.
 fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Proof, NotProved> {
-    certificate.sigma = weight_of_mu(certificate).min(HEAVIEST);
+    certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
     match prove_around(certificate, spread) {
         Err(NotProved::NoContraction(_)) if certificate.highest < HIGHEST_HARMONIC / 2 => {
             certificate.highest = (certificate.highest * 3 / 2) | 1;
             certificate.inverse = inverse(certificate)?;
-            certificate.sigma = weight_of_mu(certificate).min(HEAVIEST);
+            certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
             prove_around(certificate, spread)
         }
         other => other,

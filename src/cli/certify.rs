@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use lindstedt::certificate::{self, Beyond, NotCertified};
 use lindstedt::exact::Rational;
-use lindstedt::export::json::{self, CertificateDocument};
+use lindstedt::export::json::{self, CertificateDocument, CycleCertificateDocument};
 use lindstedt::expr::parse_expression;
-use lindstedt::report::{self, CertificateReport};
+use lindstedt::report::{self, AnyCertificate, CertificateReport};
 use lindstedt::verify::Verdict;
-use lindstedt::{Interrupt, Progress, Supervision};
+use lindstedt::{Interrupt, Oscillator, Progress, Solution, Supervision, Values};
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
@@ -65,10 +65,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (oscillator, values, solution) = derive::solved(&arguments.question)?;
     let values = values.unwrap_or_default();
     derive::needed(&solution, &values)?;
-    let proved = certificate::certify(&oscillator, &solution, &values);
-    let refused = |error: &NotCertified| Failure::refused(error, error.help().map(str::to_owned));
-    let (certificate, certified) = proved.map_err(|error| refused(&error))?;
+    let refused = |error: &NotCertified| Failure::refused(error, error.help());
     let tolerance = tolerance(&arguments.common);
+    if solution.limit_cycle.is_some() {
+        return of_cycle(arguments, (&oscillator, &solution, &values), tolerance);
+    }
+    let proved = certificate::certify(&oscillator, &solution, &values);
+    let (certificate, certified) = proved.map_err(|error| refused(&error))?;
     let supervision = Supervision {
         interrupt: Interrupt::by(&STOP),
         progress: Progress::by(&PROGRESS),
@@ -81,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let validity = validity.transpose().map_err(|error| refused(&error))?;
     let report = CertificateReport {
         question: Some((&solution, &values)),
-        certificate: &certificate,
+        certificate: (&certificate).into(),
         certified: &certified,
         validity: validity.as_ref(),
         tolerance,
@@ -91,25 +94,62 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { partial, ..outcome })
 }
 
+/// The proof of a limit cycle.
+fn of_cycle(
+    arguments: &Arguments,
+    (oscillator, solution, values): (&Oscillator, &Solution, &Values),
+    tolerance: f64,
+) -> Result<Outcome, Failure> {
+    if arguments.range.is_some() {
+        return Err(Failure::Refused(
+            "--range is of amplitudes, and a limit cycle has one of its own\n  help: leave --range out: the proof is of the cycle at these values".to_owned(),
+        ));
+    }
+    let proved = certificate::certify_cycle(oscillator, solution, values);
+    let (certificate, certified) = proved.map_err(|error| Failure::refused(&error, error.help()))?;
+    let report = CertificateReport {
+        question: Some((solution, values)),
+        certificate: (&certificate).into(),
+        certified: &certified,
+        validity: None,
+        tolerance,
+    };
+    printed(&report, &arguments.common)
+}
+
 pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     let file = &arguments.file;
     let refused = |reason: &dyn std::fmt::Display| Failure::Refused(format!("{}: {reason}", file.display()));
     let text = read_at_most(file, LARGEST_CERTIFICATE)?;
-    let document: CertificateDocument =
-        serde_json::from_str(&text).map_err(|error| refused(&format!("no certificate: {error}")))?;
-    let certificate = document
-        .read()
-        .map_err(|error| refused(&format!("no certificate: {error}")))?;
-    let certified = certificate::check(&certificate).map_err(|error| refused(&error))?;
+    let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
+    // Which of the two kinds it is; the rest is read when that is known.
+    let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+    let tolerance = tolerance(&arguments.common);
+    let (motion, cycle);
+    let (certificate, certified): (AnyCertificate, _) = if ode == json::EQUATION_OF_CYCLES {
+        let document: CycleCertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        cycle = document.read().map_err(|error| unread(&error))?;
+        ((&cycle).into(), certificate::check_cycle(&cycle))
+    } else {
+        let document: CertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        motion = document.read().map_err(|error| unread(&error))?;
+        ((&motion).into(), certificate::check(&motion))
+    };
     let report = CertificateReport {
         question: None,
-        certificate: &certificate,
-        certified: &certified,
+        certificate,
+        certified: &certified.map_err(|error| refused(&error))?,
         validity: None,
-        tolerance: tolerance(&arguments.common),
+        tolerance,
     };
     printed(&report, &arguments.common)
+}
+
+/// The key of a certificate that says of which kind it is.
+#[derive(serde::Deserialize)]
+struct EquationAlone {
+    ode: String,
 }
 
 /// Refuses a picture, before any work is done for it.
@@ -128,7 +168,10 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
         width: width(common.output.as_deref()),
         picture: None,
         other: &|format| match format {
-            Format::Json => json_text(&json::certificate(report.certificate)),
+            Format::Json => match report.certificate {
+                AnyCertificate::Motion(certificate) => json_text(&json::certificate(certificate)),
+                AnyCertificate::Cycle(certificate) => json_text(&json::cycle_certificate(certificate)),
+            },
             format => no_such(format),
         },
     };

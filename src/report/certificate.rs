@@ -4,15 +4,96 @@ use std::borrow::Cow;
 
 use super::solution::law_blocks;
 use super::{Block, Document};
-use crate::certificate::{Beyond, Certificate, Certified, Enclosure, Errors, Range, Validity, coordinate};
+use crate::certificate::{
+    Beyond, Certificate, Certified, CycleCertificate, Enclosure, Errors, JudgedFormula, Range, Validity, coordinate,
+};
 use crate::decimal::{decimal, neighbours, plain_decimal, significant, significant_fraction};
 use crate::derivation::Line;
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::expr::Expr;
 use crate::solution::Solution;
+use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
+
+/// A certificate of either kind.
+#[derive(Clone, Copy, Debug)]
+pub enum AnyCertificate<'a> {
+    /// Of a motion whose energy is conserved.
+    Motion(&'a Certificate),
+    /// Of a limit cycle.
+    Cycle(&'a CycleCertificate),
+}
+
+impl<'a> From<&'a Certificate> for AnyCertificate<'a> {
+    fn from(certificate: &'a Certificate) -> Self {
+        Self::Motion(certificate)
+    }
+}
+
+impl<'a> From<&'a CycleCertificate> for AnyCertificate<'a> {
+    fn from(certificate: &'a CycleCertificate) -> Self {
+        Self::Cycle(certificate)
+    }
+}
+
+impl AnyCertificate<'_> {
+    fn formula(&self) -> Option<&JudgedFormula> {
+        match self {
+            Self::Motion(certificate) => certificate.formula.as_ref(),
+            Self::Cycle(certificate) => certificate.formula.as_ref(),
+        }
+    }
+
+    /// The left side of its equation.
+    fn left_side(&self) -> Expr {
+        let velocity = coordinate().derivative();
+        let acceleration = Expr::from(velocity.derivative());
+        match self {
+            Self::Motion(certificate) => &acceleration + &certificate.force,
+            Self::Cycle(certificate) => {
+                let drag = &certificate.damping * &Expr::from(velocity);
+                &(&acceleration + &drag) + &certificate.force
+            }
+        }
+    }
+
+    /// What is proved to be periodic, in a letter.
+    fn motion(&self, letter: Symbol) -> String {
+        match self {
+            Self::Motion(certificate) => format!(
+                "periodic from {letter}(0) = {}, {letter}'(0) = 0: {letter}(t) = X(omega*t)",
+                certificate.start
+            ),
+            Self::Cycle(_) => format!("a limit cycle: {letter}(t) = X(omega*t)"),
+        }
+    }
+
+    /// What is within r of the numbers of the certificate.
+    fn unknowns(&self) -> &'static str {
+        match self {
+            Self::Motion(_) => "(1/omega^2, X)",
+            Self::Cycle(_) => "(1/omega, X)",
+        }
+    }
+
+    fn block(&self) -> String {
+        let (odd, highest, harmonics) = match self {
+            Self::Motion(certificate) => (certificate.odd, certificate.highest, certificate.coefficients.len()),
+            Self::Cycle(certificate) => (
+                certificate.odd,
+                certificate.highest,
+                certificate.cosines.len().max(certificate.sines.len()),
+            ),
+        };
+        let kind = if odd { "odd harmonics" } else { "harmonics" };
+        format!(
+            "{kind} to {highest}; those of the certificate go to {}",
+            harmonics.saturating_sub(1)
+        )
+    }
+}
 
 /// A certificate to be reported.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +101,7 @@ pub struct CertificateReport<'a> {
     /// The answer that is judged and its values, where they are known: a document has the numbers alone.
     pub question: Option<(&'a Solution, &'a Values)>,
     /// The certificate.
-    pub certificate: &'a Certificate,
+    pub certificate: AnyCertificate<'a>,
     /// What it proves.
     pub certified: &'a Certified,
     /// How far the formula is proved to hold, where that was asked for.
@@ -49,7 +130,7 @@ impl CertificateReport<'_> {
 /// let at = "A = 3/2".parse()?;
 /// let (proof, certified) = certify(&pendulum, &solution, &at)?;
 /// let question = Some((&solution, &at));
-/// let report = CertificateReport { question, certificate: &proof, certified: &certified, validity: None, tolerance: 0.01 };
+/// let report = CertificateReport { question, certificate: (&proof).into(), certified: &certified, validity: None, tolerance: 0.01 };
 /// let text = lindstedt::export::text::document(&certificate(&report), 100);
 /// assert!(text.contains("0.86060834667961"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -71,8 +152,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
                 .collect(),
         ],
         None => {
-            let acceleration = Expr::from(coordinate().derivative().derivative());
-            let left = &acceleration + &certificate.force;
+            let left = certificate.left_side();
             vec![vec![Block::Line(Cow::Owned(Line::equation(left, Expr::zero())))]]
         }
     };
@@ -83,17 +163,24 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         let values: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         values.join(", ")
     });
-    let start = &certificate.start;
     let mut blocks = vec![Block::Heading("Proved".to_owned())];
     let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
     facts.extend([
-        (
-            "motion",
-            format!("periodic from {letter}(0) = {start}, {letter}'(0) = 0: {letter}(t) = X(omega*t)"),
-        ),
+        ("motion", certificate.motion(letter)),
         ("omega", enclosed(&report.certified.frequency)),
     ]);
+    if let AnyCertificate::Cycle(_) = certificate {
+        let phase = "at t = 0 the first harmonic, of the motion and of the formula, is a positive cosine".to_owned();
+        facts.insert(facts.len() - 1, ("phase", phase));
+    }
+    facts.extend(
+        report
+            .certified
+            .exponent
+            .as_ref()
+            .map(|exponent| ("stability", stability(exponent))),
+    );
     if let Some(errors) = &report.certified.formula {
         facts.extend(of_formula(errors, report));
     }
@@ -106,13 +193,16 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let proof = report.certified.proof;
     let upper = |bound: crate::exact::Bound| above(bound.value());
     sections.push(vec![
-        Block::Heading("The proof: exactly one pair (1/omega^2, X) within r of the certificate's".to_owned()),
+        Block::Heading(format!(
+            "The proof: exactly one pair {} within r of the certificate's",
+            certificate.unknowns()
+        )),
         Block::Facts(vec![
             ("r", upper(proof.radius)),
             ("defect Y0", upper(proof.defect)),
             ("contraction Z1", upper(proof.contraction)),
             ("curvature Z2", upper(proof.curvature)),
-            ("block", block(certificate)),
+            ("block", certificate.block()),
         ]),
     ]);
     Document { sections }
@@ -151,7 +241,7 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     let letter = report
         .question
         .map_or(coordinate(), |(solution, _)| solution.coordinate());
-    let formula = report.certificate.formula.as_ref();
+    let formula = report.certificate.formula();
     let law = formula
         .map(|formula| ("formula", formula.law.clone()))
         .filter(|_| report.question.is_none());
@@ -180,6 +270,19 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
         .collect()
 }
 
+/// Whether the cycle attracts, as far as that is proved.
+fn stability(exponent: &Enclosure) -> String {
+    let radius = exponent.radius.value();
+    let value = to_f64(&exponent.middle);
+    let words = match value {
+        // Two units in the last place of the double are added.
+        value if value.abs() * (1.0 - 4.0 * f64::EPSILON) <= radius => "not proved",
+        value if value < 0.0 => "attracts, proved",
+        _ => "repels, proved",
+    };
+    format!("{words}: characteristic exponent {}", enclosed(exponent))
+}
+
 /// The number with the digits that are known, and how far it may be from what is printed.
 fn enclosed(enclosure: &Enclosure) -> String {
     /// More digits are not written, however many are known.
@@ -194,9 +297,9 @@ fn enclosed(enclosure: &Enclosure) -> String {
     let value = to_f64(&enclosure.middle);
     let text = plain_decimal(&enclosure.middle, usize::try_from(decimals).unwrap_or(0));
     // What is very large or small is written with fifteen digits.
-    let rounding = match (1e-4..1e14).contains(&value) {
+    let rounding = match (1e-4..1e14).contains(&value.abs()) {
         true => 0.5 * 10.0_f64.powi(-decimals),
-        false => 1e-14 * value,
+        false => 1e-14 * value.abs(),
     };
     let printed = radius + rounding;
     format!("{text} +- {}", above(printed))
@@ -232,16 +335,4 @@ fn outward(value: f64, side: usize) -> String {
         Some(exact) => significant_fraction(&neighbours(&exact, 4)[side], 4),
         None => value.to_string(),
     }
-}
-
-fn block(certificate: &Certificate) -> String {
-    let harmonics = match certificate.odd {
-        true => "odd harmonics",
-        false => "harmonics",
-    };
-    format!(
-        "{harmonics} to {}; those of the certificate go to {}",
-        certificate.highest,
-        certificate.coefficients.len().saturating_sub(1)
-    )
 }

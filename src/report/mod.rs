@@ -23,7 +23,7 @@ mod trajectory;
 pub use audit::audit;
 #[cfg(feature = "json")]
 pub(crate) use audit::{computed as audit_computed, entry as audit_entry, printed as audit_printed};
-pub use certificate::{CertificateReport, certificate};
+pub use certificate::{AnyCertificate, CertificateReport, certificate};
 pub use comparison::comparison;
 pub use friction::friction;
 pub use impact::impact;

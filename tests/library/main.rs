@@ -5,6 +5,7 @@ mod certificate;
 mod conformance;
 mod contact;
 mod corner_roots;
+mod cycle_certificate;
 mod default_method;
 mod equilibria;
 mod exact_numbers;

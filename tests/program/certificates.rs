@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use lindstedt::certificate::check;
+use lindstedt::certificate::{check, check_cycle};
 use lindstedt::exact::{Rational, ratio};
-use lindstedt::export::json::CertificateDocument;
+use lindstedt::export::json::{self, CertificateDocument, CycleCertificateDocument};
 use serde_json::{Value, json};
 
 use super::documents::python;
@@ -160,15 +160,67 @@ fn a_second_program_in_python_proves_the_same() {
 }
 
 #[test]
+fn what_certify_writes_of_a_cycle_check_proves() {
+    let folder = folder("cycle");
+    let problem = format!("{}/examples/certify/van-der-pol.toml", env!("CARGO_MANIFEST_DIR"));
+    let (file, document) = certified(&folder, &[&problem]);
+    assert_eq!(document["ode"], "x''+g(x)*x'+h(x)=0");
+    let path = file.to_str().expect("a path in text");
+    let checked = run(&["check", path]);
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    let text = String::from_utf8_lossy(&checked.stdout).into_owned();
+    for expected in ["a limit cycle", "attracts, proved", "0.98472097664531065", "5.31649e-6"] {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    let read: CycleCertificateDocument = serde_json::from_value(document.clone()).expect("a document");
+    let certificate = read.read().expect("a certificate");
+    assert_eq!(json::cycle_certificate(&certificate), read);
+    assert_eq!(run(&["check", path, "--tolerance", "1e-9"]).status.code(), Some(3));
+    // Tampered with, it is no proof.
+    for tamper in [
+        (|document: &mut Value| document["g"] = json!(["-1/2", "0", "501/1000"])) as fn(&mut Value),
+        |document| document["h"] = json!(["0", "1", "1/1000"]),
+        |document| document["claim_r"] = json!("1e-60"),
+        |document| document["p"] = json!("1"),
+        |document| document["c"][1] = json!("1"),
+        |document| document["s"][1] = json!("1"),
+        |document| document["A_block"][1][0] = json!("0"),
+        |document| document["formula"]["frequency_error"][1] = json!("1e-9"),
+        |document| document["ode"] = json!("x''+f(x)=0"),
+    ] {
+        let mut changed = document.clone();
+        tamper(&mut changed);
+        std::fs::write(&file, changed.to_string()).expect("the document is written");
+        assert_eq!(run(&["check", path]).status.code(), Some(1), "{changed:.80}");
+    }
+}
+
+/// Whether a document, whatever is in it, is a proof.
+type IsProof = fn(&Value) -> bool;
+
+#[test]
 fn hostile_certificates_are_refused_at_once() {
+    let of_motion: IsProof = |changed| {
+        let outcome = read(changed).ok().and_then(|document| document.read().ok());
+        outcome.is_some_and(|certificate| check(&certificate).is_ok())
+    };
+    let of_cycle: IsProof = |changed| {
+        let document = serde_json::from_value::<CycleCertificateDocument>(changed.clone()).ok();
+        let outcome = document.and_then(|document| document.read().ok());
+        outcome.is_some_and(|certificate| check_cycle(&certificate).is_ok())
+    };
+    are_refused_at_once(&["pendulum", "--at", "A=1"], of_motion);
+    are_refused_at_once(&["van-der-pol", "--at", "mu=1/2"], of_cycle);
+}
+
+fn are_refused_at_once(arguments: &[&str], is_proof: IsProof) {
     let folder = folder("hostile");
-    let (file, document) = certified(&folder, &["pendulum", "--at", "A=1"]);
+    let (file, document) = certified(&folder, arguments);
     let keys: Vec<String> = document.as_object().expect("an object").keys().cloned().collect();
     let mut tried = 0;
     let mut refuse = |changed: &Value| {
         let begin = Instant::now();
-        let outcome = read(changed).ok().and_then(|document| document.read().ok());
-        let proved = outcome.is_some_and(|certificate| check(&certificate).is_ok());
+        let proved = is_proof(changed);
         assert!(begin.elapsed() < Duration::from_secs(20));
         tried += 1;
         proved
@@ -240,9 +292,24 @@ fn what_is_asked_for_in_vain_is_said() {
             "`B` does not occur in the formula; it has: A",
         ),
         (
-            &["certify", "van-der-pol", "--at", "mu=0.1"],
+            &["certify", "x'' + x'/5 + x = 0", "--at", "A=1"],
             1,
-            "depends on the velocity or on time",
+            "`x'/5` depends on the velocity or on time",
+        ),
+        (
+            &["certify", "rayleigh", "--at", "mu=0.1"],
+            1,
+            "`mu*x'^3/3` is not linear in the velocity",
+        ),
+        (
+            &["certify", "rayleigh", "--at", "mu=0.1"],
+            1,
+            "of the same frequency: certify that",
+        ),
+        (
+            &["certify", "van-der-pol", "--at", "mu=0.1", "--range", "1:2"],
+            1,
+            "a limit cycle has one of its own",
         ),
         (
             &["certify", "pendulum", "--at", "A=4"],

@@ -115,39 +115,50 @@ pub struct FormulaDocument {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn certificate(certificate: &Certificate) -> CertificateDocument {
-    let integers = |numbers: &[Integer]| numbers.iter().map(ToString::to_string).collect();
-    let decimal = |value: &Rational| significant_fraction(value, 3);
-    let formula = |formula: &JudgedFormula| FormulaDocument {
-        law: formula.law.clone(),
-        omega: formula.frequency.to_string(),
-        c: integers(&formula.coefficients),
-        phase_error: formula.deviation.each_ref().map(decimal),
-        frequency_error: formula.frequency_error.each_ref().map(decimal),
-        drift: formula.drift.each_ref().map(decimal),
-    };
     CertificateDocument {
         schema: Kind::Certificate.schema().to_owned(),
         ode: EQUATION.to_owned(),
-        f: force(certificate),
+        f: force(&certificate.force),
         start: certificate.start.to_string(),
         odd: certificate.odd,
         bits: certificate.bits,
         mu: certificate.mu.to_string(),
-        c: integers(&certificate.coefficients),
+        c: texts(&certificate.coefficients),
         highest: certificate.highest,
         inverse_bits: certificate.inverse_bits,
-        inverse: certificate.inverse.iter().map(|row| integers(row)).collect(),
+        inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
-        claim_r: decimal(&certificate.claim),
+        claim_r: short(&certificate.claim),
         formula: certificate.formula.as_ref().map(formula),
     }
 }
 
+/// The numbers as text.
+pub(super) fn texts(numbers: &[Integer]) -> Vec<String> {
+    numbers.iter().map(ToString::to_string).collect()
+}
+
+/// A decimal of three digits.
+pub(super) fn short(value: &Rational) -> String {
+    significant_fraction(value, 3)
+}
+
+/// The document of a formula that is judged.
+fn formula(formula: &JudgedFormula) -> FormulaDocument {
+    FormulaDocument {
+        law: formula.law.clone(),
+        omega: formula.frequency.to_string(),
+        c: texts(&formula.coefficients),
+        phase_error: formula.deviation.each_ref().map(short),
+        frequency_error: formula.frequency_error.each_ref().map(short),
+        drift: formula.drift.each_ref().map(short),
+    }
+}
+
 /// The coefficients of a polynomial, or the text of another force.
-fn force(certificate: &Certificate) -> ForceDocument {
+pub(super) fn force(force: &Expr) -> ForceDocument {
     let x = coordinate();
-    let force = &certificate.force;
     let polynomial = force.to_polynomial(&mut |_| None).ok().flatten();
     let coefficients = polynomial.and_then(|polynomial| {
         let mut coefficients = vec![Rational::zero()];
@@ -180,18 +191,9 @@ impl CertificateDocument {
         if self.ode != EQUATION {
             return unexpected("ode", "`x''+f(x)=0`");
         }
-        if self.nu != "1" {
-            return unexpected("nu", "`1`, the only weight of this schema");
-        }
-        let highest = self.highest <= HIGHEST_HARMONIC && self.inverse.len() <= HIGHEST_HARMONIC + 2;
-        if !highest || self.inverse.iter().any(|row| row.len() > HIGHEST_HARMONIC + 2) {
-            return unexpected("K", "at most 400, and `A_block` a square matrix of this size");
-        }
-        if self.bits > MOST_BITS || self.inverse_bits > MOST_BITS {
-            return unexpected("bits", "at most 224, and so `Abits`");
-        }
+        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
         Ok(Certificate {
-            force: self.f.read()?,
+            force: self.f.read("f")?,
             start: fraction(&self.start, "A")?,
             odd: self.odd,
             bits: self.bits,
@@ -199,11 +201,7 @@ impl CertificateDocument {
             coefficients: integers(&self.c, "c")?,
             highest: self.highest,
             inverse_bits: self.inverse_bits,
-            inverse: self
-                .inverse
-                .iter()
-                .map(|row| integers(row, "A_block"))
-                .collect::<Result<_, _>>()?,
+            inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
             formula: self.formula.as_ref().map(FormulaDocument::read).transpose()?,
@@ -211,15 +209,38 @@ impl CertificateDocument {
     }
 }
 
+/// Sizes, before any number is read.
+pub(super) fn check_sizes(
+    nu: &str,
+    highest: usize,
+    inverse: &[Vec<String>],
+    bits: [usize; 2],
+) -> Result<(), JsonError> {
+    if nu != "1" {
+        return unexpected("nu", "`1`, the only weight of this schema");
+    }
+    let fits = highest <= HIGHEST_HARMONIC && inverse.len() <= HIGHEST_HARMONIC + 2;
+    if !fits || inverse.iter().any(|row| row.len() > HIGHEST_HARMONIC + 2) {
+        return unexpected("K", "at most 400, and `A_block` a square matrix of this size");
+    }
+    if bits.iter().any(|bits| *bits > MOST_BITS) {
+        return unexpected("bits", "at most 224, and so `Abits`");
+    }
+    Ok(())
+}
+
+/// The entries of the inverse.
+pub(super) fn matrix(rows: &[Vec<String>]) -> Result<Vec<Vec<Integer>>, JsonError> {
+    rows.iter().map(|row| integers(row, "A_block")).collect()
+}
+
 impl FormulaDocument {
     fn read(&self) -> Result<JudgedFormula, JsonError> {
-        let range = |ends: &[String; 2], key: &str| -> Result<[Rational; 2], JsonError> {
-            Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
-        };
         Ok(JudgedFormula {
             law: self.law.clone(),
             frequency: integer(&self.omega, "omega")?,
             coefficients: integers(&self.c, "formula.c")?,
+            sines: vec![],
             deviation: range(&self.phase_error, "phase_error")?,
             frequency_error: range(&self.frequency_error, "frequency_error")?,
             drift: range(&self.drift, "drift")?,
@@ -227,23 +248,28 @@ impl FormulaDocument {
     }
 }
 
+/// What is claimed, from below and from above.
+pub(super) fn range(ends: &[String; 2], key: &str) -> Result<[Rational; 2], JsonError> {
+    Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
+}
+
 impl ForceDocument {
-    fn read(&self) -> Result<Expr, JsonError> {
+    pub(super) fn read(&self, key: &str) -> Result<Expr, JsonError> {
         let x = Expr::from(coordinate());
         match self {
-            Self::Expression(text) if text == "sin" => x.sin().or_else(|_| unexpected("f", "an expression in x")),
+            Self::Expression(text) if text == "sin" => x.sin().or_else(|_| unexpected(key, "an expression in x")),
             Self::Expression(text) if text.len() > LONGEST_FORCE => {
-                unexpected("f", "an expression of at most 2000 characters")
+                unexpected(key, "an expression of at most 2000 characters")
             }
-            Self::Expression(text) => expression(text, "f"),
+            Self::Expression(text) => expression(text, key),
             Self::Polynomial(coefficients) if coefficients.len() > LONGEST_NUMBER => {
-                unexpected("f", "a polynomial of a degree below 200")
+                unexpected(key, "a polynomial of a degree below 200")
             }
             Self::Polynomial(coefficients) => {
                 let term = |(power, text): (usize, &String)| {
                     let power = x.integer_power(i64::try_from(power).unwrap_or(0));
-                    let power = power.or_else(|_| unexpected("f", "a polynomial"))?;
-                    Ok(&Expr::number(fraction(text, "f")?) * &power)
+                    let power = power.or_else(|_| unexpected(key, "a polynomial"))?;
+                    Ok(&Expr::number(fraction(text, key)?) * &power)
                 };
                 let terms: Result<Vec<Expr>, JsonError> = coefficients.iter().enumerate().map(term).collect();
                 Ok(Expr::sum(terms?))
@@ -252,14 +278,14 @@ impl ForceDocument {
     }
 }
 
-fn integers(texts: &[String], key: &str) -> Result<Vec<Integer>, JsonError> {
+pub(super) fn integers(texts: &[String], key: &str) -> Result<Vec<Integer>, JsonError> {
     if texts.len() > 2 * HIGHEST_HARMONIC {
         return unexpected(key, "a list of at most 800 numbers");
     }
     texts.iter().map(|text| integer(text, key)).collect()
 }
 
-fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
+pub(super) fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
     let number = text.parse().ok().filter(|_| text.len() <= LONGEST_NUMBER);
     number.map_or_else(|| unexpected(key, "integers of at most 200 characters"), Ok)
 }
@@ -270,7 +296,7 @@ fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
 }
 
 /// A decimal, `2.5e-33`, that is not negative.
-fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
+pub(super) fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
     const EXPECTED: &str = "a decimal such as `2.5e-33`, not negative";
     /// No double is smaller, and none larger.
     const EXPONENTS: std::ops::RangeInclusive<i32> = -400..=400;

@@ -1,13 +1,15 @@
 //! The kinds of documents and the JSON Schema of each, from the types that write and read them.
 
+use std::borrow::Cow;
+
 use schemars::generate::SchemaSettings;
-use schemars::{Schema, SchemaGenerator, json_schema};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, FrictionDocument,
-    ImpactComparisonDocument, ImpactDocument, JsonError, LagrangianDocument, MaterialsDocument, MotionDocument,
-    MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, CycleCertificateDocument,
+    FrictionDocument, ImpactComparisonDocument, ImpactDocument, JsonError, LagrangianDocument, MaterialsDocument,
+    MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument, unexpected,
 };
 use crate::solution::Method;
@@ -144,12 +146,32 @@ impl Kind {
             Self::Stability => generator.into_root_schema_for::<StabilityDocument>(),
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
-            Self::Certificate => generator.into_root_schema_for::<CertificateDocument>(),
+            Self::Certificate => generator.into_root_schema_for::<EitherCertificate>(),
         };
         schema.insert("title".to_owned(), self.schema().into());
         let mut schema = head_first(schema.to_value());
         in_one_line(&mut schema);
         schema
+    }
+}
+
+/// A certificate of a conservative motion or of a limit cycle, told apart by `ode`.
+struct EitherCertificate;
+
+impl JsonSchema for EitherCertificate {
+    fn schema_name() -> Cow<'static, str> {
+        "EitherCertificate".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let kinds = [
+            generator.subschema_for::<CertificateDocument>(),
+            generator.subschema_for::<CycleCertificateDocument>(),
+        ];
+        json_schema!({
+            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, or a limit cycle.",
+            "anyOf": kinds,
+        })
     }
 }
 

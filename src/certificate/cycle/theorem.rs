@@ -1,0 +1,687 @@
+//! The theorem for cycles: whether there is exactly one periodic motion near an approximate one, and how near.
+//!
+//! For `x'' + g(x) x' + h(x) = 0` and `x(t) = X(omega t)`, `X(theta) = sum_k (a_k cos(k theta) + b_k sin(k theta))`, `p = 1/omega`:
+//!
+//! ```text
+//! F = X'' + p g(X) X' + p^2 h(X),    F_k = -k^2 X_k + p [phi(X)']_k + p^2 [h(X)]_k,   phi' = g      one for each cosine and sine
+//! b_1 = 0                                                          the phase: p takes the place of b_1 among the unknowns
+//! norm: sigma |p| + sum_k (|a_k| + |b_k|)
+//! ```
+//!
+//! The approximate inverse B is a matrix on the harmonics up to N, and `-1/k^2` beyond. With `alpha = ||B||`, and `beta` the norm of B
+//! after a derivative by theta, both over what the equations are of,
+//!
+//! ```text
+//! alpha = max(max_(k <= N) ||B e_k||, 1/(N+1)^2)         beta = max(max_(k <= N) k ||B e_k||, 1/(N+1))
+//! Y0 = ||B_N F_N|| + sum_(k > N) |F_k|/k^2 + alpha (p eps_D + p^2 eps_h)
+//! Z1 = beta p eps_g + alpha p^2 eps_h' + max of
+//!   column of p         (||B_N (D + 2 p h)_N - e_p|| + sum_(k > N) |(D + 2 p h)_k|/k^2 + alpha (eps_D + 2 p eps_h))/sigma
+//!   column e of j <= N  ||B_N DF_N e - e|| + sum_(k > N) |DF_k e|/k^2,    DF e = e'' + p (g e)' + p^2 h' e
+//!   N < j <= N + W      ||B_N DF_N e|| + sum_(k > N) |p (g e)'_k + p^2 (h' e)_k|/k^2
+//!   N + W < j <= J      the sum alone
+//!   j > J               p ||g||/(J + 1 - W) + p^2 ||h'||/(J + 1 - W)^2
+//! Z2 = max(2 alpha ||h||/sigma^2, (beta ||g|| + 2 P alpha ||h'||)/sigma, beta P ||g'|| + alpha P^2 ||h''||),   P = p + R/sigma
+//! ```
+//!
+//! where `D = g(X) X'`, eps is what a series leaves out, W is the last harmonic of g(X) and h'(X), and the norms of Z2 are over the ball of
+//! radius R. Z2 bounds the second derivative of F at u = (q, v) and u' = (q', v'),
+//! `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by term.
+//!
+//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and `r < |a_1|`, there is exactly one zero of F in
+//! the ball of radius r: B is onto, hence its matrix is invertible, hence it is injective. `k X_k` is summable, for `phi(X)` is, and so is
+//! `k^2 X_k`: `X(t/p)` is a motion, at rest or of a part of the period only if a_1 were zero. DF is injective there. Were the second of
+//! Floquet's multipliers one too, a periodic solution of the variational equation, or one that grows like `t x'(t)`, would be in its kernel,
+//! with some of X' added where it has a sine of the first harmonic (X' has, for a_1 is not zero): so the motion is a limit cycle,
+//! and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is negative.
+//!
+//! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions of differential equations:
+//! the radii polynomial approach, Mathematics of Computation 85 (2016), 1427-1459; J. B. van den Berg, J.-P. Lessard: Rigorous
+//! numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of `N^2 (N + W)` products of short integers.
+
+use super::super::approximate_inverse::{Inverse, SHORT, image};
+use super::super::force::along;
+use super::super::fourier_series::{FourierSeries, WORKING, Wave};
+use super::super::radii_polynomial::{Correction, NotProved, Proof, radius};
+use super::super::{HIGHEST_HARMONIC, coordinate};
+use super::CycleCertificate;
+use crate::exact::ball::Ball;
+use crate::exact::bound::Bound;
+
+/// Columns beyond which those of all further harmonics are bounded together.
+const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
+
+/// Binary digits of a series of which only the size of a product counts.
+const ROUGH: i32 = 40;
+
+/// Checks a certificate. The numbers in it may be anything.
+///
+/// # Errors
+/// [`NotProved`].
+pub(super) fn prove(certificate: &CycleCertificate) -> Result<Proof, NotProved> {
+    if certificate.odd && !certificate.is_odd()? {
+        return Err(NotProved::NotOdd);
+    }
+    let system = System::of(certificate)?;
+    let x = coordinate();
+    let slope = certificate.force.differentiate(x)?;
+    let derivatives = [
+        certificate.damping.clone(),
+        certificate.damping.differentiate(x)?,
+        certificate.force.clone(),
+        slope.clone(),
+        slope.differentiate(x)?,
+    ];
+    let defect = system.defect();
+    let contraction = system.contraction(&system.equations.derivative()?)?;
+    let curvature = |within: Bound| {
+        let ball = system.equations.motion.clone().shortened(ROUGH).widened(within);
+        let mut norms = [Bound::ZERO; 5];
+        for (norm, expression) in norms.iter_mut().zip(&derivatives) {
+            *norm = along(expression, &ball)?.norm();
+        }
+        Ok(system.curvature(norms, within))
+    };
+    let distinct = |radius: Bound| {
+        radius.over(system.inverse.sigma.value()).value() < certificate.size_of_reciprocal()
+            && radius.value() < certificate.size_of_first_harmonic()
+    };
+    radius(defect, contraction, curvature, distinct)
+}
+
+/// What is to be subtracted from p and the harmonics of a certificate, so that it is nearer to the solution; nothing is proved of
+/// it.
+///
+/// # Errors
+/// As [`prove`].
+pub(super) fn correction(certificate: &CycleCertificate) -> Result<Correction<Wave>, NotProved> {
+    Ok(System::of(certificate)?.correction())
+}
+
+/// About the derivative on the block, row by row, for what is not proved.
+///
+/// # Errors
+/// As [`prove`].
+pub(super) fn derivative_of_block(certificate: &CycleCertificate) -> Result<Vec<Vec<f64>>, NotProved> {
+    let equations = Equations::of(certificate)?;
+    let derivative = equations.derivative()?;
+    let entry = |row: Wave, place: usize| match place {
+        0 => WORKING.nearest(&equations.by_reciprocal(row)),
+        _ => SHORT.nearest(&derivative.entry(row, equations.block[place])),
+    };
+    let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
+    Ok(equations.block.iter().map(row).collect())
+}
+
+/// A function by which is multiplied: `s_m` and `t_m`, its coefficients as those of exponentials.
+struct Multiplier {
+    cosines: Vec<Ball>,
+    sines: Vec<Ball>,
+}
+
+impl Multiplier {
+    fn of(series: &FourierSeries) -> Self {
+        let halved = |(k, ball): (usize, &Ball)| {
+            let half = if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
+            SHORT.converted(&half, WORKING)
+        };
+        let halves = |balls: &[Ball]| balls.iter().enumerate().map(halved).collect();
+        Self {
+            cosines: halves(&series.cosines),
+            sines: halves(&series.sines),
+        }
+    }
+
+    /// The coefficient of one wave in the product with another.
+    fn at(&self, row: Wave, column: Wave) -> Ball {
+        let cosine = |m: usize| self.cosines.get(m).cloned().unwrap_or_else(Ball::zero);
+        let sine = |m: usize| match m {
+            0 => Ball::zero(),
+            _ => self.sines.get(m).cloned().unwrap_or_else(Ball::zero),
+        };
+        let (k, j) = (row.harmonic(), column.harmonic());
+        let apart = |negative: bool| match negative {
+            true => SHORT.scaled(&sine(k.abs_diff(j)), -1),
+            false => sine(k.abs_diff(j)),
+        };
+        let both = match (row, column) {
+            (Wave::Cosine(_), Wave::Cosine(_)) => SHORT.sum(&cosine(k.abs_diff(j)), &cosine(k + j)),
+            (Wave::Sine(_), Wave::Sine(_)) => SHORT.difference(&cosine(k.abs_diff(j)), &cosine(k + j)),
+            (Wave::Sine(_), Wave::Cosine(_)) => SHORT.sum(&apart(k < j), &sine(k + j)),
+            (Wave::Cosine(_), Wave::Sine(_)) => SHORT.sum(&apart(j < k), &sine(k + j)),
+        };
+        // Of the constant both are one.
+        if k == 0 { SHORT.divided(&both, 2) } else { both }
+    }
+}
+
+/// The derivative of F by the motion, at the approximate one.
+struct Derivative {
+    /// p.
+    reciprocal: Ball,
+    /// p^2.
+    squared: Ball,
+    /// g(X).
+    damping: FourierSeries,
+    /// h'(X).
+    slope: FourierSeries,
+    by_damping: Multiplier,
+    by_slope: Multiplier,
+}
+
+impl Derivative {
+    /// How many harmonics g(X) and h'(X) have.
+    fn width(&self) -> usize {
+        self.damping.length().max(self.slope.length())
+    }
+
+    /// The coefficient of one wave in `p (g e)' + p^2 h' e` of another, e.
+    fn bent(&self, row: Wave, column: Wave) -> Ball {
+        let k = row.harmonic() as i64;
+        // (cos)' = -k sin, (sin)' = k cos.
+        let drag = match row {
+            Wave::Cosine(harmonic) => SHORT.scaled(&self.by_damping.at(Wave::Sine(harmonic), column), k),
+            Wave::Sine(harmonic) => SHORT.scaled(&self.by_damping.at(Wave::Cosine(harmonic), column), -k),
+        };
+        SHORT.sum(
+            &SHORT.product(&self.reciprocal, &drag),
+            &SHORT.product(&self.squared, &self.by_slope.at(row, column)),
+        )
+    }
+
+    /// The same with `e''`.
+    fn entry(&self, row: Wave, column: Wave) -> Ball {
+        let bent = self.bent(row, column);
+        match row == column {
+            true => SHORT.difference(&bent, &SHORT.integer(i64::from(row.squared()))),
+            false => bent,
+        }
+    }
+}
+
+/// F at the approximate motion.
+struct Equations<'a> {
+    certificate: &'a CycleCertificate,
+    motion: FourierSeries,
+    /// p.
+    reciprocal: Ball,
+    /// p^2.
+    squared: Ball,
+    /// g(X) X'.
+    drag: FourierSeries,
+    /// h(X).
+    force: FourierSeries,
+    /// Those of the block, that of the sine of the first harmonic first; of the unknowns p has its place.
+    block: Vec<Wave>,
+}
+
+impl<'a> Equations<'a> {
+    fn of(certificate: &'a CycleCertificate) -> Result<Self, NotProved> {
+        let motion = certificate.motion();
+        let drag = along(&certificate.damping, &motion)?.product(&motion.derivative());
+        let force = along(&certificate.force, &motion)?;
+        let reciprocal = certificate.reciprocal_ball();
+        Ok(Self {
+            certificate,
+            squared: WORKING.product(&reciprocal, &reciprocal),
+            reciprocal,
+            motion,
+            drag,
+            force,
+            block: certificate.block(),
+        })
+    }
+
+    fn derivative(&self) -> Result<Derivative, NotProved> {
+        let certificate = self.certificate;
+        let slope = certificate.force.differentiate(coordinate())?;
+        let damping = along(&certificate.damping, &self.motion)?.shortened(ROUGH);
+        let slope = along(&slope, &self.motion)?.shortened(ROUGH);
+        Ok(Derivative {
+            reciprocal: SHORT.converted(&self.reciprocal, WORKING),
+            squared: SHORT.converted(&self.squared, WORKING),
+            by_damping: Multiplier::of(&damping),
+            by_slope: Multiplier::of(&slope),
+            damping,
+            slope,
+        })
+    }
+
+    /// Both waves of the harmonics from one beyond the block up to another.
+    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
+        let (step, highest) = (self.certificate.step(), self.certificate.highest);
+        let from = from.max(highest + 1);
+        let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
+        harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)])
+    }
+
+    /// `p D_k + p^2 h_k`.
+    fn bent(&self, wave: Wave) -> Ball {
+        WORKING.sum(
+            &WORKING.product(&self.reciprocal, &self.drag.coefficient(wave)),
+            &WORKING.product(&self.squared, &self.force.coefficient(wave)),
+        )
+    }
+
+    /// `D_k + 2 p h_k`, the derivative by p.
+    fn by_reciprocal(&self, wave: Wave) -> Ball {
+        let twice = WORKING.scaled(&WORKING.product(&self.reciprocal, &self.force.coefficient(wave)), 2);
+        WORKING.sum(&self.drag.coefficient(wave), &twice)
+    }
+
+    /// The last harmonic that any of the series has.
+    fn last(&self) -> usize {
+        self.motion.length().max(self.drag.length()).max(self.force.length())
+    }
+}
+
+/// What the bounds are made of.
+struct System<'a> {
+    equations: Equations<'a>,
+    inverse: Inverse,
+    /// alpha.
+    size: Bound,
+    /// beta.
+    size_of_derivative: Bound,
+}
+
+impl<'a> System<'a> {
+    fn of(certificate: &'a CycleCertificate) -> Result<Self, NotProved> {
+        let equations = Equations::of(certificate)?;
+        let inverse = Inverse::of(&certificate.inverse, certificate.inverse_bits, certificate.sigma);
+        let next = (certificate.highest + 1) as f64;
+        let beyond = Bound::exactly(1.0).over(next);
+        let (mut size, mut size_of_derivative) = (beyond.over(next), beyond);
+        for (column, wave) in equations.block.iter().enumerate() {
+            let norm = inverse.norm_of_column(column);
+            size = size.max(norm);
+            size_of_derivative = size_of_derivative.max(norm * Bound::exactly(wave.harmonic() as f64));
+        }
+        Ok(Self {
+            equations,
+            inverse,
+            size,
+            size_of_derivative,
+        })
+    }
+
+    /// `B F`: the correction of p and of every harmonic, by which the approximation is the further off.
+    fn correction(&self) -> Correction<Wave> {
+        let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
+            let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
+            (
+                wave,
+                WORKING.difference(&self.equations.motion.coefficient(wave), &image),
+            )
+        });
+        let vector: Vec<Ball> = self
+            .equations
+            .block
+            .iter()
+            .map(|&wave| {
+                let inertia = WORKING.scaled(&self.equations.motion.coefficient(wave), -i64::from(wave.squared()));
+                WORKING.sum(&inertia, &self.equations.bent(wave))
+            })
+            .collect();
+        Correction {
+            block: image(&self.inverse.entries, &vector, WORKING),
+            beyond: beyond.collect(),
+        }
+    }
+
+    /// Y0.
+    fn defect(&self) -> Bound {
+        let correction = self.correction();
+        let beyond: Bound = correction.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
+        let unseen = WORKING.magnitude(&self.equations.reciprocal) * self.equations.drag.tail
+            + WORKING.magnitude(&self.equations.squared) * self.equations.force.tail;
+        self.inverse.norm(&correction.block, WORKING) + beyond + self.size * unseen
+    }
+
+    /// Z1.
+    fn contraction(&self, derivative: &Derivative) -> Result<Bound, NotProved> {
+        let one = Bound::exactly(1.0);
+        let [reciprocal, squared] =
+            [&self.equations.reciprocal, &self.equations.squared].map(|ball| WORKING.magnitude(ball));
+        let (highest, width) = (self.equations.certificate.highest, derivative.width());
+        let unseen = self.size_of_derivative * reciprocal * derivative.damping.tail
+            + self.size * squared * derivative.slope.tail;
+        let mut largest = self.column_of_reciprocal();
+        let in_block = self.equations.block.iter().enumerate().skip(1);
+        let in_block = in_block.map(|(place, wave)| (*wave, Some(place)));
+        // Where g and h' reach into the block, and beyond.
+        let near = self.equations.beyond(0, highest + width).map(|wave| (wave, None));
+        for (wave, place) in in_block.chain(near) {
+            largest = largest.max(self.column(derivative, wave, place));
+            if largest + unseen >= one {
+                return Err(NotProved::NoContraction(largest + unseen));
+            }
+        }
+        let [damping, slope] = [&derivative.damping, &derivative.slope].map(FourierSeries::finite_norm);
+        let mut upto = highest + width;
+        let rest = loop {
+            let far = (upto + 1 - width) as f64;
+            let rest = (reciprocal * damping).over(far) + (squared * slope).over(far * far);
+            if rest < Bound::exactly(0.2) || rest < largest {
+                break rest;
+            }
+            if upto > MOST_COLUMNS {
+                return Err(NotProved::NoContraction(rest));
+            }
+            upto += self.equations.certificate.step();
+        };
+        for wave in self.equations.beyond(highest + width + 1, upto) {
+            largest = largest.max(self.column(derivative, wave, None));
+        }
+        Ok(largest.max(rest) + unseen)
+    }
+
+    /// The column of p.
+    fn column_of_reciprocal(&self) -> Bound {
+        let tail: Bound = self
+            .equations
+            .beyond(0, self.equations.last())
+            .map(|wave| WORKING.magnitude(&WORKING.divided(&self.equations.by_reciprocal(wave), wave.squared())))
+            .sum();
+        let vector = self.equations.block.iter();
+        let vector: Vec<Ball> = vector
+            .map(|&wave| SHORT.converted(&self.equations.by_reciprocal(wave), WORKING))
+            .collect();
+        let twice = WORKING.magnitude(&self.equations.reciprocal) + WORKING.magnitude(&self.equations.reciprocal);
+        let unseen = self.size * (self.equations.drag.tail + twice * self.equations.force.tail);
+        (self.inverse.distance_from_unit(&vector, Some(0)) + tail + unseen).over(self.inverse.sigma.value())
+    }
+
+    /// The column of a wave, in the block at this place or beyond it.
+    fn column(&self, derivative: &Derivative, column: Wave, place: Option<usize>) -> Bound {
+        let (j, width) = (column.harmonic(), derivative.width());
+        let tail: Bound = self
+            .equations
+            .beyond((j + 1).saturating_sub(width), j + width)
+            .map(|row| SHORT.magnitude(&SHORT.divided(&derivative.bent(row, column), row.squared())))
+            .sum();
+        // Far beyond, nothing of g and h' reaches the block.
+        if j > self.equations.certificate.highest + width {
+            return tail;
+        }
+        let vector: Vec<Ball> = self
+            .equations
+            .block
+            .iter()
+            .map(|row| derivative.entry(*row, column))
+            .collect();
+        self.inverse.distance_from_unit(&vector, place) + tail
+    }
+
+    /// Z2 on the ball of this radius, with the norms of g, g', h, h', h'' over it.
+    fn curvature(&self, [damping, its_slope, force, slope, bend]: [Bound; 5], radius: Bound) -> Bound {
+        let sigma = self.inverse.sigma.value();
+        let (size, steep) = (self.size, self.size_of_derivative);
+        let reciprocal = WORKING.magnitude(&self.equations.reciprocal) + radius.over(sigma);
+        let twice = |bound: Bound| bound + bound;
+        let both_of_reciprocal = twice(size * force).over(sigma).over(sigma);
+        let one_of_each = (steep * damping + twice(reciprocal * size * slope)).over(sigma);
+        let both_of_motion = steep * reciprocal * its_slope + size * reciprocal * reciprocal * bend;
+        both_of_reciprocal.max(one_of_each).max(both_of_motion)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::candidate::{certify_cycle, proved_by_some_block};
+    use super::*;
+    use crate::exact::{Integer, ratio};
+    use crate::expr::{Expr, parse_expression};
+    use crate::{Options, Oscillator, solve};
+
+    fn certificate() -> CycleCertificate {
+        let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0").expect("an equation");
+        let options = Options {
+            order: Some(2),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).expect("a solution");
+        let at = "mu = 1/2".parse().expect("values");
+        certify_cycle(&oscillator, &solution, &at).expect("a certificate").0
+    }
+
+    /// A cycle nearby, of an equation that is neither odd nor one of polynomials.
+    fn skew() -> CycleCertificate {
+        let mut certificate = certificate();
+        let with = |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
+        certificate.damping = with(&certificate.damping, "exp(-x/2)/10 + x/5");
+        certificate.force = with(&certificate.force, "sin(x)/10 + x^2/20");
+        certificate.odd = false;
+        certificate.formula = None;
+        // Few digits, for series of functions of many take their time.
+        const LESS: usize = 64;
+        certificate.bits -= LESS;
+        certificate.reciprocal = certificate.reciprocal.clone() >> LESS;
+        for list in [&mut certificate.cosines, &mut certificate.sines] {
+            list.iter_mut().for_each(|units| *units = units.clone() >> LESS);
+        }
+        proved_by_some_block(&mut certificate, 30).expect("a proof");
+        certificate
+    }
+
+    #[test]
+    fn equations_that_are_not_of_polynomials() {
+        let certificate = skew();
+        let certified = super::super::check_cycle(&certificate).expect("a proof");
+        let equation = "x'' + x'*(-1/2 + x^2/2 + exp(-x/2)/10 + x/5) + x + sin(x)/10 + x^2/20 = 0";
+        let truth = followed(equation);
+        let omega = WORKING.nearest(&WORKING.fraction(&certified.frequency.middle));
+        assert!((omega / truth - 1.0).abs() < 1e-8, "{omega}, {truth}");
+        assert!(certified.proof.radius.value() < 1e-10, "{certified:?}");
+    }
+
+    /// omega of the cycle that a motion ends on, from the times at which it goes upwards through zero.
+    fn followed(equation: &str) -> f64 {
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let force =
+            crate::expr::CompiledFunction::new(&oscillator.force, &[oscillator.coordinate, oscillator.velocity()])
+                .expect("a function");
+        let field = |[x, v]: [f64; 2]| [v, -force.call(&[x, v])];
+        let step = |[x, v]: [f64; 2], h: f64| {
+            let at = |k: [f64; 2], part: f64| [x + part * h * k[0], v + part * h * k[1]];
+            let a = field([x, v]);
+            let b = field(at(a, 0.5));
+            let c = field(at(b, 0.5));
+            let d = field(at(c, 1.0));
+            let sum = |i: usize| (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]) / 6.0;
+            [x + h * sum(0), v + h * sum(1)]
+        };
+        let (mut state, mut t, mut crossings) = ([2.0, 0.0], 0.0, vec![]);
+        while t < 150.0 {
+            const STEP: f64 = 1.0 / 512.0;
+            let next = step(state, STEP);
+            if state[0] < 0.0 && next[0] >= 0.0 {
+                // The part of the step, by bisection.
+                let (mut low, mut high) = (0.0, STEP);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if step(state, middle)[0] < 0.0 {
+                        low = middle
+                    } else {
+                        high = middle
+                    }
+                }
+                crossings.push(t + low);
+            }
+            (state, t) = (next, t + STEP);
+        }
+        let last = &crossings[crossings.len() - 6..];
+        std::f64::consts::TAU * 5.0 / (last[5] - last[0])
+    }
+
+    /// The cosine or sine of a harmonic.
+    fn wave(wave: Wave) -> FourierSeries {
+        let mut balls = vec![Ball::zero(); wave.harmonic()];
+        balls.push(WORKING.integer(1));
+        match wave {
+            Wave::Cosine(_) => FourierSeries::exactly(balls, vec![]),
+            Wave::Sine(_) => FourierSeries::exactly(vec![], balls),
+        }
+    }
+
+    /// F at a motion and p, as the products of series that it is.
+    struct Place {
+        damping: FourierSeries,
+        slope: FourierSeries,
+        by_reciprocal: FourierSeries,
+        reciprocal: FourierSeries,
+    }
+
+    impl Place {
+        fn of(certificate: &CycleCertificate, motion: &FourierSeries, reciprocal: &Ball) -> Self {
+            let value = |expression| along(expression, motion).expect("a value");
+            let slope = certificate.force.differentiate(coordinate()).expect("a slope");
+            let reciprocal = FourierSeries::constant(reciprocal.clone());
+            let damping = value(&certificate.damping);
+            let drag = damping.product(&motion.derivative());
+            Self {
+                by_reciprocal: drag.sum(&reciprocal.product(&value(&certificate.force)).scaled(2)),
+                slope: value(&slope),
+                damping,
+                reciprocal,
+            }
+        }
+
+        /// DF on a direction, `None` that of p.
+        fn derivative(&self, direction: Option<Wave>) -> FourierSeries {
+            let Some(direction) = direction else {
+                return self.by_reciprocal.clone();
+            };
+            let direction = wave(direction);
+            let drag = self.damping.product(&direction).without_tail().derivative();
+            let force = self.reciprocal.product(&self.slope.product(&direction));
+            let bent = self.reciprocal.product(&drag.sum(&force));
+            direction.derivative().derivative().sum(&bent)
+        }
+    }
+
+    /// The norm of B of a series, less a direction.
+    fn size_of_image(system: &System, series: &FourierSeries, less: Option<Option<Wave>>) -> f64 {
+        let block = &system.equations.block;
+        let vector: Vec<Ball> = block.iter().map(|wave| series.coefficient(*wave)).collect();
+        let mut image = image(&system.inverse.entries, &vector, WORKING);
+        let place = |direction: Option<Wave>| match direction {
+            None => Some(0),
+            Some(direction) => block[1..]
+                .iter()
+                .position(|wave| *wave == direction)
+                .map(|place| place + 1),
+        };
+        let mut beyond = 0.0;
+        for row in system.equations.beyond(0, series.length()) {
+            let own = if less == Some(Some(row)) { 1.0 } else { 0.0 };
+            beyond += (-WORKING.nearest(&series.coefficient(row)) / f64::from(row.squared()) - own).abs();
+        }
+        if let Some(place) = less.and_then(place) {
+            image[place] = WORKING.difference(&image[place], &WORKING.integer(1));
+        }
+        beyond + system.inverse.norm(&image, WORKING).value()
+    }
+
+    /// Every direction up to a harmonic, that of p first; with the weight that it has in the norm.
+    fn directions(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
+        let block = system.equations.block[1..].iter().copied();
+        let waves = block
+            .chain(system.equations.beyond(0, highest))
+            .map(|wave| (Some(wave), 1.0));
+        [(None, system.inverse.sigma.value())]
+            .into_iter()
+            .chain(waves)
+            .collect()
+    }
+
+    /// The largest column of `1 - B DF`, by its definition, and that of p.
+    fn columns(certificate: &CycleCertificate) -> (System<'_>, f64, f64) {
+        let system = System::of(certificate).expect("a system");
+        let place = Place::of(certificate, &system.equations.motion, &system.equations.reciprocal);
+        let column = |(direction, weight): &(Option<Wave>, f64)| {
+            size_of_image(&system, &place.derivative(*direction), Some(*direction)) / weight
+        };
+        let sizes: Vec<f64> = directions(&system, 3 * certificate.highest + 90)
+            .iter()
+            .map(column)
+            .collect();
+        let of_reciprocal = sizes[0];
+        (system, sizes.into_iter().fold(0.0, f64::max), of_reciprocal)
+    }
+
+    #[test]
+    fn no_column_is_larger_than_the_bound() {
+        for sound in [certificate(), skew()] {
+            let bound = |system: &System| {
+                let derivative = system.equations.derivative().expect("a derivative");
+                system.contraction(&derivative).map_or(f64::INFINITY, Bound::value)
+            };
+            let (system, largest, _) = columns(&sound);
+            let proved = bound(&system);
+            assert!(
+                largest <= proved && proved < 1.05 * largest.max(0.19),
+                "{largest}, {proved}"
+            );
+            // The column of p is the largest where its weight is small, and one of the block where its inverse is another.
+            let mut light = sound.clone();
+            light.sigma = -34;
+            let (system, largest, of_reciprocal) = columns(&light);
+            assert!(largest == of_reciprocal && largest <= bound(&system), "{largest}");
+            let mut spoilt = sound.clone();
+            for row in &mut spoilt.inverse {
+                row[3] = &row[3] * Integer::from(3) / Integer::from(2);
+            }
+            let (system, largest, _) = columns(&spoilt);
+            assert!(largest > 0.3 && largest <= bound(&system), "{largest}");
+        }
+    }
+
+    #[test]
+    fn the_second_derivative_is_no_larger_than_the_bound() {
+        let mut certificate = skew();
+        let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
+        // With each of these weights another term is the largest.
+        let mut kinds = vec![];
+        for sigma in [-8, 1, 8] {
+            certificate.sigma = sigma;
+            let system = System::of(&certificate).expect("a system");
+            let ball = system.equations.motion.clone().widened(h);
+            let x = coordinate();
+            let slope = |expression: &Expr| expression.differentiate(x).expect("a slope");
+            let all = [
+                certificate.damping.clone(),
+                slope(&certificate.damping),
+                certificate.force.clone(),
+                slope(&certificate.force),
+                slope(&slope(&certificate.force)),
+            ];
+            let bound = system
+                .curvature(all.map(|one| along(&one, &ball).expect("a value").norm()), h)
+                .value();
+            let directions = directions(&system, certificate.highest + 6);
+            let own = Place::of(&certificate, &system.equations.motion, &system.equations.reciprocal);
+            let mut largest = (0.0, 0);
+            for (from, weight) in directions.iter().take(8) {
+                let mut motion = system.equations.motion.clone();
+                let mut reciprocal = system.equations.reciprocal.clone();
+                match from {
+                    None => reciprocal = WORKING.sum(&reciprocal, &within),
+                    Some(from) => motion = motion.sum(&wave(*from).product(&FourierSeries::constant(within.clone()))),
+                }
+                let moved = Place::of(&certificate, &motion, &reciprocal);
+                for (along, other) in &directions {
+                    let change = moved.derivative(*along).difference(&own.derivative(*along));
+                    let size = size_of_image(&system, &change, None) / (h.value() * weight * other);
+                    let kind = usize::from(from.is_some()) + usize::from(along.is_some());
+                    if size > largest.0 {
+                        largest = (size, kind);
+                    }
+                }
+            }
+            assert!(largest.0 <= bound, "{largest:?}, {bound}");
+            kinds.push(largest.1);
+        }
+        assert_eq!(kinds.first(), Some(&0));
+        assert_eq!(kinds.last(), Some(&2));
+    }
+}

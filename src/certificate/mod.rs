@@ -22,6 +22,7 @@ mod cycle;
 mod force;
 mod formula;
 mod fourier_series;
+mod impact;
 mod radii_polynomial;
 mod theorem;
 mod validity;
@@ -31,6 +32,7 @@ use num_traits::{Signed as _, Zero as _};
 pub use candidate::{NotCertified, certify};
 pub use cycle::{CycleCertificate, certify_cycle, check_cycle};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
+pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{Beyond, Validity, validity};
 

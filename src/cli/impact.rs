@@ -1,11 +1,13 @@
 //! `lindstedt impact [FILE]`.
 
 use clap::Args;
+use lindstedt::certificate::enclose_impact;
+use lindstedt::exact::Rational;
 use lindstedt::export::json;
 use lindstedt::expr::parse_expression;
-use lindstedt::impact::{Impact, Setup, compare, solve};
+use lindstedt::impact::{Impact, Setup, Side, compare, solve};
 use lindstedt::problem::{BarrierSide, Problem};
-use lindstedt::report;
+use lindstedt::report::{self, ImpactCertificateReport};
 use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, no_such};
@@ -42,6 +44,9 @@ pub struct Arguments {
     /// Every method in one table, each at its lowest order that passes
     #[arg(long)]
     compare: bool,
+    /// Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how far each closed form is off
+    #[arg(long, conflicts_with = "compare")]
+    certify: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -53,6 +58,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let setup = Setup { tolerance, ..setup };
     if arguments.compare {
         return every_method(setup, &arguments.common);
+    }
+    if arguments.certify {
+        return proved(setup, &arguments.common);
     }
     let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
     let answer = Answer {
@@ -69,6 +77,66 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         verdict: Some(Verdict::of(passes)),
         ..answer.outcome(&arguments.common)?
     })
+}
+
+/// What is proved of the impact, and with it of its closed forms.
+fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
+    let foreign = [
+        ("an equation of its own", setup.swing.is_some()),
+        ("a force of its own", setup.force.is_some()),
+        ("a contact that loses energy", setup.loss.is_some()),
+        ("a table of contact laws", setup.every_contact_law),
+    ];
+    if let Some((what, _)) = foreign.iter().find(|(_, given)| *given) {
+        return Err(Failure::Usage(format!(
+            "--certify proves the impact of equation (9), a pendulum against a barrier of Hertz that loses nothing, not {what}: leave out \
+             --certify, whose place Runge-Kutta takes"
+        )));
+    }
+    if common.draws() {
+        return Err(Failure::Usage(
+            "--certify draws no picture: leave it out, or the picture".to_owned(),
+        ));
+    }
+    if common.format() == Format::Json {
+        return Err(Failure::Usage(
+            "--certify has no JSON: everything is proved again from A, xc and gamma; print it as text, LaTeX or a page"
+                .to_owned(),
+        ));
+    }
+    let tolerance = tolerance(common);
+    let towards = match setup.side {
+        Side::Right => 1.0,
+        Side::Left => -1.0,
+    };
+    let exact = [-towards * setup.release, towards * setup.barrier, setup.stiffness].map(as_written);
+    let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
+        return Err(Failure::Refused("a number of the impact is not finite".to_owned()));
+    };
+    let enclosure = enclose_impact(amplitude, barrier, stiffness).map_err(|error| Failure::refused(&error, None))?;
+    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
+    let report = ImpactCertificateReport {
+        impact: &impact,
+        enclosure: &enclosure,
+        exact: [amplitude, barrier, stiffness],
+        tolerance,
+    };
+    let answer = Answer {
+        document: &report::impact_certificate(&report),
+        width: width(common.output.as_deref()),
+        picture: None,
+        other: &no_such,
+    };
+    let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
+    Ok(Outcome {
+        verdict: Some(Verdict::of(passes)),
+        ..answer.outcome(common)?
+    })
+}
+
+/// A double as the fraction that its decimals say.
+fn as_written(value: f64) -> Option<Rational> {
+    parse_expression(&value.to_string()).ok()?.as_number().cloned()
 }
 
 /// The table of methods.
@@ -155,7 +223,7 @@ fn picture(_: &Impact) -> Result<String, Failure> {
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
-    use lindstedt::impact::{Reading, SampledMotion, Side};
+    use lindstedt::impact::{Reading, SampledMotion};
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);

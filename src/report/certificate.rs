@@ -284,7 +284,7 @@ fn stability(exponent: &Enclosure) -> String {
 }
 
 /// The number with the digits that are known, and how far it may be from what is printed.
-fn enclosed(enclosure: &Enclosure) -> String {
+pub(super) fn enclosed(enclosure: &Enclosure) -> String {
     /// More digits are not written, however many are known.
     const MOST: i32 = 34;
     let radius = enclosure.radius.value();
@@ -306,7 +306,7 @@ fn enclosed(enclosure: &Enclosure) -> String {
 }
 
 /// A number with its two ends, in one where they agree in what is printed.
-fn between(range: Range, unit: &str) -> String {
+pub(super) fn between(range: Range, unit: &str) -> String {
     let middle = decimal(range.lower);
     if range.upper == 0.0 {
         return "none".to_owned();

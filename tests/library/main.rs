@@ -18,6 +18,7 @@ mod hill;
 mod hilltop;
 mod homotopy;
 mod hostile;
+mod impact_certificate;
 mod inertia;
 mod judge;
 mod layers;

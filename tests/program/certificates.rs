@@ -348,3 +348,41 @@ fn what_is_asked_for_in_vain_is_said() {
         assert!(errors.contains(expected), "{arguments:?}: {errors}");
     }
 }
+
+/// The same impact from the other side is proved to be the same; what is no impact of equation (9) is refused.
+#[test]
+fn an_impact_is_proved_from_either_side() {
+    let numbers = |arguments: &[&str]| {
+        let output = run(&[&["impact", "--certify"], arguments].concat());
+        let text = String::from_utf8(output.stdout).expect("text");
+        let (_, proved) = text.split_once("\nProved\n").expect("a proof");
+        let (proved, _) = proved.split_once("\n\n").expect("more");
+        proved.to_owned()
+    };
+    let right = numbers(&["--at", "gamma=1e6", "--at", "xc=0.323"]);
+    assert_eq!(numbers(&["--at", "gamma=1e6", "--at", "xc=-0.323", "--left"]), right);
+    assert!(
+        right.contains("0.0121060270598") && right.contains("2.06440760858"),
+        "{right}"
+    );
+    for (arguments, code, expected) in [
+        (["--certify", "--compare"].as_slice(), 2, "cannot be used with"),
+        (&["--certify", "--plot", "proof.svg"], 2, "draws no picture"),
+        (&["--certify", "--format", "json"], 2, "has no JSON"),
+        (&["--certify", "--format", "csv"], 2, "table"),
+        (
+            &["--certify", "examples/impact-duffing.toml"],
+            2,
+            "an equation of its own",
+        ),
+        (&["--certify", "examples/impact-restitution.toml"], 2, "loses energy"),
+        (&["--certify", "--at", "A=0.2"], 1, "within reach"),
+        (&["--certify", "--order", "2", "--tolerance", "1e-4"], 3, ""),
+        (&["--certify", "--tolerance", "0.001"], 0, ""),
+    ] {
+        let output = run(&[&["impact"], arguments].concat());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
+        assert!(errors.contains(expected), "{arguments:?}: {errors}");
+    }
+}

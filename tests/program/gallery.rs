@@ -407,6 +407,11 @@ fn every_method_on_one_impact_prints_what_it_printed() {
             "impact-compare-latex",
             output(&["impact", "--compare", "--format", "latex"])
         );
+        insta::assert_snapshot!("impact-certify-text", output(&["impact", "--certify"]));
+        insta::assert_snapshot!(
+            "impact-certify-latex",
+            output(&["impact", "--certify", "--format", "latex"])
+        );
         let mut document: Value =
             serde_json::from_str(&output(&["impact", "--compare", "--format", "json"])).expect("the output is JSON");
         rounded(&mut document);

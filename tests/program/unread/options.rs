@@ -143,6 +143,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--plot", "-"]),
         ("impact", vec![], vec!["--tolerance", "1e-9"]),
         ("impact", vec![], vec!["--timeout", "1e-9"]),
+        ("impact", vec![], vec!["--certify"]),
         ("impact", vec![], vec!["--quiet"]),
         ("simulate", simulated[1..].to_vec(), vec!["--sample", "1"]),
         ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),

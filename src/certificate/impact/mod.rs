@@ -1,0 +1,170 @@
+//! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9), its three phases in numbers that are proved.
+//!
+//! ```text
+//! x'' + sin x + gamma (x - xc)^(3/2) H(x - xc) = 0,     x(0) = -A,  x'(0) = 0
+//! v^2 = 2 (cos xc - cos A)
+//! t1 = K(k) + F(phi, k),     k = sin(A/2),   sin phi = sin(xc/2)/k
+//! T = 2 t1 + (duration of the contact)
+//! ```
+//!
+//! The force is not analytic where the contact begins, so that the cosine series of a whole period prove nothing; in each phase the energy is kept,
+//! and what it leaves are two integrals ([`elliptic`], [`contact`]). In: numbers as fractions. Out: every number that is asked of an impact, with the distance that it
+//! may be off. Some 0.1 s.
+//!
+//! Source: equation (9) of the paper; for enclosures phase by phase see W. Tucker: Validated Numerics, Princeton (2011).
+
+mod contact;
+mod elliptic;
+
+use num_traits::Signed as _;
+
+use self::contact::{Contact, is_positive, placed, sine_and_cosine};
+use super::fourier_series::WORKING;
+use super::{Enclosure, Range};
+use crate::exact::Rational;
+use crate::exact::ball::Ball;
+use crate::exact::bound::Bound;
+use crate::exact::rational::from_f64;
+
+/// What is proved of an impact; times in units of 1/omega, angles in rad.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ImpactEnclosure {
+    /// From the release to the touch.
+    pub time_to_contact: Enclosure,
+    /// At the touch.
+    pub speed: Enclosure,
+    /// The greatest depth.
+    pub penetration: Enclosure,
+    /// Of the contact.
+    pub duration: Enclosure,
+    /// From the release to the return.
+    pub period: Enclosure,
+}
+
+impl ImpactEnclosure {
+    /// The five numbers with their names, in the order of a report.
+    pub fn in_order(&self) -> [(&'static str, &Enclosure); 5] {
+        [
+            ("time to contact", &self.time_to_contact),
+            ("speed", &self.speed),
+            ("penetration", &self.penetration),
+            ("duration", &self.duration),
+            ("period", &self.period),
+        ]
+    }
+}
+
+/// Why an impact is not enclosed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotEnclosed {
+    /// The release is no swing.
+    #[error("the release -A must be a swing below the top: 0 < A < pi")]
+    Release,
+    /// The barrier is out of reach, or too far out.
+    #[error("the barrier must be within reach and below the horizontal: -A < xc < A, |xc| < pi/2")]
+    Barrier,
+    /// There is no barrier.
+    #[error("the stiffness gamma must be positive")]
+    Stiffness,
+    /// The depth goes beyond where it is known to be the only one.
+    #[error("the contact goes on beyond the horizontal, x = pi/2: its deepest point is not proved to be the only one")]
+    Deep,
+    /// The digits do not suffice.
+    #[error("the digits do not suffice: gamma is too small or too large for a proof")]
+    Digits,
+}
+
+/// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on its right.
+///
+/// ```
+/// use lindstedt::certificate::enclose_impact;
+/// use lindstedt::exact::Rational;
+///
+/// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
+/// let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &fraction(1_000_000, 1))?;
+/// assert!(impact.speed.radius.value() < 1e-30);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Where there is no such impact, or its numbers are not proved.
+pub fn enclose_impact(
+    amplitude: &Rational,
+    barrier: &Rational,
+    stiffness: &Rational,
+) -> Result<ImpactEnclosure, NotEnclosed> {
+    if !stiffness.is_positive() {
+        return Err(NotEnclosed::Stiffness);
+    }
+    let (pi, release) = (WORKING.pi(), WORKING.fraction(amplitude));
+    if !amplitude.is_positive() || !is_positive(&WORKING.difference(&pi, &release)) {
+        return Err(NotEnclosed::Release);
+    }
+    let horizontal = is_positive(&WORKING.difference(
+        &pi,
+        &WORKING.fraction(&(barrier.abs() * Rational::from_integer(2.into()))),
+    ));
+    if barrier.abs() >= *amplitude || !horizontal {
+        return Err(NotEnclosed::Barrier);
+    }
+    let (place, waves) = placed(barrier).ok_or(NotEnclosed::Digits)?;
+    let [_, cosine] = sine_and_cosine(&release).ok_or(NotEnclosed::Digits)?;
+    let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
+    let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
+    let time_to_contact = flight(amplitude, barrier).ok_or(NotEnclosed::Digits)?;
+    let contact = Contact {
+        barrier: place,
+        stiffness: WORKING.fraction(stiffness),
+        speed_squared,
+        waves,
+    };
+    let qm = contact.root_of_depth()?;
+    let duration = contact.duration(&qm)?;
+    let period = WORKING.sum(&WORKING.scaled(&time_to_contact, 2), &duration);
+    Ok(ImpactEnclosure {
+        time_to_contact: Enclosure::of(&time_to_contact),
+        speed: Enclosure::of(&speed),
+        penetration: Enclosure::of(&WORKING.product(&qm, &qm)),
+        duration: Enclosure::of(&duration),
+        period: Enclosure::of(&period),
+    })
+}
+
+/// The time from rest at `-amplitude` to `place`.
+fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
+    let half = Rational::new(1.into(), 2.into());
+    let waves = |angle: &Rational| sine_and_cosine(&WORKING.fraction(&(angle * &half)));
+    let ([modulus, cosine], [sine, cosine_there]) = (waves(amplitude)?, waves(place)?);
+    let (one, squared) = (WORKING.integer(1), |ball: &Ball| WORKING.product(ball, ball));
+    let quarter = elliptic::carlson(&Ball::zero(), &squared(&cosine), &one)?;
+    let sine = WORKING.quotient(&sine, &modulus)?;
+    let rest = WORKING.difference(&one, &squared(&sine));
+    let beyond = elliptic::carlson(&rest, &squared(&cosine_there), &one)?;
+    Some(WORKING.sum(&quarter, &WORKING.product(&sine, &beyond)))
+}
+
+/// No more than a size whose bound this is, rounded up from the nearest double.
+const fn below(bound: Bound) -> f64 {
+    bound.value().next_down().next_down()
+}
+
+impl Enclosure {
+    /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all that is known where it is no number.
+    pub fn relative_error(&self, number: f64) -> Range {
+        let Some(exact) = from_f64(number) else {
+            return Range {
+                lower: 0.0,
+                upper: f64::INFINITY,
+            };
+        };
+        let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
+        let apart = Bound::of_fraction(&(exact - &self.middle));
+        let (closest, farthest) = ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
+        Range {
+            lower: (closest / (truth + radius).value()).next_down().max(0.0),
+            upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
+        }
+    }
+}

@@ -54,7 +54,7 @@ fn summary(audit: &Audit) -> Vec<Block<'_>> {
     };
     vec![
         Block::Heading(title),
-        Block::Note(format!("{} claims: {}", audit.findings.len(), counts.join(", "))),
+        Block::Note(format!("{}: {}", claims(audit.findings.len()), counts.join(", "))),
         Block::Note(expected),
     ]
 }
@@ -192,4 +192,12 @@ fn story(finding: &Finding) -> Vec<Block<'_>> {
         blocks.push(Block::Sentence(format!("expected: {expected}")));
     }
     blocks
+}
+
+/// So many claims, in words.
+fn claims(count: usize) -> String {
+    match count {
+        1 => "1 claim".to_owned(),
+        count => format!("{count} claims"),
+    }
 }

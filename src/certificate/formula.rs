@@ -38,6 +38,28 @@ impl Enclosure {
             radius: ball.radius,
         }
     }
+
+    /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all that is known where it is no number.
+    pub fn relative_error(&self, number: f64) -> Range {
+        let Some(exact) = from_f64(number) else {
+            return Range {
+                lower: 0.0,
+                upper: f64::INFINITY,
+            };
+        };
+        let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
+        let apart = Bound::of_fraction(&(exact - &self.middle));
+        let (closest, farthest) = ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
+        Range {
+            lower: (closest / (truth + radius).value()).next_down().max(0.0),
+            upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
+        }
+    }
+}
+
+/// No more than a size whose bound this is, rounded up from the nearest double.
+const fn below(bound: Bound) -> f64 {
+    bound.value().next_down().next_down()
 }
 
 /// The ends between which a size is.

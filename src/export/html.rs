@@ -149,18 +149,21 @@ impl Body<'_> {
                 return;
             }
         }
-        match (latex::setting(block), block) {
-            // The columns that only text and pages have room for.
-            (_, Block::Methods { rows, tolerance, .. }) => self.table(&methods(rows, *tolerance)),
-            (_, Block::Reading { words, .. }) => self.html(&format!("<h3>{}</h3>\n", escaped(words))),
-            (Setting::Table(table), _) => self.table(&table),
-            (Setting::Equations(mut rows), _) => {
-                if let (Some(aside), Some(last)) = (aside(block), rows.last_mut()) {
-                    last.push_str(&format!(" \\qquad \\text{{({})}}", latex::words(&aside)));
+        match block {
+            // With the columns that only text and pages have room for.
+            Block::Methods { rows, tolerance, .. } => self.table(&methods(rows, *tolerance)),
+            // A heading here, a row of its equations in an article.
+            Block::Reading { .. } => {}
+            _ => match latex::setting(block) {
+                Setting::Table(table) => self.table(&table),
+                Setting::Equations(mut rows) => {
+                    if let (Some(aside), Some(last)) = (aside(block), rows.last_mut()) {
+                        last.push_str(&format!(" \\qquad \\text{{({})}}", latex::words(aside)));
+                    }
+                    self.rows.extend(rows);
                 }
-                self.rows.extend(rows);
-            }
-            (Setting::Words, _) => {}
+                Setting::Words => {}
+            },
         }
         let words = self.words(block);
         if !words.is_empty() {
@@ -180,7 +183,7 @@ impl Body<'_> {
                     escaped(amplitude)
                 )
             }
-            Block::Heading(words) => heading(words),
+            Block::Heading(words) | Block::Reading { words, .. } => heading(words),
             Block::Note(words)
             | Block::Remark(words)
             | Block::Sentence(words)
@@ -243,7 +246,23 @@ impl Body<'_> {
                 paragraph(text::impact::shortcoming(*reading, errors, cause).trim())
             }
             // Formulas and tables have been set.
-            _ => String::new(),
+            Block::Question(_)
+            | Block::QuestionAsTyped(_)
+            | Block::Law { .. }
+            | Block::Relation(_)
+            | Block::Equality { .. }
+            | Block::Line(_)
+            | Block::CycleAmplitude { .. }
+            | Block::Definition(_)
+            | Block::Value { .. }
+            | Block::Methods { .. }
+            | Block::Table { .. }
+            | Block::Fitted { .. }
+            | Block::Phase { .. }
+            | Block::ContactLaws { .. }
+            | Block::ImpactMethods { .. }
+            | Block::SiValue { .. }
+            | Block::SiQuantities { .. } => String::new(),
         }
     }
 
@@ -288,10 +307,10 @@ impl Body<'_> {
 }
 
 /// What is said beside an equation.
-fn aside(block: &Block) -> Option<String> {
+fn aside<'a>(block: &Block<'a>) -> Option<&'a str> {
     match block {
-        Block::Value { source, .. } => source.map(str::to_owned),
-        Block::SiValue { words, .. } => Some((*words).to_owned()),
+        Block::Value { source, .. } => *source,
+        Block::SiValue { words, .. } => Some(words),
         _ => None,
     }
 }

@@ -9,8 +9,9 @@
 //! T = 8 sqrt(qm) int_0^1 q/sqrt(H(q)) dw,     q = qm (1 - w^2)
 //! ```
 //!
-//! Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm is the only root, and two signs enclose it. The integral is taken piece by piece
-//! by the Taylor series of the integrand about the middle; what is left is at most the next coefficient over the whole piece (Corliss and Rall).
+//! Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm is the only root, and two signs
+//! enclose it. The integral is taken piece by piece by the Taylor series of the integrand about the middle; what is left is at most
+//! the next coefficient over the whole piece (Corliss and Rall).
 //!
 //! In: the place of the barrier, its stiffness, the speed. Out: depth and duration as balls. A piece costs three products of series.
 //!

@@ -7,9 +7,9 @@
 //! T = 2 t1 + (duration of the contact)
 //! ```
 //!
-//! The force is not analytic where the contact begins, so that the cosine series of a whole period prove nothing; in each phase the energy is kept,
-//! and what it leaves are two integrals ([`elliptic`], [`contact`]). In: numbers as fractions. Out: every number that is asked of an impact, with the distance that it
-//! may be off. Some 0.1 s.
+//! The force is not analytic where the contact begins, so that the cosine series of a whole period prove nothing; in each phase the
+//! energy is kept, and what it leaves are two integrals (`elliptic.rs`, `contact.rs`). In: numbers as fractions. Out: every number
+//! that is asked of an impact, with the distance that it may be off. Some 0.1 s.
 //!
 //! Source: equation (9) of the paper; for enclosures phase by phase see W. Tucker: Validated Numerics, Princeton (2011).
 
@@ -19,12 +19,10 @@ mod elliptic;
 use num_traits::Signed as _;
 
 use self::contact::{Contact, is_positive, placed, sine_and_cosine};
+use super::Enclosure;
 use super::fourier_series::WORKING;
-use super::{Enclosure, Range};
 use crate::exact::Rational;
 use crate::exact::ball::Ball;
-use crate::exact::bound::Bound;
-use crate::exact::rational::from_f64;
 
 /// What is proved of an impact; times in units of 1/omega, angles in rad.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,28 +141,4 @@ fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
     let rest = WORKING.difference(&one, &squared(&sine));
     let beyond = elliptic::carlson(&rest, &squared(&cosine_there), &one)?;
     Some(WORKING.sum(&quarter, &WORKING.product(&sine, &beyond)))
-}
-
-/// No more than a size whose bound this is, rounded up from the nearest double.
-const fn below(bound: Bound) -> f64 {
-    bound.value().next_down().next_down()
-}
-
-impl Enclosure {
-    /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all that is known where it is no number.
-    pub fn relative_error(&self, number: f64) -> Range {
-        let Some(exact) = from_f64(number) else {
-            return Range {
-                lower: 0.0,
-                upper: f64::INFINITY,
-            };
-        };
-        let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
-        let apart = Bound::of_fraction(&(exact - &self.middle));
-        let (closest, farthest) = ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
-        Range {
-            lower: (closest / (truth + radius).value()).next_down().max(0.0),
-            upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
-        }
-    }
 }

@@ -42,7 +42,26 @@ impl Asked<'_> {
                 self.keep(balance, path, &mut paths);
             }
         }
+        for index in 0..paths.len() {
+            self.mark_mirrored(balance, &mut paths, index);
+        }
         paths
+    }
+
+    /// Marks a branch whose mirror image nobody has come by: where the image of one of its motions is a motion of the same equation and
+    /// on no branch itself.
+    fn mark_mirrored(&self, balance: &Balance, paths: &mut [Path], index: usize) {
+        const SAME: f64 = 1e-6;
+        let nodes = &paths[index].nodes;
+        let middle = &nodes[nodes.len() / 2];
+        let period = std::f64::consts::TAU / self.question.periods as f64;
+        let (parameter, image) = (middle.parameter, -later(&middle.coefficients, 0.5 * period));
+        let is_motion = balance
+            .solve(&image, parameter)
+            .is_some_and(|found| (&found - &image).norm() <= SAME * image.norm());
+        if is_motion {
+            self.was_known(balance, paths, &image, parameter);
+        }
     }
 
     /// Whether a motion is known; where it is a mirror image, its branch is marked.

@@ -296,6 +296,50 @@ impl Walk {
         })
     }
 
+    /// The motions by which a branch that ends with the range comes back to it, where it is followed beyond as far as `wide`: a
+    /// resonance whose peak lies outside has two of its branches inside, and one of them may be hard to come by otherwise.
+    pub(super) fn returns(&self, balance: &Balance, path: &Path, wide: [f64; 2]) -> Vec<(DVector<f64>, f64)> {
+        /// Points beyond the range.
+        const MOST: usize = 200;
+        let outward = |(node, turn): (&Node, f64)| Node {
+            tangent: &node.tangent * turn,
+            ..node.clone()
+        };
+        let ends = [
+            path.nodes.first().map(|node| (node, -1.0)),
+            path.nodes.last().map(|node| (node, 1.0)),
+        ];
+        let ends = ends
+            .into_iter()
+            .zip(path.ends)
+            .filter(|(_, end)| *end == BranchEnd::Range);
+        let walk = Self {
+            range: wide,
+            most: MOST,
+            ..*self
+        };
+        let [low, high] = self.range;
+        let back = |pair: &[Node]| {
+            let [from, to] = pair else { return None };
+            let inside = to.parameter.clamp(low, high);
+            let part = from.part_of_way(to, inside)?;
+            // A point on the bound itself has not left the range yet.
+            let left = from.parameter.clamp(low, high) != from.parameter;
+            let guess = &from.coefficients + (&to.coefficients - &from.coefficients) * part;
+            let found = left.then(|| balance.solve(&guess, inside)).flatten()?;
+            Some((found, inside))
+        };
+        ends.filter_map(|(end, _)| end.map(outward))
+            .flat_map(|start| {
+                walk.follow(balance, start)
+                    .0
+                    .windows(2)
+                    .filter_map(back)
+                    .collect::<Vec<_>>()
+            })
+            .collect()
+    }
+
     /// Whether the last harmonics that are kept are as large as if there were as many again.
     pub(super) fn is_cut_off(&self, balance: &Balance, coefficients: &DVector<f64>) -> bool {
         /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.

@@ -67,6 +67,12 @@ impl Asked<'_> {
             true => self.branches(&balance, &seeds, size),
             false => vec![],
         };
+        for path in &first {
+            for (found, parameter) in self.walk(&seeds, size).returns(&balance, path, self.surroundings()) {
+                seeds.push(self.seed(&balance, &found, parameter));
+                size = size.max(balance.extent(&found));
+            }
+        }
         let widest = first
             .iter()
             .flat_map(|path| &path.nodes)
@@ -99,24 +105,38 @@ impl Asked<'_> {
 
     /// The motion that a balance finds from rest at a place, and its extent; nothing where it finds none.
     fn balanced_from_rest(&self, balance: &Balance, place: f64, parameter: f64) -> Option<(Seed, f64)> {
-        const SAMPLES: usize = 256;
         if !self.driven.is_balanced() {
             return None;
         }
         let mut still = DVector::zeros(balance.size());
         still[0] = place;
         let found = balance.solve(&still, parameter)?;
+        Some((self.seed(balance, &found, parameter), balance.extent(&found)))
+    }
+
+    /// A motion of a balance to begin with.
+    fn seed(&self, balance: &Balance, found: &DVector<f64>, parameter: f64) -> Seed {
+        const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
             let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
-            balance.at(&found, parameter, phase)[0]
+            balance.at(found, parameter, phase)[0]
         });
-        let seed = Seed {
+        Seed {
             parameter,
             frequency: self.driven.frequency_at(parameter),
             positions: positions.collect(),
             start: None,
-        };
-        Some((seed, balance.extent(&found)))
+        }
+    }
+
+    /// How far beyond the range branches are followed that might come back: not to where the parameter has another sign.
+    fn surroundings(&self) -> [f64; 2] {
+        const TIMES: f64 = 4.0;
+        let [low, high] = self.question.range;
+        let beyond = TIMES * (high - low).max(low.abs()).max(high.abs());
+        let lowest = if low >= 0.0 { low / TIMES } else { low - beyond };
+        let highest = if high <= 0.0 { high / TIMES } else { high + beyond };
+        [lowest, highest]
     }
 
     /// Adds where a simulation settles, or says that it does not repeat itself.

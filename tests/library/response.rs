@@ -144,6 +144,37 @@ fn folds_of_one_harmonic_are_those_of_the_closed_form() {
     }
 }
 
+/// Where the range begins between the folds, or ends there, all three motions are found: as many as `s ((1 - Omega^2 + 3 k s/4)^2 + (c Omega)^2) = F^2`
+/// has roots. Neither rest nor a simulation need lead to the resonant ones.
+#[test]
+fn a_narrow_range_has_every_motion_of_its_inside() {
+    let equation = "x'' + c*x' + x + k*x^3 - F*cos(Omega*t) = 0";
+    for (range, parameters) in [
+        ([1.2, 1.3], vec![1.205, 1.25]),
+        ([1.0, 1.2], vec![1.05, 1.1, 1.18]),
+        ([1.19, 1.3], vec![1.195, 1.21, 1.22]),
+        ([1.19, 1.2], vec![1.195]),
+    ] {
+        let found = respond(&Question {
+            harmonics: Some(1),
+            ..question(equation, "Omega", range, "c = 1/10, k = 1/10, F = 3/10")
+        })
+        .expect("a response");
+        for omega in parameters {
+            let excess = |s: f64| {
+                let stiffness = 1.0 - omega * omega + 0.075 * s;
+                s * (stiffness * stiffness + (0.1 * omega).powi(2)) - 0.09
+            };
+            let places: Vec<f64> = (0..=20_000).map(|step| f64::from(step) * 1e-3).collect();
+            let roots = places
+                .windows(2)
+                .filter(|pair| excess(pair[0]) * excess(pair[1]) < 0.0)
+                .count();
+            assert_eq!(passing(&found, omega).len(), roots, "{range:?} at {omega}");
+        }
+    }
+}
+
 #[test]
 fn both_stable_motions_are_where_a_simulation_settles() {
     let found = duffing();
@@ -218,10 +249,11 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     let wells = "x'' + x'/4 - x + x^3 - F*cos(Omega*t) = 0";
     let found = response(wells, "F", [0.05, 0.2], "Omega = 1");
     assert_eq!(found.verdict, Verdict::Pass);
+    let mirrored: Vec<bool> = found.branches.iter().map(|branch| branch.mirrored).collect();
     assert_eq!(
-        found.branches.iter().filter(|branch| branch.mirrored).count(),
-        1,
-        "one well stands for both"
+        mirrored,
+        [true, false, true],
+        "one well stands for both, and between them is one motion"
     );
     let doublings = places(&found, BifurcationKind::PeriodDoubling);
     let [doubling] = &doublings[..] else {

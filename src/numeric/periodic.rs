@@ -8,7 +8,12 @@
 //! multipliers: the eigenvalues of dM/dy;      the motion attracts where both lie inside the unit circle
 //! ```
 //!
-//! The start is only where the search begins: the motion found is one of the equation alone, stable or not.
+//! The start is only where the search begins: the motion found is one of the equation alone, stable or not. Motions that are known
+//! already are kept away from by deflation (P. E. Farrell, A. Birkisson, S. W. Funke, SIAM J. Sci. Comput. 37, 2015, A2026):
+//!
+//! ```text
+//! Newton on  eta(y) (M(y) - y),  eta = product of (1 + 1/|y - y_known|^2):  the step of Newton's method over 1 - (grad eta . step)/eta
+//! ```
 
 use std::f64::consts::TAU;
 
@@ -88,6 +93,20 @@ pub fn periodic_motion(
     start: [f64; 2],
     size: f64,
 ) -> Result<PeriodicMotion, NoPeriodicMotion> {
+    another_periodic_motion(acceleration, period, start, size, &[])
+}
+
+/// A periodic motion near a start that is none of those that begin at the known places.
+///
+/// # Errors
+/// None was found near there, or the motion cannot be followed.
+pub fn another_periodic_motion(
+    acceleration: &dyn Fn(f64, f64, f64) -> f64,
+    period: f64,
+    start: [f64; 2],
+    size: f64,
+    known: &[[f64; 2]],
+) -> Result<PeriodicMotion, NoPeriodicMotion> {
     const STEPS: usize = 30;
     const SETTLED: f64 = 1e-11;
     /// The finite differences of the map, beside the size of the motion: far above the error of integration.
@@ -112,6 +131,15 @@ pub fn periodic_motion(
         };
         Ok(Matrix2::from_columns(&[column(0)?, column(1)?]))
     };
+    // grad eta . step over eta
+    let pull = |place: Vector2<f64>, step: Vector2<f64>| -> f64 {
+        let of_one = |[x, v]: &[f64; 2]| {
+            let apart = Vector2::new((place[0] - x) / scale[0], (place[1] - v) / scale[1]);
+            let square = apart.norm_squared();
+            -2.0 * (apart[0] * step[0] / scale[0] + apart[1] * step[1] / scale[1]) / (square * (square + 1.0))
+        };
+        known.iter().map(of_one).sum()
+    };
     let mut place = Vector2::new(start[0], start[1]);
     for _ in 0..STEPS {
         let excess = end(&path(place)?) - place;
@@ -120,6 +148,7 @@ pub fn periodic_motion(
             break;
         };
         let step = inverse * excess;
+        let step = step / (1.0 + pull(place, step));
         // A step far beyond the size of the motion leads to another one, or nowhere.
         let length = (step[0] / scale[0]).hypot(step[1] / scale[1]);
         if !length.is_finite() {

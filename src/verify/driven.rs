@@ -10,6 +10,9 @@
 //! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, the detuning among it
 //! ```
 //!
+//! Where two steady motions lead to one true motion, it belongs to the nearer of those that are as stable; for the other one the search goes on with the motions that
+//! are known kept away from, and what it finds counts where it is nearer to this steady motion than to any other that is as stable.
+//!
 //! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by `delta^n`, which is the slope to expect. It may
 //! be more where a coefficient of the error vanishes.
 
@@ -24,7 +27,7 @@ use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
 use crate::numeric::ode::{Options, State, integrate};
-use crate::numeric::periodic::{PeriodicMotion, periodic_motion};
+use crate::numeric::periodic::{PeriodicMotion, another_periodic_motion, periodic_motion};
 use crate::oscillator::Oscillator;
 use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::solution::{Response, Solution};
@@ -112,7 +115,7 @@ impl<'a> Question<'a> {
         Ok(Self {
             solution,
             frequency: driving.abs() * f64::from(q) / f64::from(p),
-            truth: Truth::new(oscillator, &numbers, period, q)?,
+            truth: Truth::new(oscillator, &numbers, period, [p, q])?,
             motion: Formula::new(solution, response, &numbers)?,
             numbers,
         })
@@ -139,47 +142,71 @@ impl<'a> Question<'a> {
         Some((defects / forces).sqrt()).filter(|value: &f64| value.is_finite())
     }
 
-    /// Every steady motion beside a true one; of two that lead to the same one, that which is nearer to it has it.
+    /// Every steady motion beside a true one; of two that lead to the same one, that has it which is as stable or else nearer.
     fn judged_states(&self) -> Vec<JudgedState> {
-        let beside = |state: SteadyState| {
-            if state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium) {
-                return (held(state), None);
-            }
-            let found = self.truth.near(&self.motion, state);
-            let start = found.as_ref().map(|found| found.at(0.0));
-            (self.truth.beside(&self.motion, state, found.as_ref()), start)
+        let states = self.states();
+        let is_held = |state: &SteadyState| state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium);
+        let found: Vec<Option<PeriodicMotion>> = states
+            .iter()
+            .map(|state| {
+                let search = || self.truth.near(&self.motion, *state);
+                (!is_held(state)).then(search).flatten()
+            })
+            .collect();
+        let judge = |state: &SteadyState, found: Option<&PeriodicMotion>| match is_held(state) {
+            true => held(*state),
+            false => self.truth.beside(&self.motion, *state, found),
         };
-        let (found, starts): (Vec<JudgedState>, Vec<Option<(f64, f64)>>) =
-            self.states().into_iter().map(beside).unzip();
+        let judged: Vec<JudgedState> = states
+            .iter()
+            .zip(&found)
+            .map(|(state, found)| judge(state, found.as_ref()))
+            .collect();
         let same = |one: usize, other: usize| {
-            let size = self.motion.size(self.truth.period, found[one].state);
-            let (Some((x, v)), Some((y, w))) = (starts[one], starts[other]) else {
+            let size = self.motion.size(self.truth.period, states[one]);
+            let (Some((x, v)), Some((y, w))) = (start_of(&found[one]), start_of(&found[other])) else {
                 return false;
             };
             (x - y).abs() < 1e-6 * size && (v - w).abs() < 1e-6 * size * self.frequency
         };
+        let apart = |judged: &JudgedState| {
+            let other_kind = judged.true_stable != Some(judged.state.is_stable());
+            judged.max_deviation.map(|deviation| (other_kind, deviation))
+        };
         let nearer = |one: usize, other: usize| {
-            let [own, rival] = [one, other].map(|k| found[k].max_deviation);
+            let [own, rival] = [one, other].map(|k| apart(&judged[k]));
             rival < own || rival == own && other < one
         };
-        let lost = |k: usize| (0..found.len()).any(|other| other != k && same(k, other) && nearer(k, other));
-        let none = |state| JudgedState {
-            state,
-            true_amplitude: None,
-            true_stable: None,
-            relative_error: None,
-            max_deviation: None,
+        let lost = |k: usize| (0..states.len()).any(|other| other != k && same(k, other) && nearer(k, other));
+        let mut known: Vec<[f64; 2]> = (0..states.len())
+            .filter(|k| !lost(*k))
+            .filter_map(|k| found[k].as_ref())
+            .flat_map(|found| self.truth.starts(found))
+            .collect();
+        let mut another = |state: &SteadyState| {
+            let found = self.truth.another(&self.motion, *state, &known)?;
+            let judged = judge(state, Some(&found));
+            let own = apart(&judged)?;
+            let others = states.iter().map(|other| judge(other, Some(&found)));
+            if others.filter_map(|other| apart(&other)).any(|other| other < own) {
+                return None;
+            }
+            known.extend(self.truth.starts(&found));
+            Some(judged)
         };
-        (0..found.len())
-            .map(|k| {
-                if lost(k) {
-                    none(found[k].state)
-                } else {
-                    found[k].clone()
-                }
+        (0..states.len())
+            .map(|k| match (lost(k), &found[k]) {
+                (false, Some(_)) => judged[k].clone(),
+                _ if is_held(&states[k]) => judged[k].clone(),
+                _ => another(&states[k]).unwrap_or_else(|| judge(&states[k], None)),
             })
             .collect()
     }
+}
+
+/// Where a true motion begins.
+fn start_of(found: &Option<PeriodicMotion>) -> Option<(f64, f64)> {
+    found.as_ref().map(|found| found.at(0.0))
 }
 
 /// All that is small is halved again and again, and the deviation of the same steady motion measured.
@@ -282,6 +309,8 @@ struct Truth {
     period: f64,
     /// The harmonic of the period whose amplitude is meant.
     own: u32,
+    /// How many periods of the drive it takes.
+    drives: u32,
 }
 
 impl Truth {
@@ -289,7 +318,7 @@ impl Truth {
         oscillator: &Oscillator,
         numbers: &BTreeMap<Symbol, f64>,
         period: f64,
-        own: u32,
+        [drives, own]: [u32; 2],
     ) -> Result<Self, VerificationError> {
         let exact = |(name, value): (&Symbol, &f64)| Some((*name, Expr::number(from_f64(*value)?)));
         let force = oscillator
@@ -300,6 +329,7 @@ impl Truth {
             force: CompiledFunction::new(&force, &arguments)?,
             period,
             own,
+            drives,
         })
     }
 
@@ -339,6 +369,26 @@ impl Truth {
             Err(_) if state.is_stable() && state.amplitude > 0.0 => settled(),
             Err(_) => None,
         }
+    }
+
+    /// A true periodic motion near one by the formula that is none of the known ones.
+    fn another(&self, motion: &Formula, state: SteadyState, known: &[[f64; 2]]) -> Option<PeriodicMotion> {
+        let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
+        let size = motion.size(self.period, state);
+        let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
+        // From there, and from half-way to each motion that is known: near a fold the one that is looked for lies between.
+        let half_way = |known: &[f64; 2]| [0, 1].map(|index| 0.5 * (start[index] + known[index]));
+        let mut starts = std::iter::once(start).chain(known.iter().map(half_way));
+        let search =
+            || starts.find_map(|start| another_periodic_motion(&acceleration, self.period, start, size, known).ok());
+        (size > 0.0).then(search).flatten()
+    }
+
+    /// Where a true motion begins, and where it does a period of the drive later and so on, which are other starts of the same one.
+    fn starts(&self, found: &PeriodicMotion) -> Vec<[f64; 2]> {
+        let part = self.period / f64::from(self.drives);
+        let start = |k: u32| found.at(part * f64::from(k)).into();
+        (0..self.drives).map(start).collect()
     }
 
     fn beside(&self, motion: &Formula, state: SteadyState, found: Option<&PeriodicMotion>) -> JudgedState {

@@ -3,6 +3,7 @@
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::method::{Options, Unsuited, solve};
+use lindstedt::response::{Point, Question, respond};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Oscillator, Symbol, Values, judge};
 
@@ -236,6 +237,51 @@ fn steady_motions_are_the_true_ones() {
 
 /// All that is small made smaller together: the error of the amplitude to order n vanishes with the power n, and the table of
 /// `docs/multiple-scales.md` is what is computed.
+/// Near the fold the search from the middle motion leads to the upper one; its own is the branch that harmonic balance follows there.
+#[test]
+fn a_middle_motion_has_a_truth_of_its_own() {
+    let equation = "x'' + x'/10 + x + x^3/10 - F*cos(Omega*t) = 0";
+    let solution = driven(equation, (1, 1), 2);
+    let oscillator = Oscillator::parse(equation).expect("an oscillator");
+    for omega in ["1.19", "1.2", "1.21"] {
+        let at: Values = format!("F = 0.3, Omega = {omega}").parse().expect("values");
+        let verdict = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
+        let mut judged: Vec<(f64, bool)> = verdict
+            .steady_states
+            .iter()
+            .filter_map(|judged| judged.true_amplitude.zip(judged.true_stable))
+            .collect();
+        judged.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let middle: f64 = omega.parse().expect("a number");
+        let range = [middle - 0.002, middle + 0.002];
+        let question = Question::new(equation, "Omega", range, "F = 0.3").expect("a question");
+        let response = respond(&question).expect("a response");
+        let mut followed: Vec<(f64, bool)> = response
+            .branches
+            .iter()
+            .map(|branch| {
+                let distance = |point: &Point| (point.parameter - middle).abs();
+                let points = branch.points.iter();
+                let nearest = points.min_by(|one, other| distance(one).total_cmp(&distance(other)));
+                let nearest = nearest.expect("a point");
+                (nearest.amplitude, nearest.stable == Some(true))
+            })
+            .collect();
+        followed.sort_by(|one, other| one.0.total_cmp(&other.0));
+        assert_eq!(
+            (judged.len(), followed.len()),
+            (3, 3),
+            "{omega}: {judged:?} {followed:?}"
+        );
+        for (one, other) in judged.iter().zip(&followed) {
+            assert!(
+                (one.0 - other.0).abs() < 0.03 && one.1 == other.1,
+                "{omega}: {one:?} {other:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn slopes_of_the_error_of_driven_motions() {
     let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";

@@ -57,6 +57,10 @@ impl FrequencyResponse {
                 (None, square(&cosine) + square(&sine) + minus(&square(&determinant)))
             }
         };
+        if rate.is_zero() && phase.is_zero() {
+            // Nothing holds the wave at this order.
+            return Self::of_relation(None, a);
+        }
         let relation = without_common_powers(&relation);
         // sigma = centre + and - the root of the square of a width, where the wave is free of it and the rest linear in it.
         let by_sigma = Monomial::power_of(sigma, 1).product(&Monomial::power_of(a, 1));
@@ -124,7 +128,7 @@ pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
 }
 
 /// The relation between amplitude and detuning of two rates with multiples of the phase, in powers of a marker up to the order of the
-/// rates; `None` where multiples stand beside what leads, something comes before it, or nothing after it.
+/// rates; `None` where multiples stand beside what leads, something comes before it, or nothing beside or after it.
 ///
 /// ```text
 /// M (c, s) = -(all else at c, s),   M the waves that lead:   c, s order by order,   c^2 + s^2 = 1
@@ -174,7 +178,10 @@ pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, in
         ];
         [cosine, sine] = solved.map(|value| cut(&value.product(&over)));
     }
-    let mut relation = cut(&(cosine.product(&cosine) + sine.product(&sine)));
+    // Where all else comes d after the waves, so do c and s, and their squares are known to as many orders behind the first: that is twice d.
+    let behind = [&cosine, &sine].into_iter().filter_map(lowest).min()?;
+    let squares = cosine.product(&cosine) + sine.product(&sine);
+    let mut relation = squares.truncated(marker, highest + behind);
     relation.add_term(Monomial::one(), ratio(-1, 1));
     // Times the determinant until it divides nothing.
     let most = relation.exponent_range(inverse)?.1;

@@ -135,6 +135,17 @@ fn frequency_response_of_the_primary_resonance() {
     assert_eq!(changes, 2, "one jump up, one jump down");
 }
 
+/// Where the wave comes an order before all else, `P^2 + Q^2 = S^2` is whole from the order on that has P and Q, and before it there is none.
+#[test]
+fn frequency_response_of_a_wave_that_comes_first() {
+    let relation = |order| {
+        let solution = driven("x'' + x'/20 + x + x^2/5 = cos(Omega*t)/5", (1, 2), order);
+        solution.response.expect("a response").relation
+    };
+    let whole = of_text("a^2/1600 + (sigma*a + a^3/60 + 46*Lambda^2*a/375)^2 - Lambda^4/25");
+    assert_eq!((relation(1), relation(2)), (None, Some(whole)));
+}
+
 /// Every steady motion against the true periodic one, found by shooting: amplitude and stability.
 #[test]
 fn steady_motions_are_the_true_ones() {
@@ -143,6 +154,7 @@ fn steady_motions_are_the_true_ones() {
     let parametric = "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0";
     let by_sine = "x'' + 2*zeta*x' + x + eps*x^3 = F*sin(Omega*t)";
     let pendulum = "x'' + x'/100 + sin(x) = cos(19*t/20)/50";
+    let quadratic = "x'' + x'/20 + x + x^2/5 = cos(Omega*t)/5";
     for (equation, at, order, count, stable, error) in [
         (
             duffing,
@@ -208,6 +220,10 @@ fn steady_motions_are_the_true_ones() {
             1,
             8e-2,
         ),
+        // The wave comes an order before all that holds it.
+        (quadratic, "Omega = 1/2", 2, 1, 1, 1e-2),
+        (quadratic, "Omega = 12/25", 2, 1, 1, 3e-2),
+        (quadratic, "Omega = 26/50", 2, 1, 1, 3e-2),
         (pendulum, "", 2, 3, 2, 4e-2),
         (pendulum, "", 4, 3, 2, 1e-2),
     ] {
@@ -235,8 +251,6 @@ fn steady_motions_are_the_true_ones() {
     }
 }
 
-/// All that is small made smaller together: the error of the amplitude to order n vanishes with the power n, and the table of
-/// `docs/multiple-scales.md` is what is computed.
 /// Near the fold the search from the middle motion leads to the upper one; its own is the branch that harmonic balance follows there.
 #[test]
 fn a_middle_motion_has_a_truth_of_its_own() {
@@ -282,6 +296,8 @@ fn a_middle_motion_has_a_truth_of_its_own() {
     }
 }
 
+/// All that is small made smaller together: the error of the amplitude to order n vanishes with the power n, and the table of
+/// `docs/multiple-scales.md` is what is computed.
 #[test]
 fn slopes_of_the_error_of_driven_motions() {
     let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";

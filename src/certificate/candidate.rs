@@ -39,7 +39,7 @@ pub(super) const INVERSE_BITS: usize = 56;
 pub enum NotCertified {
     /// A force that depends on velocity or time, of a motion that is none on a limit cycle.
     #[error(
-        "`{0}` depends on the velocity or on time: certificates are of limit cycles and of motions whose force is that of their position alone"
+        "`{0}` depends on the velocity or on time: certificates are of limit cycles, of driven motions and of motions whose force is that of their position alone"
     )]
     NotConservative(String),
     /// A limit cycle of an equation of another form.
@@ -50,6 +50,17 @@ pub enum NotCertified {
         /// The equation of the velocity, where that has this form.
         of_velocity: Option<String>,
     },
+    /// A driven motion of an equation of another form.
+    #[error(
+        "`{0}` is of another form: certificates of driven motions are of x'' + g(x)*x' + h(x) = 0, h with sines and cosines of one drive"
+    )]
+    NotDriven(String),
+    /// A drive whose frequency is no fraction.
+    #[error("the driving frequency {0} is no fraction: a certificate needs to know the period exactly")]
+    DrivingFrequency(String),
+    /// No steady motion by the formula, or no true one that it leads to, or one without an amplitude of its own.
+    #[error("at these values no steady motion of the formula has an amplitude and a true motion near")]
+    NoSteadyMotion,
     /// An answer about the way to a limit cycle.
     #[error("with an amplitude the formula is about the way to the limit cycle, and a certificate is of the cycle")]
     OffCycle,
@@ -111,6 +122,9 @@ impl NotCertified {
                 ));
             }
             Self::NotLienard { .. } => "`simulate` and the verdict of `derive` follow such motions in numbers",
+            Self::NotDriven(_) => "`response` and the verdict of `derive` follow such motions in numbers",
+            Self::DrivingFrequency(_) => "give it as a decimal or a fraction",
+            Self::NoSteadyMotion => "`derive` with --at lists the steady motions; `response` finds those of a range",
             Self::OffCycle => "leave the amplitude out",
             Self::Law(_) => "without a range it is certified at one amplitude",
             Self::Start(_) => "give the amplitude as a decimal or a fraction, and an equilibrium that is one",
@@ -205,7 +219,7 @@ impl Question {
             .clone();
         let force = written_out(force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)?;
         // In one of two wells beside each other a motion has all harmonics, whatever the symmetry of the force.
-        let odd = equilibrium.is_zero() && super::force::is_odd(&force)?;
+        let odd = equilibrium.is_zero() && super::force::is_odd(&force, &[coordinate()])?;
         Ok(Self { force, start, odd })
     }
 
@@ -247,17 +261,30 @@ pub(super) fn judged(solution: &Solution, at: &Values, bits: usize) -> Result<Ju
     let harmonics = 0..=displacement.highest_harmonic();
     let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
     let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
-    Ok(JudgedFormula {
+    let cosines: Vec<f64> = harmonics.map(|k| displacement.cosine(k).mean().0).collect();
+    let frequency = units(motion.frequency(), bits);
+    Ok(unclaimed(solution, frequency, [&cosines, &sines[..length]], bits))
+}
+
+/// A formula of which nothing is claimed yet, its cosine and sine coefficients in units.
+pub(super) fn unclaimed(
+    solution: &Solution,
+    frequency: Integer,
+    [cosines, sines]: [&[f64]; 2],
+    bits: usize,
+) -> JudgedFormula {
+    let in_units = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
+    let nothing = || [Rational::zero(), Rational::zero()];
+    JudgedFormula {
         law: solution.formula(),
-        frequency: units(motion.frequency(), bits),
-        coefficients: harmonics
-            .map(|k| units(displacement.cosine(k).mean().0, bits))
-            .collect(),
-        sines: sines[..length].iter().map(|sine| units(*sine, bits)).collect(),
-        deviation: [Rational::zero(), Rational::zero()],
-        frequency_error: [Rational::zero(), Rational::zero()],
-        drift: [Rational::zero(), Rational::zero()],
-    })
+        frequency,
+        coefficients: in_units(cosines),
+        sines: in_units(sines),
+        deviation: nothing(),
+        frequency_error: nothing(),
+        drift: nothing(),
+        amplitude_error: nothing(),
+    }
 }
 
 /// What the numbers of Runge-Kutta have no digits for.
@@ -312,6 +339,7 @@ pub(super) fn claim_errors(formula: Option<&mut JudgedFormula>, certified: &Cert
     formula.deviation = both(errors.deviation);
     formula.frequency_error = both(errors.frequency);
     formula.drift = both(errors.drift);
+    formula.amplitude_error = both(errors.amplitude.unwrap_or_default());
 }
 
 /// The inverse of the derivative on the block, in doubles.

@@ -11,6 +11,7 @@ use super::fourier_series::{FourierSeries, WORKING};
 use crate::exact::Rational;
 use crate::exact::bound::Bound;
 use crate::expr::{Expr, ExprError, Function, Node};
+use crate::symbol::Symbol;
 
 /// What of a force cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,19 +25,30 @@ pub(super) struct NoValue(
 /// # Errors
 /// [`NoValue`].
 pub(super) fn along(force: &Expr, motion: &FourierSeries) -> Result<FourierSeries, NoValue> {
+    along_all(force, &[(coordinate(), motion)])
+}
+
+/// The values of the expression where the letters have these.
+///
+/// # Errors
+/// [`NoValue`].
+pub(super) fn along_all(force: &Expr, letters: &[(Symbol, &FourierSeries)]) -> Result<FourierSeries, NoValue> {
     force.fold(|node, parts: &[FourierSeries]| {
-        let value = value(node, motion, parts);
+        let value = value(node, letters, parts);
         value
             .filter(|value| value.norm() < Bound::UNKNOWN)
             .ok_or_else(|| NoValue(node.to_string()))
     })
 }
 
-fn value(node: &Expr, motion: &FourierSeries, parts: &[FourierSeries]) -> Option<FourierSeries> {
+fn value(node: &Expr, letters: &[(Symbol, &FourierSeries)], parts: &[FourierSeries]) -> Option<FourierSeries> {
     match node.node() {
         Node::Number(value) => Some(FourierSeries::constant(WORKING.fraction(value))),
         Node::Pi => Some(FourierSeries::constant(WORKING.pi())),
-        Node::Symbol(symbol) => (*symbol == coordinate()).then(|| motion.clone()),
+        Node::Symbol(symbol) => letters
+            .iter()
+            .find(|(letter, _)| letter == symbol)
+            .map(|(_, series)| (*series).clone()),
         Node::Sum(_) => parts.iter().cloned().reduce(|sum, part| sum.sum(&part)),
         Node::Product(coefficient, _) => {
             let product = parts.iter().cloned().reduce(|product, part| product.product(&part))?;
@@ -100,24 +112,25 @@ fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSe
     }
 }
 
-/// Whether `f(-x) = -f(x)`, as far as can be seen by writing it out.
+/// Whether `f(-x) = -f(x)`, all these letters with the other sign, as far as can be seen by writing it out.
 ///
 /// # Errors
 /// A point at which the force has no value is written in it.
-pub(super) fn is_odd(force: &Expr) -> Result<bool, ExprError> {
-    Ok(is_nothing(&(force + &mirrored(force)?)))
+pub(super) fn is_odd(force: &Expr, letters: &[Symbol]) -> Result<bool, ExprError> {
+    Ok(is_nothing(&(force + &mirrored(force, letters)?)))
 }
 
 /// Whether `f(-x) = f(x)`, likewise.
 ///
 /// # Errors
 /// As [`is_odd`].
-pub(super) fn is_even(force: &Expr) -> Result<bool, ExprError> {
-    Ok(is_nothing(&(force - &mirrored(force)?)))
+pub(super) fn is_even(force: &Expr, letters: &[Symbol]) -> Result<bool, ExprError> {
+    Ok(is_nothing(&(force - &mirrored(force, letters)?)))
 }
 
-fn mirrored(force: &Expr) -> Result<Expr, ExprError> {
-    force.substitute(coordinate(), &-&Expr::from(coordinate()))
+fn mirrored(force: &Expr, letters: &[Symbol]) -> Result<Expr, ExprError> {
+    let turned = |letter: &Symbol| (*letter, -&Expr::from(*letter));
+    force.substitute_all(&letters.iter().map(turned).collect())
 }
 
 fn is_nothing(expression: &Expr) -> bool {

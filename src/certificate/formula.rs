@@ -88,6 +88,8 @@ pub struct JudgedFormula {
     pub frequency_error: [Rational; 2],
     /// What is claimed of `max |X~'| |omega - omega~|`, by which the two motions part at most in a unit of time.
     pub drift: [Rational; 2],
+    /// Of a driven motion, what is claimed of `|a - a~|`; zeros of others.
+    pub amplitude_error: [Rational; 2],
 }
 
 /// How far a formula is off.
@@ -98,10 +100,12 @@ pub struct Errors {
     pub deviation: Range,
     /// `|omega - omega~|`.
     pub frequency: Range,
-    /// `|omega~/omega - 1|`.
+    /// `|omega~/omega - 1|`; of a driven motion, whose frequency is known, `|a~/a - 1|`.
     pub relative: Range,
     /// `max |X~'| |omega - omega~|`: what is added to the deviation at most in a unit of time.
     pub drift: Range,
+    /// Of a driven motion `|a - a~|`, the amplitudes of its own harmonic.
+    pub amplitude: Option<Range>,
 }
 
 impl JudgedFormula {
@@ -149,31 +153,41 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
         proof,
         frequency: Enclosure::of(&frequency),
         exponent: None,
+        amplitude: None,
         formula: certificate.formula.as_ref().map(errors),
     })
 }
 
 impl Truth<'_> {
+    /// `max |X - X~|`.
+    fn deviation(&self, own_motion: &FourierSeries) -> Range {
+        let (lower, upper) = largest(&self.motion.difference(own_motion));
+        Range {
+            lower: (lower - self.radius.value()).next_down().max(0.0),
+            upper: (upper + self.radius).value(),
+        }
+    }
+
+    /// How far a formula of this motion is off, whose frequency is that of the drive; the amplitudes are that of the formula and the true one.
+    pub(super) fn errors_of_driven(&self, own_motion: &FourierSeries, [own, truth]: [&Ball; 2]) -> Errors {
+        let (amplitude, relative) = apart(own, truth);
+        Errors {
+            deviation: self.deviation(own_motion),
+            frequency: Range::default(),
+            relative,
+            drift: Range::default(),
+            amplitude: Some(amplitude),
+        }
+    }
+
     /// How far a formula of this frequency and motion is off.
     pub(super) fn errors(&self, own_frequency: &Ball, own_motion: &FourierSeries) -> Errors {
-        let (lower, upper) = largest(&self.motion.difference(own_motion));
-        let off = WORKING.difference(own_frequency, self.frequency);
-        let frequency_error = Range {
-            lower: WORKING.distance_from_zero(&off).max(0.0),
-            upper: WORKING.magnitude(&off).value(),
-        };
-        let slowest = WORKING.distance_from_zero(self.frequency);
-        let fastest = WORKING.magnitude(self.frequency).value();
+        let (frequency_error, relative) = apart(own_frequency, self.frequency);
         let (flattest, steepest) = largest(&own_motion.derivative());
         Errors {
-            deviation: Range {
-                lower: (lower - self.radius.value()).next_down().max(0.0),
-                upper: (upper + self.radius).value(),
-            },
-            relative: Range {
-                lower: (frequency_error.lower / fastest).next_down().max(0.0),
-                upper: Bound::exactly(frequency_error.upper).over(slowest).value(),
-            },
+            deviation: self.deviation(own_motion),
+            relative,
+            amplitude: None,
             drift: Range {
                 lower: (flattest * frequency_error.lower).next_down().max(0.0),
                 upper: (steepest * Bound::exactly(frequency_error.upper)).value(),
@@ -181,6 +195,24 @@ impl Truth<'_> {
             frequency: frequency_error,
         }
     }
+}
+
+/// How far a number is from the true one, and that over the true one.
+fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
+    let off = WORKING.difference(own, truth);
+    let error = Range {
+        lower: WORKING.distance_from_zero(&off).max(0.0),
+        upper: WORKING.magnitude(&off).value(),
+    };
+    let smallest = WORKING.distance_from_zero(truth);
+    let relative = Range {
+        lower: (error.lower / WORKING.magnitude(truth).value()).next_down().max(0.0),
+        upper: match smallest > 0.0 {
+            true => Bound::exactly(error.upper).over(smallest).value(),
+            false => f64::INFINITY,
+        },
+    };
+    (error, relative)
 }
 
 /// The largest size of a series, from below and from above.
@@ -265,7 +297,9 @@ pub(super) fn hold_claims(
     };
     above("the radius", certified.proof.radius.value(), radius)?;
     if let (Some(claimed), Some(errors)) = (formula, &certified.formula) {
+        let amplitude = errors.amplitude.unwrap_or_default();
         let both = [
+            ("the error of the amplitude", amplitude, &claimed.amplitude_error),
             ("the deviation", errors.deviation, &claimed.deviation),
             ("the error of the frequency", errors.frequency, &claimed.frequency_error),
             ("the drift", errors.drift, &claimed.drift),

@@ -9,8 +9,8 @@
 //! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
 //! ```
 //!
-//! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own, have a [`CycleCertificate`] and a theorem in
-//! `cycle/`.
+//! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own, and steady motions of such an equation with a
+//! drive have a [`DampedCertificate`] and a theorem in `damped/`.
 //!
 //! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what is proved rests on
 //! `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs` and balls. A certificate that fails says nothing
@@ -18,7 +18,7 @@
 
 mod approximate_inverse;
 mod candidate;
-mod cycle;
+mod damped;
 mod force;
 mod formula;
 mod fourier_series;
@@ -30,7 +30,7 @@ mod validity;
 use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify};
-pub use cycle::{CycleCertificate, certify_cycle, check_cycle};
+pub use damped::{DampedCertificate, Drive, certify_cycle, certify_driven, check_damped};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
@@ -96,6 +96,8 @@ pub struct Certified {
     /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions approach it, where it is negative, or leave
     /// it; `None` of a motion whose energy is conserved.
     pub exponent: Option<Enclosure>,
+    /// Of a driven motion the amplitude of its own harmonic.
+    pub amplitude: Option<Enclosure>,
     /// Of the formula, where one is judged.
     pub formula: Option<Errors>,
 }
@@ -205,7 +207,7 @@ impl Certificate {
 
     /// Whether the force is odd and the motion has odd harmonics alone.
     fn is_odd(&self) -> Result<bool, ExprError> {
-        Ok(force::is_odd(&self.force)? && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
+        Ok(force::is_odd(&self.force, &[coordinate()])? && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
     }
 
     /// What does not fit together.
@@ -218,7 +220,7 @@ impl Certificate {
             number: &self.mu,
             coefficients: &[&self.coefficients],
             inverse: &self.inverse,
-            expressions: &[&self.force],
+            expressions: &[(&self.force, &[coordinate()])],
         };
         fits.of_numbers()?;
         fits.of_inverse(self.block().len() + 1)
@@ -236,13 +238,15 @@ struct Sizes<'a> {
     number: &'a Integer,
     coefficients: &'a [&'a [Integer]],
     inverse: &'a [Vec<Integer>],
-    expressions: &'a [&'a Expr],
+    /// With the letters that they may have.
+    expressions: &'a [(&'a Expr, &'a [Symbol])],
 }
 
 impl Sizes<'_> {
     /// Whether no number is too large.
     fn of_numbers(&self) -> Result<(), &'static str> {
-        let mut letters = self.expressions.iter().flat_map(|force| force.symbols());
+        let has_values =
+            |(force, letters): &(&Expr, &[Symbol])| force.symbols().iter().all(|name| letters.contains(name));
         let coefficients = self.coefficients.iter().copied().flatten();
         let all = coefficients.chain([self.number]).chain(self.inverse.iter().flatten());
         let demands = [
@@ -261,7 +265,7 @@ impl Sizes<'_> {
                 "more than 800 harmonics",
             ),
             (
-                letters.all(|name| name == coordinate()),
+                self.expressions.iter().all(has_values),
                 "a force with letters that have no value",
             ),
             (

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lindstedt::certificate::{self, Beyond, NotCertified};
+use lindstedt::certificate::{self, Beyond, Certified, DampedCertificate, NotCertified};
 use lindstedt::exact::Rational;
-use lindstedt::export::json::{self, CertificateDocument, CycleCertificateDocument};
+use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
 use lindstedt::expr::parse_expression;
 use lindstedt::report::{self, AnyCertificate, CertificateReport};
 use lindstedt::verify::Verdict;
-use lindstedt::{Interrupt, Oscillator, Progress, Solution, Supervision, Values};
+use lindstedt::{Interrupt, Progress, Solution, Supervision, Values};
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
@@ -67,8 +67,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     derive::needed(&solution, &values)?;
     let refused = |error: &NotCertified| Failure::refused(error, error.help());
     let tolerance = tolerance(&arguments.common);
+    let question = (&solution, &values);
     if solution.limit_cycle.is_some() {
-        return of_cycle(arguments, (&oscillator, &solution, &values), tolerance);
+        let proved = || certificate::certify_cycle(&oscillator, &solution, &values);
+        return without_amplitude(arguments, question, "a limit cycle", proved);
+    }
+    if solution.response.is_some() {
+        let proved = || certificate::certify_driven(&oscillator, &solution, &values);
+        return without_amplitude(arguments, question, "a driven motion", proved);
     }
     let proved = certificate::certify(&oscillator, &solution, &values);
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
@@ -94,25 +100,25 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { partial, ..outcome })
 }
 
-/// The proof of a limit cycle.
-fn of_cycle(
+/// The proof of a motion that has an amplitude of its own.
+fn without_amplitude(
     arguments: &Arguments,
-    (oscillator, solution, values): (&Oscillator, &Solution, &Values),
-    tolerance: f64,
+    (solution, values): (&Solution, &Values),
+    kind: &str,
+    proved: impl FnOnce() -> Result<(DampedCertificate, Certified), NotCertified>,
 ) -> Result<Outcome, Failure> {
     if arguments.range.is_some() {
-        return Err(Failure::Refused(
-            "--range is of amplitudes, and a limit cycle has one of its own\n  help: leave --range out: the proof is of the cycle at these values".to_owned(),
-        ));
+        return Err(Failure::Refused(format!(
+            "--range is of amplitudes, and {kind} has one of its own\n  help: leave --range out: the proof is of the motion at these values"
+        )));
     }
-    let proved = certificate::certify_cycle(oscillator, solution, values);
-    let (certificate, certified) = proved.map_err(|error| Failure::refused(&error, error.help()))?;
+    let (certificate, certified) = proved().map_err(|error| Failure::refused(&error, error.help()))?;
     let report = CertificateReport {
         question: Some((solution, values)),
         certificate: (&certificate).into(),
         certified: &certified,
         validity: None,
-        tolerance,
+        tolerance: tolerance(&arguments.common),
     };
     printed(&report, &arguments.common)
 }
@@ -126,11 +132,12 @@ pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     // Which of the two kinds it is; the rest is read when that is known.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
     let tolerance = tolerance(&arguments.common);
-    let (motion, cycle);
-    let (certificate, certified): (AnyCertificate, _) = if ode == json::EQUATION_OF_CYCLES {
-        let document: CycleCertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
-        cycle = document.read().map_err(|error| unread(&error))?;
-        ((&cycle).into(), certificate::check_cycle(&cycle))
+    let (motion, damped);
+    let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
+    let (certificate, certified): (AnyCertificate, _) = if of_damped.contains(&ode.as_str()) {
+        let document: DampedCertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        damped = document.read().map_err(|error| unread(&error))?;
+        ((&damped).into(), certificate::check_damped(&damped))
     } else {
         let document: CertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
         motion = document.read().map_err(|error| unread(&error))?;
@@ -170,7 +177,7 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
         other: &|format| match format {
             Format::Json => match report.certificate {
                 AnyCertificate::Motion(certificate) => json_text(&json::certificate(certificate)),
-                AnyCertificate::Cycle(certificate) => json_text(&json::cycle_certificate(certificate)),
+                AnyCertificate::Damped(certificate) => json_text(&json::damped_certificate(certificate)),
             },
             format => no_such(format),
         },

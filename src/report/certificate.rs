@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
+use super::driven::slow_equations;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Beyond, Certificate, Certified, CycleCertificate, Enclosure, Errors, JudgedFormula, Range, Validity, coordinate,
+    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, Range, Validity, coordinate,
 };
 use crate::decimal::{decimal, neighbours, plain_decimal, significant, significant_fraction};
 use crate::derivation::Line;
@@ -22,8 +23,8 @@ use crate::verify::Verdict;
 pub enum AnyCertificate<'a> {
     /// Of a motion whose energy is conserved.
     Motion(&'a Certificate),
-    /// Of a limit cycle.
-    Cycle(&'a CycleCertificate),
+    /// Of a limit cycle, or of a driven motion.
+    Damped(&'a DampedCertificate),
 }
 
 impl<'a> From<&'a Certificate> for AnyCertificate<'a> {
@@ -32,9 +33,9 @@ impl<'a> From<&'a Certificate> for AnyCertificate<'a> {
     }
 }
 
-impl<'a> From<&'a CycleCertificate> for AnyCertificate<'a> {
-    fn from(certificate: &'a CycleCertificate) -> Self {
-        Self::Cycle(certificate)
+impl<'a> From<&'a DampedCertificate> for AnyCertificate<'a> {
+    fn from(certificate: &'a DampedCertificate) -> Self {
+        Self::Damped(certificate)
     }
 }
 
@@ -42,7 +43,7 @@ impl AnyCertificate<'_> {
     fn formula(&self) -> Option<&JudgedFormula> {
         match self {
             Self::Motion(certificate) => certificate.formula.as_ref(),
-            Self::Cycle(certificate) => certificate.formula.as_ref(),
+            Self::Damped(certificate) => certificate.formula.as_ref(),
         }
     }
 
@@ -52,9 +53,9 @@ impl AnyCertificate<'_> {
         let acceleration = Expr::from(velocity.derivative());
         match self {
             Self::Motion(certificate) => &acceleration + &certificate.force,
-            Self::Cycle(certificate) => {
+            Self::Damped(certificate) => {
                 let drag = &certificate.damping * &Expr::from(velocity);
-                &(&acceleration + &drag) + &certificate.force
+                &(&acceleration + &drag) + &certificate.force_in_time()
             }
         }
     }
@@ -66,22 +67,44 @@ impl AnyCertificate<'_> {
                 "periodic from {letter}(0) = {}, {letter}'(0) = 0: {letter}(t) = X(omega*t)",
                 certificate.start
             ),
-            Self::Cycle(_) => format!("a limit cycle: {letter}(t) = X(omega*t)"),
+            Self::Damped(certificate) => match &certificate.drive {
+                None => format!("a limit cycle: {letter}(t) = X(omega*t)"),
+                Some(drive) if drive.periods == 1 => {
+                    format!(
+                        "periodic with the drive, of the frequency {}: {letter}(t) = X(Omega*t)",
+                        drive.frequency
+                    )
+                }
+                Some(drive) => format!(
+                    "periodic with {periods} periods of the drive, of the frequency {}: {letter}(t) = X(Omega*t/{periods})",
+                    drive.frequency,
+                    periods = drive.periods
+                ),
+            },
         }
     }
 
     /// What is within r of the numbers of the certificate.
     fn unknowns(&self) -> &'static str {
         match self {
-            Self::Motion(_) => "(1/omega^2, X)",
-            Self::Cycle(_) => "(1/omega, X)",
+            Self::Motion(_) => "pair (1/omega^2, X)",
+            Self::Damped(certificate) if certificate.drive.is_some() => "motion X",
+            Self::Damped(_) => "pair (1/omega, X)",
+        }
+    }
+
+    /// The harmonic of a driven motion whose amplitude is meant.
+    fn harmonic(&self) -> Option<usize> {
+        match self {
+            Self::Motion(_) => None,
+            Self::Damped(certificate) => certificate.drive.as_ref().map(|drive| drive.harmonic),
         }
     }
 
     fn block(&self) -> String {
         let (odd, highest, harmonics) = match self {
             Self::Motion(certificate) => (certificate.odd, certificate.highest, certificate.coefficients.len()),
-            Self::Cycle(certificate) => (
+            Self::Damped(certificate) => (
                 certificate.odd,
                 certificate.highest,
                 certificate.cosines.len().max(certificate.sines.len()),
@@ -106,7 +129,7 @@ pub struct CertificateReport<'a> {
     pub certified: &'a Certified,
     /// How far the formula is proved to hold, where that was asked for.
     pub validity: Option<&'a Validity>,
-    /// The error of the frequency up to which the formula passes.
+    /// The error of the frequency, of a driven motion that of the amplitude, up to which the formula passes.
     pub tolerance: f64,
 }
 
@@ -144,12 +167,13 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
                 words: solution.title(),
                 amplitude: solution.amplitude.in_words(solution.coordinate()),
             }],
-            solution
-                .law
-                .shown()
-                .into_iter()
-                .flat_map(|law| law_blocks(solution, law))
-                .collect(),
+            match (&solution.response, &solution.modulation) {
+                (Some(response), Some(slow)) => slow_equations(solution, response, slow),
+                _ => {
+                    let law = solution.law.shown().into_iter();
+                    law.flat_map(|law| law_blocks(solution, law)).collect()
+                }
+            },
         ],
         None => {
             let left = certificate.left_side();
@@ -166,21 +190,24 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let mut blocks = vec![Block::Heading("Proved".to_owned())];
     let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
-    facts.extend([
-        ("motion", certificate.motion(letter)),
-        ("omega", enclosed(&report.certified.frequency)),
-    ]);
-    if let AnyCertificate::Cycle(_) = certificate {
+    facts.push(("motion", certificate.motion(letter)));
+    match (&report.certified.amplitude, certificate.harmonic()) {
+        (Some(amplitude), Some(harmonic)) => {
+            let of = if harmonic == 1 {
+                String::new()
+            } else {
+                format!("of harmonic {harmonic}: ")
+            };
+            facts.push(("amplitude", of + &enclosed(amplitude)));
+            facts.push(("stability", "not proved".to_owned()));
+        }
+        _ => facts.push(("omega", enclosed(&report.certified.frequency))),
+    }
+    if let Some(exponent) = &report.certified.exponent {
         let phase = "at t = 0 the first harmonic, of the motion and of the formula, is a positive cosine".to_owned();
         facts.insert(facts.len() - 1, ("phase", phase));
+        facts.push(("stability", stability(exponent)));
     }
-    facts.extend(
-        report
-            .certified
-            .exponent
-            .as_ref()
-            .map(|exponent| ("stability", stability(exponent))),
-    );
     if let Some(errors) = &report.certified.formula {
         facts.extend(of_formula(errors, report));
     }
@@ -194,7 +221,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let upper = |bound: crate::exact::Bound| above(bound.value());
     sections.push(vec![
         Block::Heading(format!(
-            "The proof: exactly one pair {} within r of the certificate's",
+            "The proof: exactly one {} within r of the certificate's",
             certificate.unknowns()
         )),
         Block::Facts(vec![
@@ -249,25 +276,41 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
         lower: 100.0 * errors.relative.lower,
         upper: 100.0 * errors.relative.upper,
     };
-    let (deviation, drift) = (above(errors.deviation.upper), above(errors.drift.upper));
     let within = significant(100.0 * report.tolerance, 3);
-    let verdict = match report.verdict() {
-        Some(Verdict::Pass) => format!("pass (omega within {within} %, proved)"),
-        _ if errors.relative.lower > report.tolerance => format!("fail (omega beyond {within} %, proved)"),
-        _ => format!("fail (omega is not proved to be within {within} %)"),
+    let what = if errors.amplitude.is_some() {
+        "amplitude"
+    } else {
+        "omega"
     };
-    law.into_iter()
-        .chain([
+    let verdict = match report.verdict() {
+        Some(Verdict::Pass) => format!("pass ({what} within {within} %, proved)"),
+        _ if errors.relative.lower > report.tolerance => format!("fail ({what} beyond {within} %, proved)"),
+        _ => format!("fail ({what} is not proved to be within {within} %)"),
+    };
+    let verdict = ("verdict", verdict);
+    let deviation = above(errors.deviation.upper);
+    let facts = match errors.amplitude {
+        Some(amplitude) => vec![
+            ("error of the formula's amplitude", between(amplitude, "")),
+            ("relative error", between(percent, " %")),
+            ("largest deviation", between(errors.deviation, "")),
+            verdict,
+        ],
+        None => vec![
             ("error of the formula's omega", between(errors.frequency, "")),
             ("relative error", between(percent, " %")),
             ("largest deviation at one phase", between(errors.deviation, "")),
             (
                 "deviation in time",
-                format!("|{letter}(t) - formula| <= {} + {}*|t| for all t", deviation, drift),
+                format!(
+                    "|{letter}(t) - formula| <= {deviation} + {}*|t| for all t",
+                    above(errors.drift.upper)
+                ),
             ),
-            ("verdict", verdict),
-        ])
-        .collect()
+            verdict,
+        ],
+    };
+    law.into_iter().chain(facts).collect()
 }
 
 /// Whether the cycle attracts, as far as that is proved.

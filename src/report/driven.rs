@@ -45,7 +45,8 @@ fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) ->
     Block::Line(Cow::Owned(Line::equation(left, right).because(words)))
 }
 
-fn slow_equations<'a>(solution: &'a Solution, response: &Response, slow: &Modulation) -> Vec<Block<'a>> {
+/// The motion in amplitude and phase, and how these change.
+pub(super) fn slow_equations<'a>(solution: &'a Solution, response: &Response, slow: &Modulation) -> Vec<Block<'a>> {
     let mut blocks = vec![
         Block::Heading("Motion and slow equations".to_owned()),
         equation(solution.coordinate(), response.motion.clone()),

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use lindstedt::certificate::{check, check_cycle};
+use lindstedt::certificate::{check, check_damped};
 use lindstedt::exact::{Rational, ratio};
-use lindstedt::export::json::{self, CertificateDocument, CycleCertificateDocument};
+use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
 use serde_json::{Value, json};
 
 use super::documents::python;
@@ -47,6 +47,58 @@ fn certified(folder: &Path, arguments: &[&str]) -> (PathBuf, Value) {
 
 fn read(document: &Value) -> Result<CertificateDocument, serde_json::Error> {
     serde_json::from_value(document.clone())
+}
+
+#[test]
+fn driven_motions_are_proved_and_proved_again() {
+    let folder = folder("driven");
+    for example in [
+        "forced-duffing",
+        "subharmonic",
+        "superharmonic",
+        "parametric",
+        "driven-well",
+        "second-tongue",
+    ] {
+        let problem = format!("{}/examples/{example}.toml", env!("CARGO_MANIFEST_DIR"));
+        let (file, document) = certified(&folder, &[&problem]);
+        let said = run(&["certify", &problem]);
+        let said = String::from_utf8_lossy(&said.stdout);
+        assert!(
+            said.contains("pass (amplitude within 1 %, proved)"),
+            "{example}: {said}"
+        );
+        let checked = run(&["check", file.to_str().expect("a path in text")]);
+        assert!(checked.status.success(), "{example}");
+        let proof = |text: &str| {
+            text.lines()
+                .skip_while(|line| !line.starts_with("The proof"))
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            proof(&said),
+            proof(&String::from_utf8_lossy(&checked.stdout)),
+            "{example}"
+        );
+        // What belongs to a cycle is not there, and what is put there is refused.
+        for key in ["p", "omega"] {
+            assert!(document.get(key).is_none(), "{example}: {key}");
+        }
+        for (key, value) in [
+            ("p", json!("1")),
+            ("drive", Value::Null),
+            ("sigma_log2", json!(1)),
+            ("odd", json!("yes")),
+        ] {
+            let mut other = document.clone();
+            other[key] = value;
+            std::fs::write(&file, other.to_string()).expect("a file");
+            let checked = run(&["check", file.to_str().expect("a path in text")]);
+            assert_eq!(checked.status.code(), Some(1), "{example}: {key}");
+        }
+    }
+    std::fs::remove_dir_all(&folder).expect("an own folder");
 }
 
 #[test]
@@ -172,9 +224,9 @@ fn what_certify_writes_of_a_cycle_check_proves() {
     for expected in ["a limit cycle", "attracts, proved", "0.98472097664531065", "5.31649e-6"] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
-    let read: CycleCertificateDocument = serde_json::from_value(document.clone()).expect("a document");
+    let read: DampedCertificateDocument = serde_json::from_value(document.clone()).expect("a document");
     let certificate = read.read().expect("a certificate");
-    assert_eq!(json::cycle_certificate(&certificate), read);
+    assert_eq!(json::damped_certificate(&certificate), read);
     assert_eq!(run(&["check", path, "--tolerance", "1e-9"]).status.code(), Some(3));
     // Tampered with, it is no proof.
     for tamper in [
@@ -205,9 +257,9 @@ fn hostile_certificates_are_refused_at_once() {
         outcome.is_some_and(|certificate| check(&certificate).is_ok())
     };
     let of_cycle: IsProof = |changed| {
-        let document = serde_json::from_value::<CycleCertificateDocument>(changed.clone()).ok();
+        let document = serde_json::from_value::<DampedCertificateDocument>(changed.clone()).ok();
         let outcome = document.and_then(|document| document.read().ok());
-        outcome.is_some_and(|certificate| check_cycle(&certificate).is_ok())
+        outcome.is_some_and(|certificate| check_damped(&certificate).is_ok())
     };
     are_refused_at_once(&["pendulum", "--at", "A=1"], of_motion);
     are_refused_at_once(&["van-der-pol", "--at", "mu=1/2"], of_cycle);

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, CycleCertificateDocument,
+    self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument,
     FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument,
     MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
@@ -112,7 +112,9 @@ fn reads_back(document: &Value) {
         Kind::Optimization => again::<OptimizationDocument>(document),
         Kind::Audit => again::<AuditDocument>(document),
         Kind::Catalog => again::<CatalogDocument>(document),
-        Kind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => again::<CycleCertificateDocument>(document),
+        Kind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
+            again::<DampedCertificateDocument>(document)
+        }
         Kind::Certificate => again::<CertificateDocument>(document),
         Kind::Response => again::<ResponseDocument>(document),
     };

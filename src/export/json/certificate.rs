@@ -159,8 +159,9 @@ fn formula(formula: &JudgedFormula) -> FormulaDocument {
 /// The coefficients of a polynomial, or the text of another force.
 pub(super) fn force(force: &Expr) -> ForceDocument {
     let x = coordinate();
+    let of_x_alone = force.symbols().iter().all(|name| *name == x);
     let polynomial = force.to_polynomial(&mut |_| None).ok().flatten();
-    let coefficients = polynomial.and_then(|polynomial| {
+    let coefficients = polynomial.filter(|_| of_x_alone).and_then(|polynomial| {
         let mut coefficients = vec![Rational::zero()];
         for (monomial, coefficient) in polynomial.terms() {
             let power = usize::try_from(monomial.exponent(x))
@@ -244,6 +245,7 @@ impl FormulaDocument {
             deviation: range(&self.phase_error, "phase_error")?,
             frequency_error: range(&self.frequency_error, "frequency_error")?,
             drift: range(&self.drift, "drift")?,
+            amplitude_error: <[Rational; 2]>::default(),
         })
     }
 }
@@ -290,7 +292,7 @@ pub(super) fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
     number.map_or_else(|| unexpected(key, "integers of at most 200 characters"), Ok)
 }
 
-fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
+pub(super) fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
     let number = text.parse().ok().filter(|_| text.len() <= LONGEST_NUMBER);
     number.map_or_else(|| unexpected(key, "a fraction of at most 200 characters"), Ok)
 }

@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, CycleCertificateDocument,
+    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument,
     FrictionDocument, ImpactComparisonDocument, ImpactDocument, JsonError, LagrangianDocument, MaterialsDocument,
     MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument, unexpected,
@@ -166,7 +166,7 @@ impl JsonSchema for EitherCertificate {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let kinds = [
             generator.subschema_for::<CertificateDocument>(),
-            generator.subschema_for::<CycleCertificateDocument>(),
+            generator.subschema_for::<DampedCertificateDocument>(),
         ];
         json_schema!({
             "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, or a limit cycle.",

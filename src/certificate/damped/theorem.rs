@@ -1,4 +1,4 @@
-//! The theorem for cycles: whether there is exactly one periodic motion near an approximate one, and how near.
+//! The theorem for equations with damping: whether there is exactly one periodic motion near an approximate one, and how near.
 //!
 //! For `x'' + g(x) x' + h(x) = 0` and `x(t) = X(omega t)`, `X(theta) = sum_k (a_k cos(k theta) + b_k sin(k theta))`, `p = 1/omega`:
 //!
@@ -34,18 +34,27 @@
 //! with some of X' added where it has a sine of the first harmonic (X' has, for a_1 is not zero): so the motion is a limit cycle,
 //! and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is negative.
 //!
+//! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a whole number n of periods of the drive to a
+//! turn of theta: `p = n/Omega`. Then p is no unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two terms
+//! of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n theta)`; its derivative is that by x. The zero in
+//! the ball is a motion that repeats itself after n periods of the drive; that it takes fewer, and that it attracts, are not excluded.
+//!
 //! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions of differential equations:
 //! the radii polynomial approach, Mathematics of Computation 85 (2016), 1427-1459; J. B. van den Berg, J.-P. Lessard: Rigorous
 //! numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of `N^2 (N + W)` products of short integers.
 
+use num_traits::Signed as _;
+
 use super::super::approximate_inverse::{Inverse, SHORT, image};
-use super::super::force::along;
+use super::super::force::{NoValue, along, along_all, is_even, is_odd};
 use super::super::fourier_series::{FourierSeries, WORKING, Wave};
 use super::super::radii_polynomial::{Correction, NotProved, Proof, radius};
 use super::super::{HIGHEST_HARMONIC, coordinate};
-use super::CycleCertificate;
+use crate::exact::Integer;
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
+use crate::expr::{Expr, ExprError};
+use crate::symbol::Symbol;
 
 /// Columns beyond which those of all further harmonics are bounded together.
 const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
@@ -53,38 +62,130 @@ const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
 /// Binary digits of a series of which only the size of a product counts.
 const ROUGH: i32 = 40;
 
+/// The letters of `cos(Omega t)` and `sin(Omega t)` in a force that is driven.
+pub(super) fn waves_of_drive() -> [Symbol; 2] {
+    ["c", "s"].map(Symbol::new)
+}
+
+/// What a certificate says, whatever kind it is of.
+pub(super) struct Problem<'a> {
+    /// g.
+    pub(super) damping: &'a Expr,
+    /// h, with the letters of the [drive](waves_of_drive) where there is one.
+    pub(super) force: &'a Expr,
+    /// How many periods the drive has in one of the motion; `None` of a limit cycle, of which p is an unknown.
+    pub(super) drive: Option<usize>,
+    /// Whether the motion has odd harmonics alone.
+    pub(super) odd: bool,
+    /// X, approximately.
+    pub(super) motion: FourierSeries,
+    /// p, of a limit cycle approximately.
+    pub(super) reciprocal: Ball,
+    /// The last harmonic of the block.
+    pub(super) highest: usize,
+    /// The entries of the inverse, in units of `2^-inverse_bits`.
+    pub(super) inverse: &'a [Vec<Integer>],
+    pub(super) inverse_bits: usize,
+    /// The weight of p is `2^sigma`, where it is an unknown.
+    pub(super) sigma: i32,
+}
+
+impl Problem<'_> {
+    /// Whether p is an unknown.
+    const fn is_free(&self) -> bool {
+        self.drive.is_none()
+    }
+
+    /// The step from one harmonic to the next.
+    const fn step(&self) -> usize {
+        if self.odd { 2 } else { 1 }
+    }
+
+    /// The equations of the block. Of a limit cycle that of the sine of the first harmonic is the first: there p has its place among the
+    /// unknowns.
+    pub(super) fn block(&self) -> Vec<Wave> {
+        let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
+        let waves = harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)]);
+        let waves = waves.filter(|wave| *wave != Wave::Sine(0));
+        match self.is_free() {
+            true => [Wave::Sine(1)]
+                .into_iter()
+                .chain(waves.filter(|wave| *wave != Wave::Sine(1)))
+                .collect(),
+            false => waves.collect(),
+        }
+    }
+
+    /// The values of an expression along a motion.
+    fn along(&self, expression: &Expr, motion: &FourierSeries) -> Result<FourierSeries, NoValue> {
+        let Some(periods) = self.drive else {
+            return along(expression, motion);
+        };
+        let mut wave = vec![Ball::zero(); periods];
+        wave.push(WORKING.integer(1));
+        let [cosine, sine] = waves_of_drive();
+        along_all(
+            expression,
+            &[
+                (coordinate(), motion),
+                (cosine, &FourierSeries::exactly(wave.clone(), vec![])),
+                (sine, &FourierSeries::exactly(vec![], wave)),
+            ],
+        )
+    }
+
+    /// Whether half a period later the equation is its mirror image, and the motion has odd harmonics alone.
+    pub(super) fn is_odd(&self) -> Result<bool, ExprError> {
+        let [cosine, sine] = waves_of_drive();
+        // Half a period of the motion is a whole number of those of the drive, or half of one beside.
+        let letters = match self.drive {
+            Some(periods) if periods % 2 == 1 => vec![coordinate(), cosine, sine],
+            _ => vec![coordinate()],
+        };
+        let waves = [&self.motion.cosines, &self.motion.sines];
+        let mut even = waves.into_iter().flat_map(|balls| balls.iter().step_by(2));
+        Ok(is_even(self.damping, &letters)? && is_odd(self.force, &letters)? && even.all(Ball::is_zero))
+    }
+
+    /// Whether what is so near is no motion at rest, nor one of another period. Where p is known, nothing of that kind is claimed.
+    fn is_distinct(&self, radius: Bound, sigma: Bound) -> bool {
+        !self.is_free()
+            || self.reciprocal.middle.is_positive()
+                && radius.over(sigma.value()).value() < WORKING.distance_from_zero(&self.reciprocal)
+                && radius.value() < WORKING.distance_from_zero(&self.motion.cosine(1))
+    }
+}
+
 /// Checks a certificate. The numbers in it may be anything.
 ///
 /// # Errors
 /// [`NotProved`].
-pub(super) fn prove(certificate: &CycleCertificate) -> Result<Proof, NotProved> {
-    if certificate.odd && !certificate.is_odd()? {
+pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
+    if problem.odd && !problem.is_odd()? {
         return Err(NotProved::NotOdd);
     }
-    let system = System::of(certificate)?;
+    let system = System::of(problem)?;
+    let problem = &system.equations.problem;
     let x = coordinate();
-    let slope = certificate.force.differentiate(x)?;
+    let slope = problem.force.differentiate(x)?;
     let derivatives = [
-        certificate.damping.clone(),
-        certificate.damping.differentiate(x)?,
-        certificate.force.clone(),
+        problem.damping.clone(),
+        problem.damping.differentiate(x)?,
+        problem.force.clone(),
         slope.clone(),
         slope.differentiate(x)?,
     ];
     let defect = system.defect();
     let contraction = system.contraction(&system.equations.derivative()?)?;
     let curvature = |within: Bound| {
-        let ball = system.equations.motion.clone().shortened(ROUGH).widened(within);
+        let ball = problem.motion.clone().shortened(ROUGH).widened(within);
         let mut norms = [Bound::ZERO; 5];
         for (norm, expression) in norms.iter_mut().zip(&derivatives) {
-            *norm = along(expression, &ball)?.norm();
+            *norm = problem.along(expression, &ball)?.norm();
         }
         Ok(system.curvature(norms, within))
     };
-    let distinct = |radius: Bound| {
-        radius.over(system.inverse.sigma.value()).value() < certificate.size_of_reciprocal()
-            && radius.value() < certificate.size_of_first_harmonic()
-    };
+    let distinct = |radius: Bound| problem.is_distinct(radius, system.inverse.sigma);
     radius(defect, contraction, curvature, distinct)
 }
 
@@ -93,20 +194,20 @@ pub(super) fn prove(certificate: &CycleCertificate) -> Result<Proof, NotProved> 
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn correction(certificate: &CycleCertificate) -> Result<Correction<Wave>, NotProved> {
-    Ok(System::of(certificate)?.correction())
+pub(super) fn correction(problem: Problem) -> Result<Correction<Wave>, NotProved> {
+    Ok(System::of(problem)?.correction())
 }
 
 /// About the derivative on the block, row by row, for what is not proved.
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn derivative_of_block(certificate: &CycleCertificate) -> Result<Vec<Vec<f64>>, NotProved> {
-    let equations = Equations::of(certificate)?;
+pub(super) fn derivative_of_block(problem: Problem) -> Result<Vec<Vec<f64>>, NotProved> {
+    let equations = Equations::of(problem)?;
     let derivative = equations.derivative()?;
-    let entry = |row: Wave, place: usize| match place {
-        0 => WORKING.nearest(&equations.by_reciprocal(row)),
-        _ => SHORT.nearest(&derivative.entry(row, equations.block[place])),
+    let entry = |row: Wave, place: usize| match place < equations.unknowns_before_waves() {
+        true => WORKING.nearest(&equations.by_reciprocal(row)),
+        false => SHORT.nearest(&derivative.entry(row, equations.block[place])),
     };
     let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
     Ok(equations.block.iter().map(row).collect())
@@ -200,10 +301,7 @@ impl Derivative {
 
 /// F at the approximate motion.
 struct Equations<'a> {
-    certificate: &'a CycleCertificate,
-    motion: FourierSeries,
-    /// p.
-    reciprocal: Ball,
+    problem: Problem<'a>,
     /// p^2.
     squared: Ball,
     /// g(X) X'.
@@ -215,29 +313,31 @@ struct Equations<'a> {
 }
 
 impl<'a> Equations<'a> {
-    fn of(certificate: &'a CycleCertificate) -> Result<Self, NotProved> {
-        let motion = certificate.motion();
-        let drag = along(&certificate.damping, &motion)?.product(&motion.derivative());
-        let force = along(&certificate.force, &motion)?;
-        let reciprocal = certificate.reciprocal_ball();
+    fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
+        let motion = &problem.motion;
+        let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
+        let force = problem.along(problem.force, motion)?;
         Ok(Self {
-            certificate,
-            squared: WORKING.product(&reciprocal, &reciprocal),
-            reciprocal,
-            motion,
+            squared: WORKING.product(&problem.reciprocal, &problem.reciprocal),
             drag,
             force,
-            block: certificate.block(),
+            block: problem.block(),
+            problem,
         })
     }
 
+    /// How many of the unknowns are no waves: p, where it is one.
+    fn unknowns_before_waves(&self) -> usize {
+        usize::from(self.problem.is_free())
+    }
+
     fn derivative(&self) -> Result<Derivative, NotProved> {
-        let certificate = self.certificate;
-        let slope = certificate.force.differentiate(coordinate())?;
-        let damping = along(&certificate.damping, &self.motion)?.shortened(ROUGH);
-        let slope = along(&slope, &self.motion)?.shortened(ROUGH);
+        let problem = &self.problem;
+        let slope = problem.force.differentiate(coordinate())?;
+        let damping = problem.along(problem.damping, &problem.motion)?.shortened(ROUGH);
+        let slope = problem.along(&slope, &problem.motion)?.shortened(ROUGH);
         Ok(Derivative {
-            reciprocal: SHORT.converted(&self.reciprocal, WORKING),
+            reciprocal: SHORT.converted(&problem.reciprocal, WORKING),
             squared: SHORT.converted(&self.squared, WORKING),
             by_damping: Multiplier::of(&damping),
             by_slope: Multiplier::of(&slope),
@@ -248,7 +348,7 @@ impl<'a> Equations<'a> {
 
     /// Both waves of the harmonics from one beyond the block up to another.
     fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
-        let (step, highest) = (self.certificate.step(), self.certificate.highest);
+        let (step, highest) = (self.problem.step(), self.problem.highest);
         let from = from.max(highest + 1);
         let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
         harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)])
@@ -257,20 +357,27 @@ impl<'a> Equations<'a> {
     /// `p D_k + p^2 h_k`.
     fn bent(&self, wave: Wave) -> Ball {
         WORKING.sum(
-            &WORKING.product(&self.reciprocal, &self.drag.coefficient(wave)),
+            &WORKING.product(&self.problem.reciprocal, &self.drag.coefficient(wave)),
             &WORKING.product(&self.squared, &self.force.coefficient(wave)),
         )
     }
 
     /// `D_k + 2 p h_k`, the derivative by p.
     fn by_reciprocal(&self, wave: Wave) -> Ball {
-        let twice = WORKING.scaled(&WORKING.product(&self.reciprocal, &self.force.coefficient(wave)), 2);
+        let twice = WORKING.scaled(
+            &WORKING.product(&self.problem.reciprocal, &self.force.coefficient(wave)),
+            2,
+        );
         WORKING.sum(&self.drag.coefficient(wave), &twice)
     }
 
     /// The last harmonic that any of the series has.
     fn last(&self) -> usize {
-        self.motion.length().max(self.drag.length()).max(self.force.length())
+        self.problem
+            .motion
+            .length()
+            .max(self.drag.length())
+            .max(self.force.length())
     }
 }
 
@@ -285,10 +392,12 @@ struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    fn of(certificate: &'a CycleCertificate) -> Result<Self, NotProved> {
-        let equations = Equations::of(certificate)?;
-        let inverse = Inverse::of(&certificate.inverse, certificate.inverse_bits, certificate.sigma);
-        let next = (certificate.highest + 1) as f64;
+    fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
+        // Without p among the unknowns all weigh the same.
+        let sigma = if problem.is_free() { problem.sigma } else { 0 };
+        let inverse = Inverse::of(problem.inverse, problem.inverse_bits, sigma);
+        let next = (problem.highest + 1) as f64;
+        let equations = Equations::of(problem)?;
         let beyond = Bound::exactly(1.0).over(next);
         let (mut size, mut size_of_derivative) = (beyond.over(next), beyond);
         for (column, wave) in equations.block.iter().enumerate() {
@@ -310,7 +419,7 @@ impl<'a> System<'a> {
             let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
             (
                 wave,
-                WORKING.difference(&self.equations.motion.coefficient(wave), &image),
+                WORKING.difference(&self.equations.problem.motion.coefficient(wave), &image),
             )
         });
         let vector: Vec<Ball> = self
@@ -318,7 +427,10 @@ impl<'a> System<'a> {
             .block
             .iter()
             .map(|&wave| {
-                let inertia = WORKING.scaled(&self.equations.motion.coefficient(wave), -i64::from(wave.squared()));
+                let inertia = WORKING.scaled(
+                    &self.equations.problem.motion.coefficient(wave),
+                    -i64::from(wave.squared()),
+                );
                 WORKING.sum(&inertia, &self.equations.bent(wave))
             })
             .collect();
@@ -332,7 +444,7 @@ impl<'a> System<'a> {
     fn defect(&self) -> Bound {
         let correction = self.correction();
         let beyond: Bound = correction.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
-        let unseen = WORKING.magnitude(&self.equations.reciprocal) * self.equations.drag.tail
+        let unseen = WORKING.magnitude(&self.equations.problem.reciprocal) * self.equations.drag.tail
             + WORKING.magnitude(&self.equations.squared) * self.equations.force.tail;
         self.inverse.norm(&correction.block, WORKING) + beyond + self.size * unseen
     }
@@ -341,12 +453,16 @@ impl<'a> System<'a> {
     fn contraction(&self, derivative: &Derivative) -> Result<Bound, NotProved> {
         let one = Bound::exactly(1.0);
         let [reciprocal, squared] =
-            [&self.equations.reciprocal, &self.equations.squared].map(|ball| WORKING.magnitude(ball));
-        let (highest, width) = (self.equations.certificate.highest, derivative.width());
+            [&self.equations.problem.reciprocal, &self.equations.squared].map(|ball| WORKING.magnitude(ball));
+        let (highest, width) = (self.equations.problem.highest, derivative.width());
         let unseen = self.size_of_derivative * reciprocal * derivative.damping.tail
             + self.size * squared * derivative.slope.tail;
-        let mut largest = self.column_of_reciprocal();
-        let in_block = self.equations.block.iter().enumerate().skip(1);
+        let mut largest = match self.equations.problem.is_free() {
+            true => self.column_of_reciprocal(),
+            false => Bound::ZERO,
+        };
+        let waves_from = self.equations.unknowns_before_waves();
+        let in_block = self.equations.block.iter().enumerate().skip(waves_from);
         let in_block = in_block.map(|(place, wave)| (*wave, Some(place)));
         // Where g and h' reach into the block, and beyond.
         let near = self.equations.beyond(0, highest + width).map(|wave| (wave, None));
@@ -367,7 +483,7 @@ impl<'a> System<'a> {
             if upto > MOST_COLUMNS {
                 return Err(NotProved::NoContraction(rest));
             }
-            upto += self.equations.certificate.step();
+            upto += self.equations.problem.step();
         };
         for wave in self.equations.beyond(highest + width + 1, upto) {
             largest = largest.max(self.column(derivative, wave, None));
@@ -386,7 +502,8 @@ impl<'a> System<'a> {
         let vector: Vec<Ball> = vector
             .map(|&wave| SHORT.converted(&self.equations.by_reciprocal(wave), WORKING))
             .collect();
-        let twice = WORKING.magnitude(&self.equations.reciprocal) + WORKING.magnitude(&self.equations.reciprocal);
+        let twice = WORKING.magnitude(&self.equations.problem.reciprocal)
+            + WORKING.magnitude(&self.equations.problem.reciprocal);
         let unseen = self.size * (self.equations.drag.tail + twice * self.equations.force.tail);
         (self.inverse.distance_from_unit(&vector, Some(0)) + tail + unseen).over(self.inverse.sigma.value())
     }
@@ -400,7 +517,7 @@ impl<'a> System<'a> {
             .map(|row| SHORT.magnitude(&SHORT.divided(&derivative.bent(row, column), row.squared())))
             .sum();
         // Far beyond, nothing of g and h' reaches the block.
-        if j > self.equations.certificate.highest + width {
+        if j > self.equations.problem.highest + width {
             return tail;
         }
         let vector: Vec<Ball> = self
@@ -416,24 +533,29 @@ impl<'a> System<'a> {
     fn curvature(&self, [damping, its_slope, force, slope, bend]: [Bound; 5], radius: Bound) -> Bound {
         let sigma = self.inverse.sigma.value();
         let (size, steep) = (self.size, self.size_of_derivative);
-        let reciprocal = WORKING.magnitude(&self.equations.reciprocal) + radius.over(sigma);
+        let known = WORKING.magnitude(&self.equations.problem.reciprocal);
+        let both_of_motion = |reciprocal: Bound| steep * reciprocal * its_slope + size * reciprocal * reciprocal * bend;
+        if !self.equations.problem.is_free() {
+            return both_of_motion(known);
+        }
+        let reciprocal = known + radius.over(sigma);
         let twice = |bound: Bound| bound + bound;
         let both_of_reciprocal = twice(size * force).over(sigma).over(sigma);
         let one_of_each = (steep * damping + twice(reciprocal * size * slope)).over(sigma);
-        let both_of_motion = steep * reciprocal * its_slope + size * reciprocal * reciprocal * bend;
-        both_of_reciprocal.max(one_of_each).max(both_of_motion)
+        both_of_reciprocal.max(one_of_each).max(both_of_motion(reciprocal))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::candidate::{certify_cycle, proved_by_some_block};
+    use super::super::candidate::{certify_cycle, certify_driven, proved_by_some_block};
+    use super::super::{DampedCertificate, check_damped};
     use super::*;
-    use crate::exact::{Integer, ratio};
-    use crate::expr::{Expr, parse_expression};
+    use crate::exact::ratio;
+    use crate::expr::parse_expression;
     use crate::{Options, Oscillator, solve};
 
-    fn certificate() -> CycleCertificate {
+    fn certificate() -> DampedCertificate {
         let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0").expect("an equation");
         let options = Options {
             order: Some(2),
@@ -445,7 +567,7 @@ mod tests {
     }
 
     /// A cycle nearby, of an equation that is neither odd nor one of polynomials.
-    fn skew() -> CycleCertificate {
+    fn skew() -> DampedCertificate {
         let mut certificate = certificate();
         let with = |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
         certificate.damping = with(&certificate.damping, "exp(-x/2)/10 + x/5");
@@ -463,10 +585,30 @@ mod tests {
         certificate
     }
 
+    /// A driven motion of an equation that is neither odd nor one of polynomials, with two waves, one of them before x.
+    fn driven() -> DampedCertificate {
+        let oscillator = Oscillator::parse("x'' + x'/5 + x + x^3/10 - cos(Omega*t)/2 = 0").expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at = "Omega = 6/5".parse().expect("values");
+        let (mut certificate, _) = certify_driven(&oscillator, &solution, &at).expect("a certificate");
+        let with = |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
+        certificate.damping = with(&certificate.damping, "exp(-x/2)/20 + x/20");
+        certificate.force = with(&certificate.force, "sin(x)/20 + x^2/40 + x*s/20 - c*s/10");
+        certificate.odd = false;
+        certificate.formula = None;
+        const LESS: usize = 64;
+        certificate.bits -= LESS;
+        for list in [&mut certificate.cosines, &mut certificate.sines] {
+            list.iter_mut().for_each(|units| *units = units.clone() >> LESS);
+        }
+        proved_by_some_block(&mut certificate, 20).expect("a proof");
+        certificate
+    }
+
     #[test]
     fn equations_that_are_not_of_polynomials() {
         let certificate = skew();
-        let certified = super::super::check_cycle(&certificate).expect("a proof");
+        let certified = check_damped(&certificate).expect("a proof");
         let equation = "x'' + x'*(-1/2 + x^2/2 + exp(-x/2)/10 + x/5) + x + sin(x)/10 + x^2/20 = 0";
         let truth = followed(equation);
         let omega = WORKING.nearest(&WORKING.fraction(&certified.frequency.middle));
@@ -532,14 +674,14 @@ mod tests {
     }
 
     impl Place {
-        fn of(certificate: &CycleCertificate, motion: &FourierSeries, reciprocal: &Ball) -> Self {
-            let value = |expression| along(expression, motion).expect("a value");
-            let slope = certificate.force.differentiate(coordinate()).expect("a slope");
+        fn of(problem: &Problem, motion: &FourierSeries, reciprocal: &Ball) -> Self {
+            let value = |expression| problem.along(expression, motion).expect("a value");
+            let slope = problem.force.differentiate(coordinate()).expect("a slope");
             let reciprocal = FourierSeries::constant(reciprocal.clone());
-            let damping = value(&certificate.damping);
+            let damping = value(problem.damping);
             let drag = damping.product(&motion.derivative());
             Self {
-                by_reciprocal: drag.sum(&reciprocal.product(&value(&certificate.force)).scaled(2)),
+                by_reciprocal: drag.sum(&reciprocal.product(&value(problem.force)).scaled(2)),
                 slope: value(&slope),
                 damping,
                 reciprocal,
@@ -559,6 +701,13 @@ mod tests {
         }
     }
 
+    /// The place of a wave among the unknowns of the block.
+    fn place_of(system: &System, wave: Wave) -> Option<usize> {
+        let first = system.equations.unknowns_before_waves();
+        let mut waves = system.equations.block[first..].iter();
+        waves.position(|other| *other == wave).map(|place| place + first)
+    }
+
     /// The norm of B of a series, less a direction.
     fn size_of_image(system: &System, series: &FourierSeries, less: Option<Option<Wave>>) -> f64 {
         let block = &system.equations.block;
@@ -566,10 +715,7 @@ mod tests {
         let mut image = image(&system.inverse.entries, &vector, WORKING);
         let place = |direction: Option<Wave>| match direction {
             None => Some(0),
-            Some(direction) => block[1..]
-                .iter()
-                .position(|wave| *wave == direction)
-                .map(|place| place + 1),
+            Some(direction) => place_of(system, direction),
         };
         let mut beyond = 0.0;
         for row in system.equations.beyond(0, series.length()) {
@@ -582,22 +728,25 @@ mod tests {
         beyond + system.inverse.norm(&image, WORKING).value()
     }
 
-    /// Every direction up to a harmonic, that of p first; with the weight that it has in the norm.
+    /// Every direction up to a harmonic, that of p first, where it is one; with the weight that it has in the norm.
     fn directions(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
-        let block = system.equations.block[1..].iter().copied();
+        let first = system.equations.unknowns_before_waves();
+        let block = system.equations.block[first..].iter().copied();
         let waves = block
             .chain(system.equations.beyond(0, highest))
             .map(|wave| (Some(wave), 1.0));
-        [(None, system.inverse.sigma.value())]
-            .into_iter()
-            .chain(waves)
-            .collect()
+        let reciprocal = (first > 0).then(|| (None, system.inverse.sigma.value()));
+        reciprocal.into_iter().chain(waves).collect()
     }
 
     /// Every column of `1 - B DF` by its definition, that of p first.
     fn columns(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
         let equations = &system.equations;
-        let place = Place::of(equations.certificate, &equations.motion, &equations.reciprocal);
+        let place = Place::of(
+            &equations.problem,
+            &equations.problem.motion,
+            &equations.problem.reciprocal,
+        );
         let column = |(direction, weight)| {
             let image = place.derivative(direction);
             (direction, size_of_image(system, &image, Some(direction)) / weight)
@@ -607,25 +756,25 @@ mod tests {
 
     #[test]
     fn no_column_is_larger_than_its_bound() {
-        for sound in [certificate(), skew()] {
+        for sound in [certificate(), skew(), driven()] {
             let mut spoilt = sound.clone();
             for row in &mut spoilt.inverse {
                 row[3] = &row[3] * Integer::from(3) / Integer::from(2);
             }
             let mut light = sound.clone();
-            light.sigma = -34;
+            match light.drive {
+                None => light.sigma = -34,
+                Some(_) => light = spoilt.clone(),
+            }
             for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
-                let system = System::of(certificate).expect("a system");
+                let system = System::of(certificate.problem()).expect("a system");
                 let derivative = system.equations.derivative().expect("a derivative");
                 let contraction = system.contraction(&derivative).map_or(f64::INFINITY, Bound::value);
                 assert_eq!(contraction < 0.5, is_proved, "{contraction}");
                 for (direction, size) in columns(&system, 3 * certificate.highest + 90) {
                     let bound = match direction {
                         None => system.column_of_reciprocal(),
-                        Some(wave) => {
-                            let place = system.equations.block[1..].iter().position(|other| *other == wave);
-                            system.column(&derivative, wave, place.map(|place| place + 1))
-                        }
+                        Some(wave) => system.column(&derivative, wave, place_of(&system, wave)),
                     };
                     // What was cut from g and h' is not in the column, but in the sum.
                     assert!(size <= bound.value() + 1e-9, "{direction:?}: {size}, {bound:?}");
@@ -640,10 +789,10 @@ mod tests {
     fn what_a_series_leaves_out_counts() {
         let certificate = certificate();
         let more = Bound::exactly(0.001);
-        let system = || System::of(&certificate).expect("a system");
+        let system = || System::of(certificate.problem()).expect("a system");
         let own = system();
         let size = own.size.value();
-        let reciprocal = WORKING.nearest(&own.equations.reciprocal);
+        let reciprocal = WORKING.nearest(&own.equations.problem.reciprocal);
         let squared = reciprocal * reciprocal;
         let (mut drag, mut force) = (system(), system());
         drag.equations.drag.tail += more;
@@ -668,18 +817,29 @@ mod tests {
         // A harmonic beyond the block is off by itself.
         let mut shaken = certificate.clone();
         shaken.cosines[41] += Integer::from(1) << (shaken.bits - 20);
-        let defect = System::of(&shaken).expect("a system").defect().value();
+        let defect = System::of(shaken.problem()).expect("a system").defect().value();
         assert!((defect * f64::from(1 << 20) - 1.0).abs() < 0.2, "{defect}");
     }
 
     #[test]
     fn the_second_derivative_is_no_larger_than_its_bound() {
-        let certificate = skew();
+        second_derivative_is_bounded(&skew());
+        second_derivative_is_bounded(&driven());
+    }
+
+    fn second_derivative_is_bounded(certificate: &DampedCertificate) {
         let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
-        let system = System::of(&certificate).expect("a system");
-        let ball = system.equations.motion.clone().widened(h);
+        let system = System::of(certificate.problem()).expect("a system");
+        let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
-        let norm = |expression: &Expr| along(expression, &ball).expect("a value").norm();
+        let norm = |expression: &Expr| {
+            system
+                .equations
+                .problem
+                .along(expression, &ball)
+                .expect("a value")
+                .norm()
+        };
         let (g, f) = (&certificate.damping, &certificate.force);
         // Of two directions, none, one or both of them the motion's: each has terms of its own.
         let bounds = [
@@ -695,16 +855,20 @@ mod tests {
         ]
         .map(|norms| system.curvature(norms, h).value());
         let directions = directions(&system, certificate.highest + 6);
-        let own = Place::of(&certificate, &system.equations.motion, &system.equations.reciprocal);
+        let own = Place::of(
+            &system.equations.problem,
+            &system.equations.problem.motion,
+            &system.equations.problem.reciprocal,
+        );
         for (from, weight) in directions.iter().take(6) {
-            let mut motion = system.equations.motion.clone();
-            let mut reciprocal = system.equations.reciprocal.clone();
+            let mut motion = system.equations.problem.motion.clone();
+            let mut reciprocal = system.equations.problem.reciprocal.clone();
             // So far that the norm of the step is h.
             match from {
                 None => reciprocal = WORKING.sum(&reciprocal, &within),
                 Some(from) => motion = motion.sum(&wave(*from).product(&FourierSeries::constant(within.clone()))),
             }
-            let moved = Place::of(&certificate, &motion, &reciprocal);
+            let moved = Place::of(&system.equations.problem, &motion, &reciprocal);
             for (along, other) in &directions {
                 let change = moved.derivative(*along).difference(&own.derivative(*along));
                 let size = size_of_image(&system, &change, None) / (h.value() * weight * other);

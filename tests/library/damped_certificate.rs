@@ -1,7 +1,7 @@
 //! Certificates of limit cycles against frequencies of another way: the exact series of van der Pol's equation, whose coefficients are
 //! fractions, to so high an order that what is left out is below the radius; and the judge's Runge-Kutta.
 
-use lindstedt::certificate::{CheckError, CycleCertificate, NotCertified, NotProved, certify_cycle, check_cycle};
+use lindstedt::certificate::{CheckError, DampedCertificate, NotCertified, NotProved, certify_cycle, check_damped};
 use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::solution::AmplitudeConvention;
@@ -23,12 +23,12 @@ fn solved(equation: &str, method: Option<Method>, order: u32) -> (Oscillator, So
     (oscillator, solution)
 }
 
-fn certified(equation: &str, order: u32, at: &str) -> CycleCertificate {
+fn certified(equation: &str, order: u32, at: &str) -> DampedCertificate {
     let (oscillator, solution) = solved(equation, None, order);
     let at: Values = at.parse().expect("values");
     let (certificate, proved) =
         certify_cycle(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{equation} at {at:?}: {error}"));
-    assert_eq!(check_cycle(&certificate), Ok(proved));
+    assert_eq!(check_damped(&certificate), Ok(proved));
     certificate
 }
 
@@ -49,8 +49,8 @@ fn series(mu: &Rational, order: u32) -> Rational {
 }
 
 /// Whether a true frequency is in the enclosure.
-fn contains(certificate: &CycleCertificate, truth: &Rational) -> Result<bool, CheckError> {
-    let frequency = check_cycle(certificate)?.frequency;
+fn contains(certificate: &DampedCertificate, truth: &Rational) -> Result<bool, CheckError> {
+    let frequency = check_damped(certificate)?.frequency;
     let radius = from_f64(frequency.radius.value()).expect("a finite bound");
     Ok((frequency.middle - truth).abs() <= radius)
 }
@@ -62,7 +62,7 @@ fn thirty_digits_of_van_der_pol() {
         let certificate = certified(VAN_DER_POL, 2, &format!("mu = {mu}"));
         let truth = series(&mu.parse().expect("a fraction"), order);
         assert_eq!(contains(&certificate, &truth), Ok(true), "mu = {mu}");
-        let known = check_cycle(&certificate).expect("a proof").frequency.radius.value();
+        let known = check_damped(&certificate).expect("a proof").frequency.radius.value();
         assert!(known < 1e-30, "mu = {mu}: {known}");
     }
 }
@@ -71,7 +71,7 @@ fn thirty_digits_of_van_der_pol() {
 fn strong_self_excitation() {
     for mu in ["3/2", "3"] {
         let certificate = certified(VAN_DER_POL, 4, &format!("mu = {mu}"));
-        let proved = check_cycle(&certificate).expect("a proof");
+        let proved = check_damped(&certificate).expect("a proof");
         let (oscillator, solution) = solved(VAN_DER_POL, None, 4);
         let at: Values = format!("mu = {mu}").parse().expect("values");
         let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
@@ -150,7 +150,7 @@ fn proved_errors_shrink_with_the_power_that_is_left_out() {
     assert!((large / small - 625.2).abs() < 0.1, "{small}, {large}");
     let order = |order: u32| {
         let upper = |mu: &str| {
-            let proved = check_cycle(&certified(VAN_DER_POL, order, &format!("mu = {mu}"))).expect("a proof");
+            let proved = check_damped(&certified(VAN_DER_POL, order, &format!("mu = {mu}"))).expect("a proof");
             proved.formula.expect("a formula").frequency.upper
         };
         (upper("1/10") / upper("1/20")).log2()
@@ -182,7 +182,7 @@ fn other_forces_and_dampings() {
             "{equation}"
         );
         assert!(proved.frequency.radius.value() < 1e-26, "{equation}: {proved:?}");
-        assert_eq!(check_cycle(&certificate), Ok(proved), "{equation}");
+        assert_eq!(check_damped(&certificate), Ok(proved), "{equation}");
     }
 }
 
@@ -191,7 +191,7 @@ fn the_characteristic_exponent_is_that_of_the_mean_damping() {
     // The cycle attracts for mu > 0; backwards in time it repels as fast.
     let exponent = |mu: &str| {
         let certificate = certified(VAN_DER_POL, 2, &format!("mu = {mu}"));
-        check_cycle(&certificate)
+        check_damped(&certificate)
             .expect("a proof")
             .exponent
             .expect("an exponent")
@@ -214,10 +214,12 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
         panic!("another reason");
     };
     assert_eq!(term, "mu*x'^3/3");
+    let friction = refused("x'' - (1 - x^2)*x'/3 + sgn(x')/50 + x = 0", "");
+    assert!(matches!(friction, NotCertified::NotLienard { term, .. } if term == "sgn(x')/50"));
     // The velocity of Rayleigh's oscillator is a motion of van der Pol's.
     let of_velocity = of_velocity.expect("an equation");
     let omega = |equation: &str| {
-        check_cycle(&certified(equation, 2, "mu = 1/10"))
+        check_damped(&certified(equation, 2, "mu = 1/10"))
             .expect("a proof")
             .frequency
             .middle
@@ -237,7 +239,7 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
 }
 
 /// A change of one number of a certificate, by a power of two of its last digits.
-fn change(certificate: &mut CycleCertificate, which: u8, place: usize, bit: usize, sign: bool) {
+fn change(certificate: &mut DampedCertificate, which: u8, place: usize, bit: usize, sign: bool) {
     let by = Integer::from(if sign { 1 } else { -1 }) << bit;
     let size = certificate.inverse.len();
     match which {
@@ -293,7 +295,7 @@ proptest! {
         stiffer.force = &stiffer.force + &parse_expression("x/1000000").expect("an expression");
         for mut question in [other, stiffer] {
             question.claim = claim.clone();
-            prop_assert!(check_cycle(&question).is_err());
+            prop_assert!(check_damped(&question).is_err());
         }
     }
 }
@@ -301,17 +303,17 @@ proptest! {
 #[test]
 fn each_inequality_is_checked() {
     let sound = certified(VAN_DER_POL, 2, "mu = 1/2");
-    let reason = |change: &dyn Fn(&mut CycleCertificate)| {
+    let reason = |change: &dyn Fn(&mut DampedCertificate)| {
         let mut certificate = sound.clone();
         certificate.claim = ratio(10, 1);
         certificate.formula = None;
         change(&mut certificate);
-        check_cycle(&certificate).expect_err("a certificate that does not hold")
+        check_damped(&certificate).expect_err("a certificate that does not hold")
     };
     let no_contraction = |error: CheckError| matches!(error, CheckError::NotProved(NotProved::NoContraction(_)));
     // Z1: an inverse that is none, in one column or in all.
     for column in 0..sound.inverse.len() {
-        let without = move |certificate: &mut CycleCertificate| {
+        let without = move |certificate: &mut DampedCertificate| {
             certificate
                 .inverse
                 .iter_mut()
@@ -347,11 +349,11 @@ fn each_inequality_is_checked() {
     )));
     // A harmonic far beyond the block is a part of the defect too.
     let shaken =
-        |certificate: &mut CycleCertificate| certificate.cosines[41] += Integer::from(1) << (certificate.bits - 20);
+        |certificate: &mut DampedCertificate| certificate.cosines[41] += Integer::from(1) << (certificate.bits - 20);
     let mut certificate = sound.clone();
     shaken(&mut certificate);
     assert!(matches!(
-        check_cycle(&certificate),
+        check_damped(&certificate),
         Err(CheckError::ClaimedLess { what: "the radius", .. } | CheckError::NotProved(_))
     ));
     // At rest: every inequality may hold but that of the first harmonic.
@@ -376,7 +378,7 @@ fn each_inequality_is_checked() {
         formula.deviation[1] = &formula.deviation[1] / Integer::from(2);
     }
     assert!(matches!(
-        check_cycle(&boastful),
+        check_damped(&boastful),
         Err(CheckError::ClaimedLess {
             what: "the deviation",
             ..
@@ -385,14 +387,14 @@ fn each_inequality_is_checked() {
     // The symmetry.
     for spoil in ["x^2", "1/10"] {
         let more = parse_expression(spoil).expect("an expression");
-        let even = |certificate: &mut CycleCertificate| certificate.force = &certificate.force + &more;
+        let even = |certificate: &mut DampedCertificate| certificate.force = &certificate.force + &more;
         assert_eq!(reason(&even), CheckError::NotProved(NotProved::NotOdd));
     }
-    let skew = |certificate: &mut CycleCertificate| certificate.damping = &certificate.damping + &Expr::symbol("x");
+    let skew = |certificate: &mut DampedCertificate| certificate.damping = &certificate.damping + &Expr::symbol("x");
     assert_eq!(reason(&skew), CheckError::NotProved(NotProved::NotOdd));
     // Sizes, and the phase.
     for spoil in [
-        (|certificate: &mut CycleCertificate| certificate.inverse.truncate(2)) as fn(&mut CycleCertificate),
+        (|certificate: &mut DampedCertificate| certificate.inverse.truncate(2)) as fn(&mut DampedCertificate),
         |certificate| certificate.highest = 100_000,
         |certificate| certificate.bits = 1_000_000,
         |certificate| certificate.sigma = i32::MIN,

@@ -1,0 +1,429 @@
+//! The numbers of a certificate of a limit cycle or a driven motion: Newton's iteration from the true one in doubles. Nothing here is
+//! trusted.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::DMatrix;
+use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
+
+use super::super::candidate::{
+    BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverted, iterate, judged,
+    not_proved, shorten, subtract, unclaimed, units, weight, written_out,
+};
+use super::super::force::{is_even, is_odd};
+use super::super::fourier_series::{WORKING, Wave};
+use super::super::radii_polynomial::NotProved;
+use super::super::{Certified, HIGHEST_HARMONIC, coordinate};
+use super::theorem::{correction, derivative_of_block, prove, waves_of_drive};
+use super::{DampedCertificate, Drive};
+use crate::exact::ball::Balls;
+use crate::exact::bound::Bound;
+use crate::exact::{Integer, Rational};
+use crate::expr::{Expr, ExprError, Function, Node};
+use crate::method::motion::NoMotion;
+use crate::numeric::harmonics::{Harmonics, Transform};
+use crate::oscillator::{Oscillator, Parts};
+use crate::solution::Solution;
+use crate::symbol::Symbol;
+use crate::values::Values;
+use crate::verify;
+
+/// A certificate of the limit cycle that a formula is about, and what it proves of the formula.
+///
+/// # Errors
+/// [`NotCertified`].
+pub fn certify_cycle(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<(DampedCertificate, Certified), NotCertified> {
+    if at.get(solution.amplitude.symbol()).is_some() {
+        return Err(NotCertified::OffCycle);
+    }
+    let [damping, force] = lienard(oscillator, at)?;
+    let samples = verify::motions(oscillator, solution, at)?
+        .ok_or(NoMotion::NotReal)?
+        .truth;
+    let (values, _) = at.split(&oscillator.parameters);
+    let equilibrium = solution.equilibrium.substitute_all(&values)?;
+    let odd = equilibrium.is_zero() && is_odd(&force, &[coordinate()])? && is_even(&damping, &[coordinate()])?;
+    let (reciprocal, harmonics) = from_samples(&samples, odd);
+    let seen = harmonics.cosines.len().max(harmonics.sines.len());
+    if seen >= HIGHEST_HARMONIC {
+        return Err(NotCertified::TooManyHarmonics(HIGHEST_HARMONIC));
+    }
+    let bits = digits(seen);
+    let formula = judged(solution, at, bits)?;
+    let coefficients = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
+    let mut certificate = DampedCertificate {
+        damping,
+        force,
+        drive: None,
+        odd,
+        bits,
+        reciprocal: units(reciprocal, bits),
+        cosines: coefficients(&harmonics.cosines),
+        sines: coefficients(&harmonics.sines),
+        // Many harmonics bring it near in few steps; how many a proof needs is another question.
+        highest: (3 * seen / 2).clamp(15, most(odd)) | 1,
+        inverse_bits: INVERSE_BITS,
+        inverse: vec![],
+        sigma: 0,
+        claim: Rational::zero(),
+        formula: Some(formula),
+    };
+    let certified = proved_by_some_block(&mut certificate, seen)?;
+    Ok((certificate, certified))
+}
+
+/// A certificate of the steady motion that the verdict on a driven formula is about, the largest stable one, and what it proves of the
+/// formula.
+///
+/// # Errors
+/// [`NotCertified`].
+///
+/// ```
+/// use lindstedt::certificate::{certify_driven, check_damped};
+/// use lindstedt::{Oscillator, Options, solve};
+///
+/// let oscillator = Oscillator::parse("x'' + x'/5 + x + x^3/10 - cos(Omega*t)/10 = 0")?;
+/// let solution = solve(&oscillator, &Options::default())?;
+/// let (certificate, certified) = certify_driven(&oscillator, &solution, &"Omega = 1".parse()?)?;
+/// let amplitude = certified.amplitude.as_ref().ok_or("no amplitude")?;
+/// assert!(amplitude.radius.value() < 1e-30);
+/// assert_eq!(check_damped(&certificate)?, certified);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn certify_driven(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<(DampedCertificate, Certified), NotCertified> {
+    let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
+    let resonance = resonance.ok_or(NotCertified::NoSteadyMotion)?;
+    let (values, _) = at.split(&oscillator.parameters);
+    let given = resonance.driving_frequency.substitute_all(&values)?.expand()?;
+    let frequency = given
+        .as_number()
+        .map(|number| number.abs())
+        .filter(|number| !number.is_zero());
+    let frequency = frequency.ok_or_else(|| NotCertified::DrivingFrequency(given.to_string()))?;
+    let [damping, force] = driven_parts(oscillator, &values, &frequency)?;
+    let samples = verify::motions(oscillator, solution, at)?.ok_or(NotCertified::NoSteadyMotion)?;
+    let places =
+        |samples: &[verify::Sample]| -> Vec<f64> { samples[..samples.len() - 1].iter().map(|(_, x, _)| *x).collect() };
+    let truth = harmonics_of(&places(&samples.truth));
+    let seen = truth.cosines.len().max(truth.sines.len());
+    let (periods, harmonic) = (resonance.times_linear as usize, resonance.times_driving as usize);
+    let own = |harmonics: &Harmonics| {
+        let part = |list: &[f64]| list.get(harmonic).copied().unwrap_or(0.0);
+        part(&harmonics.cosines).hypot(part(&harmonics.sines))
+    };
+    let formula = harmonics_of(&places(&samples.formula));
+    if own(&truth) < NOISE || own(&formula) < NOISE {
+        return Err(NotCertified::NoSteadyMotion);
+    }
+    if seen >= HIGHEST_HARMONIC / 2 {
+        return Err(NotCertified::TooManyHarmonics(HIGHEST_HARMONIC / 2));
+    }
+    let bits = digits(seen);
+    let coefficients = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
+    let waves = [&formula.cosines[..], &formula.sines];
+    let mut judged = unclaimed(solution, Integer::zero(), waves, bits);
+    if let Some(response) = &solution.response {
+        judged.law = format!("{} = {}", solution.coordinate(), response.motion);
+    }
+    let mut certificate = DampedCertificate {
+        damping,
+        force,
+        drive: Some(Drive {
+            frequency,
+            periods,
+            harmonic,
+        }),
+        odd: false,
+        bits,
+        reciprocal: Integer::zero(),
+        cosines: coefficients(&truth.cosines),
+        sines: coefficients(&truth.sines),
+        highest: 1,
+        inverse_bits: INVERSE_BITS,
+        inverse: vec![],
+        sigma: 0,
+        claim: Rational::zero(),
+        formula: Some(judged),
+    };
+    // A motion of an odd equation need not be odd: after its symmetry is broken it is not.
+    certificate.odd = has_odd_alone(&truth) && certificate.is_odd()?;
+    if certificate.odd {
+        for list in [&mut certificate.cosines, &mut certificate.sines] {
+            list.iter_mut().step_by(2).for_each(|even| *even = Integer::zero());
+        }
+    }
+    certificate.highest = (3 * seen / 2).clamp(15, most(certificate.odd)) | 1;
+    let certified = proved_by_some_block(&mut certificate, seen)?;
+    Ok((certificate, certified))
+}
+
+/// The harmonics of samples of one period, the constant as it is, without those at the end that have no digits.
+fn harmonics_of(places: &[f64]) -> Harmonics {
+    let mut found = Transform::new(places.len()).harmonics(places, HIGHEST_HARMONIC.min(places.len() / 2));
+    // Of the constant twice the mean.
+    found.cosines[0] /= 2.0;
+    let largest = found.cosines.iter().chain(&found.sines);
+    let largest = largest.fold(0.0_f64, |most, value| most.max(value.abs()));
+    for list in [&mut found.cosines, &mut found.sines] {
+        while list.len() > 2 && list.last().is_some_and(|last| last.abs() < NOISE * largest) {
+            list.pop();
+        }
+    }
+    found
+}
+
+/// Whether the even harmonics are noise.
+fn has_odd_alone(harmonics: &Harmonics) -> bool {
+    let all = || harmonics.cosines.iter().chain(&harmonics.sines);
+    let largest = all().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let even = [&harmonics.cosines, &harmonics.sines].map(|list| list.iter().step_by(2));
+    even.into_iter()
+        .flatten()
+        .all(|value| value.abs() < 1e3 * NOISE * largest)
+}
+
+/// g and h of `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, with numbers.
+fn driven_parts(
+    oscillator: &Oscillator,
+    values: &BTreeMap<Symbol, Expr>,
+    frequency: &Rational,
+) -> Result<[Expr; 2], NotCertified> {
+    let (time, velocity) = (Symbol::new("t"), oscillator.velocity());
+    for term in oscillator.force.terms() {
+        if !is_linear_in(term, velocity)? || term.differentiate(velocity)?.contains(time) {
+            return Err(NotCertified::NotDriven(term.to_string()));
+        }
+    }
+    let in_numbers = |expression: Expr| {
+        let expression = expression.substitute_all(values)?;
+        let expression = in_waves(&expression, time, frequency)?;
+        Ok::<Expr, NotCertified>(expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)
+    };
+    let damping = in_numbers(oscillator.force.differentiate(velocity)?)?;
+    let force = in_numbers(oscillator.force.substitute(velocity, &Expr::zero())?)?;
+    Ok([written_out(damping)?, force])
+}
+
+/// An expression with the letters of `cos(Omega t)` and `sin(Omega t)` in place of time.
+fn in_waves(expression: &Expr, time: Symbol, frequency: &Rational) -> Result<Expr, NotCertified> {
+    let own = waves_of_drive();
+    if let Some(taken) = own.iter().find(|name| expression.contains(**name)) {
+        return Err(NotCertified::NotDriven(taken.to_string()));
+    }
+    let other = |node: &Expr| NotCertified::NotDriven(node.to_string());
+    expression.fold(|node, children: &[Expr]| match node.node() {
+        Node::Function(Function::Sin | Function::Cos, _) if children.iter().any(|child| child.contains(time)) => {
+            let argument = children[0].expand()?;
+            let rate = argument.differentiate(time)?.expand()?;
+            let times = rate
+                .as_number()
+                .map(|rate| rate / frequency)
+                .filter(Rational::is_integer);
+            let times = times
+                .and_then(|times| times.to_integer().to_i32())
+                .ok_or_else(|| other(node))?;
+            let [cosine, sine] = multiple(own, times).ok_or_else(|| other(node))?;
+            // cos(k Omega t + b) and sin of the same, b all the rest.
+            let rest = argument.substitute(time, &Expr::zero())?;
+            let [cosine_of_rest, sine_of_rest] =
+                [Function::Cos, Function::Sin].map(|function| Expr::function(function, vec![rest.clone()]));
+            let (cosine_of_rest, sine_of_rest) = (cosine_of_rest?, sine_of_rest?);
+            Ok(match node.node() {
+                Node::Function(Function::Cos, _) => &(&cosine * &cosine_of_rest) - &(&sine * &sine_of_rest),
+                _ => &(&sine * &cosine_of_rest) + &(&cosine * &sine_of_rest),
+            })
+        }
+        // Time itself stays until a wave takes it up.
+        Node::Symbol(_) | Node::Number(_) | Node::Pi => Ok(node.clone()),
+        _ => Ok(node.with_children(children)?),
+    })
+}
+
+/// Cosine and sine of a whole multiple of an angle, in those of the angle.
+fn multiple([cosine, sine]: [Symbol; 2], times: i32) -> Option<[Expr; 2]> {
+    const MOST: u32 = 20;
+    let [one_cosine, one_sine] = [cosine, sine].map(Expr::from);
+    let mut found = [Expr::one(), Expr::zero()];
+    for _ in 0..times.unsigned_abs().min(MOST + 1) {
+        let [cosine, sine] = found;
+        found = [
+            &(&cosine * &one_cosine) - &(&sine * &one_sine),
+            &(&sine * &one_cosine) + &(&cosine * &one_sine),
+        ];
+    }
+    let [cosine, sine] = found;
+    (times.unsigned_abs() <= MOST).then(|| [cosine, if times < 0 { -sine } else { sine }])
+}
+
+/// Brings a certificate near, and finds the smallest block that proves it.
+///
+/// # Errors
+/// As [`certify_cycle`].
+pub(super) fn proved_by_some_block(
+    certificate: &mut DampedCertificate,
+    seen: usize,
+) -> Result<Certified, NotCertified> {
+    refine(certificate).map_err(|reason| not_proved(reason, certificate.problem().block().len()))?;
+    let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
+    let most = most(certificate.odd);
+    for highest in blocks(seen).take_while(|highest| *highest <= most) {
+        certificate.highest = highest;
+        match proved(certificate) {
+            Ok(certified) => return Ok(certified),
+            Err(error @ NotProved::NoContraction(_)) => reason = error,
+            Err(error) => return Err(not_proved(error, certificate.problem().block().len())),
+        }
+    }
+    Err(not_proved(reason, certificate.problem().block().len()))
+}
+
+/// The last harmonic of the largest block; without symmetry one has twice as many unknowns.
+const fn most(odd: bool) -> usize {
+    match odd {
+        true => HIGHEST_HARMONIC - 1,
+        false => HIGHEST_HARMONIC / 2 - 1,
+    }
+}
+
+/// Binary digits behind the point: fewer of a motion of more harmonics, for the number of harmonics and with its square the time grow with
+/// them.
+fn digits(seen: usize) -> usize {
+    /// A motion of so many harmonics in doubles has all digits.
+    const MANY: usize = 120;
+    /// No fewer: those of the doubles.
+    const FEWEST: usize = 60;
+    (BITS * MANY / seen.max(1)).clamp(FEWEST, BITS)
+}
+
+/// g and h of `x'' + g(x) x' + h(x) = 0`, with numbers.
+fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertified> {
+    let parts = oscillator.parts()?;
+    if !parts.forcing.is_zero() {
+        return Err(NotCertified::NotConservative(parts.forcing.to_string()));
+    }
+    let velocity = oscillator.velocity();
+    let mut terms = parts.damping.terms().to_vec();
+    terms.extend(parts.inertia.terms().iter().filter(|term| !term.is_zero()).cloned());
+    for term in terms {
+        if !is_linear_in(&term, velocity)? {
+            return Err(NotCertified::NotLienard {
+                term: term.to_string(),
+                of_velocity: of_velocity(oscillator, &parts),
+            });
+        }
+    }
+    let (values, _) = at.split(&oscillator.parameters);
+    let in_numbers = |expression: Expr| {
+        let expression = expression.substitute_all(&values)?;
+        written_out(expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)
+    };
+    let damping = oscillator.force.differentiate(velocity)?;
+    let force = oscillator.force.substitute(velocity, &Expr::zero())?;
+    Ok([in_numbers(damping)?, in_numbers(force)?])
+}
+
+/// Whether a term is a multiple of a letter, or free of it. The derivative alone does not say: that of `sgn` is zero.
+fn is_linear_in(term: &Expr, letter: Symbol) -> Result<bool, ExprError> {
+    let slope = term.differentiate(letter)?;
+    let rest = (term - &(&slope * &Expr::from(letter))).expand()?;
+    Ok(!slope.contains(letter) && !rest.contains(letter))
+}
+
+/// The equation of `v = x'`, `v'' + D'(v) v' + k v = 0` where that of x is `x'' + D(x') + k x = 0`, in the letter of x.
+fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
+    let (coordinate, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let stiffness = parts.restoring.differentiate(coordinate).ok()?;
+    let lost = &parts.damping + &parts.inertia;
+    let linear = !stiffness.contains(coordinate)
+        && !lost.contains(coordinate)
+        && parts.restoring.substitute(coordinate, &Expr::zero()).ok()?.is_zero();
+    let slope = lost.differentiate(velocity).ok()?;
+    let damping = slope.substitute(velocity, &Expr::from(coordinate)).ok()?;
+    let drag = &damping * &Expr::from(velocity);
+    let force = &drag + &(&stiffness * &Expr::from(coordinate));
+    let acceleration = Expr::from(velocity.derivative());
+    linear.then(|| format!("{} = 0", &acceleration + &force))
+}
+
+/// `1/omega` and the harmonics of one period, turned so that the first one is a positive cosine.
+fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Harmonics) {
+    let count = samples.len() - 1;
+    let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
+    let found = Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2));
+    let phase = found.sines[1].atan2(found.cosines[1]);
+    let mut turned = Harmonics {
+        cosines: vec![found.cosines[0] / 2.0],
+        sines: vec![0.0],
+    };
+    for (k, (a, b)) in found.cosines.iter().zip(&found.sines).enumerate().skip(1) {
+        let (sine, cosine) = (k as f64 * phase).sin_cos();
+        turned.cosines.push(a * cosine + b * sine);
+        turned.sines.push(b * cosine - a * sine);
+    }
+    turned.sines[1] = 0.0;
+    let largest = turned.cosines.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    for list in [&mut turned.cosines, &mut turned.sines] {
+        if odd {
+            list.iter_mut().step_by(2).for_each(|even| *even = 0.0);
+        }
+        while list.len() > 2 && list.last().is_some_and(|last| last.abs() < NOISE * largest) {
+            list.pop();
+        }
+    }
+    (samples[count].0 / TAU, turned)
+}
+
+/// The inverse of the derivative on the block, in doubles.
+fn inverse(certificate: &DampedCertificate) -> Result<Vec<Vec<Integer>>, NotProved> {
+    let rows = derivative_of_block(certificate.problem())?;
+    inverted(DMatrix::from_fn(rows.len(), rows.len(), |row, column| {
+        rows[row][column]
+    }))
+}
+
+/// Newton's iteration with one inverse.
+fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
+    let bits = certificate.bits;
+    certificate.inverse = inverse(certificate)?;
+    let step = |certificate: &DampedCertificate| correction(certificate.problem());
+    iterate(certificate, few_units(bits), step, |certificate, step| {
+        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
+        let block = certificate.problem().block();
+        // That of 1/omega is the first, where the drive does not give it.
+        let first = usize::from(certificate.drive.is_none());
+        if certificate.drive.is_none() {
+            certificate.reciprocal -= short(&step.block[0]);
+        }
+        let corrections = block[first..].iter().zip(&step.block[first..]);
+        for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
+            match *wave {
+                Wave::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
+                Wave::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
+            }
+        }
+        shorten(&mut certificate.cosines);
+        shorten(&mut certificate.sines);
+    })
+}
+
+/// Checks a certificate with its block, and claims what is proved.
+fn proved(certificate: &mut DampedCertificate) -> Result<Certified, NotProved> {
+    certificate.inverse = inverse(certificate)?;
+    if certificate.drive.is_none() {
+        certificate.sigma = weight(&certificate.inverse);
+    }
+    let proof = prove(certificate.problem())?;
+    [_, certificate.claim] = claimed(proof.radius.value());
+    let certified = certificate.certified(proof)?;
+    claim_errors(certificate.formula.as_mut(), &certified);
+    Ok(certified)
+}

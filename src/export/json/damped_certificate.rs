@@ -1,0 +1,260 @@
+//! Kind `certificate`, of a limit cycle or a driven motion: numbers from which it, and the error of a formula, can be proved.
+//!
+//! Every number is text, as in the certificate of a conservative motion, from which it is told by `ode`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::certificate::{
+    ForceDocument, check_sizes, decimal, force, fraction, integer, integers, matrix, range, short, texts,
+};
+use super::schema::check_kind;
+use super::{JsonError, Kind, unexpected};
+use crate::certificate::{DampedCertificate, Drive, JudgedFormula};
+use crate::exact::Rational;
+
+/// What `ode` of a certificate of a limit cycle has.
+pub const EQUATION_OF_CYCLES: &str = "x''+g(x)*x'+h(x)=0";
+
+/// What `ode` of a certificate of a driven motion has; c and s are `cos(Omega t)` and `sin(Omega t)`.
+pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
+
+/// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion with a drive in h, and how far a formula
+/// for it is off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`. The first harmonic of a
+/// cycle has no sine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
+pub struct DampedCertificateDocument {
+    /// The kind of document.
+    #[schemars(extend("const" = Kind::Certificate.schema()))]
+    pub schema: String,
+    /// The equation that g and h belong to.
+    #[schemars(extend("enum" = [EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE]))]
+    pub ode: String,
+    /// The damping by velocity: the coefficients of a polynomial by rising power of x, or an expression in x.
+    pub g: ForceDocument,
+    /// The restoring force, likewise; with a drive an expression in x, c = cos(Omega t) and s = sin(Omega t).
+    pub h: ForceDocument,
+    /// What drives the motion; not there for a limit cycle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive: Option<DriveDocument>,
+    /// Whether g is even, h odd and the motion of odd harmonics alone, and so the block; with a drive h is odd in x and in what of c and s
+    /// changes its sign after half a period of the motion.
+    pub odd: bool,
+    /// `p`, `c`, `s` and the numbers of the formula are integers times 2^-bits; at most 224.
+    pub bits: usize,
+    /// The approximate 1/omega; not there with a drive, n/Omega exactly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub p: Option<String>,
+    /// The approximate cosine coefficients of the motion, that of the constant first.
+    pub c: Vec<String>,
+    /// The approximate sine coefficients by harmonic; that of the constant is 0, and of a limit cycle that of the first harmonic
+    /// too.
+    pub s: Vec<String>,
+    /// The last harmonic of the block; at most 400, and the block has at most 401 unknowns.
+    #[serde(rename = "K")]
+    pub highest: usize,
+    /// The entries of `A_block` are integers times 2^-Abits; at most 224.
+    #[serde(rename = "Abits")]
+    pub inverse_bits: usize,
+    /// The approximate inverse of the derivative on the block, row by row. The columns are those of the equations: the sine of the first
+    /// harmonic, then cosine and sine of each harmonic, the others; the rows those of the unknowns: p, then the same. With a
+    /// drive both are cosine and sine of each harmonic.
+    #[serde(rename = "A_block")]
+    pub inverse: Vec<Vec<String>>,
+    /// The norm is sigma |p| + sum (|c_k| + |s_k|), sigma = 2^sigma_log2; 0 with a drive, where there is no p.
+    pub sigma_log2: i32,
+    /// The weight of a harmonic from one to the next; 1.
+    #[schemars(extend("const" = "1"))]
+    pub nu: String,
+    /// The radius that is claimed: the true p, c and s are so near in the norm.
+    pub claim_r: String,
+    /// The formula that is judged, of a limit cycle turned until its first harmonic is a positive cosine; null where none is.
+    pub formula: Option<DampedFormulaDocument>,
+}
+
+/// What drives a motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields, rename = "CertificateDrive")]
+pub struct DriveDocument {
+    /// The driving frequency, a positive fraction, exact.
+    #[serde(rename = "Omega")]
+    pub frequency: String,
+    /// How many periods of the drive the motion takes: x(t) = X(Omega t/n).
+    #[serde(rename = "n")]
+    pub periods: usize,
+    /// The harmonic of the motion whose amplitude the formula is about.
+    pub harmonic: usize,
+}
+
+/// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below and from above.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle")]
+pub struct DampedFormulaDocument {
+    /// The law as it was derived, in words; nothing is checked against it.
+    pub law: String,
+    /// omega~, an integer times 2^-bits; not there with a drive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub omega: Option<String>,
+    /// The cosine coefficients of X~, that of the constant first, likewise.
+    pub c: Vec<String>,
+    /// Its sine coefficients by harmonic, likewise.
+    pub s: Vec<String>,
+    /// max |X - X~|, of a limit cycle X~ turned until its first harmonic is a positive cosine, in the unit of x.
+    pub phase_error: [String; 2],
+    /// |omega - omega~|; not there with a drive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_error: Option<[String; 2]>,
+    /// max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t, both with this phase at t = 0; not there with a drive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<[String; 2]>,
+    /// |a - a~|, the amplitudes of the drive's harmonic; not there for a limit cycle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub amplitude_error: Option<[String; 2]>,
+}
+
+/// The document of kind `certificate` of a limit cycle or a driven motion.
+///
+/// ```
+/// use lindstedt::certificate::certify_cycle;
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?;
+/// let solution = solve(&oscillator, &Options::default())?;
+/// let (certificate, _) = certify_cycle(&oscillator, &solution, &"mu = 1/10".parse()?)?;
+/// let document = lindstedt::export::json::damped_certificate(&certificate);
+/// assert_eq!(document.ode, "x''+g(x)*x'+h(x)=0");
+/// assert_eq!(document.read()?, certificate);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateDocument {
+    DampedCertificateDocument {
+        schema: Kind::Certificate.schema().to_owned(),
+        ode: match certificate.drive {
+            None => EQUATION_OF_CYCLES.to_owned(),
+            Some(_) => EQUATION_WITH_DRIVE.to_owned(),
+        },
+        g: force(&certificate.damping),
+        h: force(&certificate.force),
+        drive: certificate.drive.as_ref().map(|drive| DriveDocument {
+            frequency: drive.frequency.to_string(),
+            periods: drive.periods,
+            harmonic: drive.harmonic,
+        }),
+        odd: certificate.odd,
+        bits: certificate.bits,
+        p: certificate.drive.is_none().then(|| certificate.reciprocal.to_string()),
+        c: texts(&certificate.cosines),
+        s: texts(&certificate.sines),
+        highest: certificate.highest,
+        inverse_bits: certificate.inverse_bits,
+        inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
+        sigma_log2: certificate.sigma,
+        nu: "1".to_owned(),
+        claim_r: short(&certificate.claim),
+        formula: certificate
+            .formula
+            .as_ref()
+            .map(|judged| formula(judged, certificate.drive.is_some())),
+    }
+}
+
+fn formula(formula: &JudgedFormula, is_driven: bool) -> DampedFormulaDocument {
+    let both = |claims: &[Rational; 2]| claims.each_ref().map(short);
+    DampedFormulaDocument {
+        law: formula.law.clone(),
+        omega: (!is_driven).then(|| formula.frequency.to_string()),
+        c: texts(&formula.coefficients),
+        s: texts(&formula.sines),
+        phase_error: both(&formula.deviation),
+        frequency_error: (!is_driven).then(|| both(&formula.frequency_error)),
+        drift: (!is_driven).then(|| both(&formula.drift)),
+        amplitude_error: is_driven.then(|| both(&formula.amplitude_error)),
+    }
+}
+
+impl DampedFormulaDocument {
+    fn read(&self, is_driven: bool) -> Result<JudgedFormula, JsonError> {
+        let of_cycle = [
+            self.omega.is_some(),
+            self.frequency_error.is_some(),
+            self.drift.is_some(),
+        ];
+        if of_cycle != [!is_driven; 3] || self.amplitude_error.is_some() != is_driven {
+            return unexpected(
+                "formula",
+                "`omega`, `frequency_error` and `drift`, or with a drive `amplitude_error`",
+            );
+        }
+        let both = |claims: &Option<[String; 2]>, key| match claims {
+            Some(claims) => range(claims, key),
+            None => Ok(<[Rational; 2]>::default()),
+        };
+        Ok(JudgedFormula {
+            law: self.law.clone(),
+            frequency: integer(self.omega.as_deref().unwrap_or("0"), "omega")?,
+            coefficients: integers(&self.c, "formula.c")?,
+            sines: integers(&self.s, "formula.s")?,
+            deviation: range(&self.phase_error, "phase_error")?,
+            frequency_error: both(&self.frequency_error, "frequency_error")?,
+            drift: both(&self.drift, "drift")?,
+            amplitude_error: both(&self.amplitude_error, "amplitude_error")?,
+        })
+    }
+}
+
+impl DriveDocument {
+    fn read(&self) -> Result<Drive, JsonError> {
+        Ok(Drive {
+            frequency: fraction(&self.frequency, "drive.Omega")?,
+            periods: self.periods,
+            harmonic: self.harmonic,
+        })
+    }
+}
+
+impl DampedCertificateDocument {
+    /// The certificate that is written, with nothing checked but that it is one.
+    ///
+    /// # Errors
+    /// A key that holds something else, or more than a certificate ever has.
+    pub fn read(&self) -> Result<DampedCertificate, JsonError> {
+        check_kind(&self.schema, Kind::Certificate)?;
+        let is_driven = self.drive.is_some();
+        let expected = if is_driven {
+            EQUATION_WITH_DRIVE
+        } else {
+            EQUATION_OF_CYCLES
+        };
+        if self.ode != expected || self.p.is_some() == is_driven {
+            return unexpected(
+                "ode",
+                "`x''+g(x)*x'+h(x)=0` with `p`, or `x''+g(x)*x'+h(x,c,s)=0` with `drive`",
+            );
+        }
+        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
+        Ok(DampedCertificate {
+            damping: self.g.read("g")?,
+            force: self.h.read("h")?,
+            drive: self.drive.as_ref().map(DriveDocument::read).transpose()?,
+            odd: self.odd,
+            bits: self.bits,
+            reciprocal: integer(self.p.as_deref().unwrap_or("0"), "p")?,
+            cosines: integers(&self.c, "c")?,
+            sines: integers(&self.s, "s")?,
+            highest: self.highest,
+            inverse_bits: self.inverse_bits,
+            inverse: matrix(&self.inverse)?,
+            sigma: self.sigma_log2,
+            claim: decimal(&self.claim_r, "claim_r")?,
+            formula: self
+                .formula
+                .as_ref()
+                .map(|formula| formula.read(is_driven))
+                .transpose()?,
+        })
+    }
+}

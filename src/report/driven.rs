@@ -121,7 +121,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
     let mut blocks = vec![Block::Heading(format!("Steady motions{at}, beside the true ones"))];
     if verification.steady_states.is_empty() {
         blocks.push(Block::Note(
-            "none: the slow equations have no steady motion at these values".to_owned(),
+            "none: to this order the frequency response has no root at these values".to_owned(),
         ));
     } else {
         let heading = |text, latex| Heading { text, latex };

@@ -156,6 +156,8 @@ pub enum Note {
     QuadraticTerms,
     /// A first order without what quadratic terms do.
     QuadraticTermsLeftOut,
+    /// A driven motion to an order at which no nonlinear term has come yet.
+    NonlinearTermsLeftOut,
     /// The expansion was stopped before the order asked for.
     Stopped {
         /// The order asked for.
@@ -467,6 +469,9 @@ impl fmt::Display for Note {
             ),
             Self::QuadraticTermsLeftOut => formatter.write_str(
                 "the effect of quadratic terms on the frequency comes at order 2, as large as that of cubic ones: --order 2 has it",
+            ),
+            Self::NonlinearTermsLeftOut => formatter.write_str(
+                "no nonlinear term comes up to this order: the slow equations are those of the linear oscillator; `response` balances the harmonics of the whole force",
             ),
             Self::Stopped { asked } => {
                 write!(

@@ -29,7 +29,7 @@ use crate::method::driven_answer::DrivenMotion;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::resonance::{RESONANCES, by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Refusal, Unsuited};
-use crate::oscillator::{Oscillator, OscillatorError, Parts};
+use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce};
 use crate::solution::{AmplitudeConvention, Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -110,6 +110,12 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
     {
         answer.validity.push(Note::QuadraticTermsLeftOut);
     }
+    if let Ok(answer) = &mut answer
+        && !has_nonlinear_terms(&scaling.force)
+        && !is_linear(&free, &parts)
+    {
+        answer.validity.push(Note::NonlinearTermsLeftOut);
+    }
     if options.order.is_some() || !answer.as_ref().is_err_and(is_of_resonance) {
         return answer;
     }
@@ -121,6 +127,26 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
         }
     }
     answer
+}
+
+/// Whether a force of some order has a term that is not linear.
+fn has_nonlinear_terms(force: &PerturbedForce) -> bool {
+    force.terms.iter().any(|term| term.position + term.velocity > 1)
+}
+
+/// Whether a force is linear in the coordinate and the velocity.
+fn is_linear(oscillator: &Oscillator, parts: &Parts) -> bool {
+    let own = [oscillator.coordinate, oscillator.velocity()];
+    let slopes = [
+        parts.restoring.differentiate(own[0]),
+        parts.damping.differentiate(own[1]),
+    ];
+    let is_constant = |slope: &Result<Expr, _>| {
+        slope
+            .as_ref()
+            .is_ok_and(|slope| own.iter().all(|name| !slope.contains(*name)))
+    };
+    slopes.iter().all(is_constant)
 }
 
 /// Whether a refusal is that of a resonance which is not there, or far away.

@@ -4,7 +4,7 @@ use lindstedt::exact::Polynomial;
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::method::{Options, Unsuited, solve};
 use lindstedt::response::{Point, Question, respond};
-use lindstedt::solution::{Method, Solution};
+use lindstedt::solution::{Method, Note, Solution};
 use lindstedt::{Oscillator, Symbol, Values, judge};
 
 use super::{derive, of_text, options};
@@ -144,6 +144,23 @@ fn frequency_response_of_a_wave_that_comes_first() {
     };
     let whole = of_text("a^2/1600 + (sigma*a + a^3/60 + 46*Lambda^2*a/375)^2 - Lambda^4/25");
     assert_eq!((relation(1), relation(2)), (None, Some(whole)));
+}
+
+/// An order below that of the first nonlinear term is that of a linear oscillator, and says so.
+#[test]
+fn an_order_without_nonlinear_terms_says_so() {
+    for (force, order, without) in [
+        ("x + x^5/10", 2, true),
+        ("x + x^5/10", 4, false),
+        ("x + x^4/10", 2, true),
+        ("x + x^3/10", 2, false),
+        ("x", 2, false),
+    ] {
+        let equation = format!("x'' + x'/50 + {force} = cos(Omega*t)/20");
+        let solution = driven(&equation, (1, 1), order);
+        let said = solution.validity.contains(&Note::NonlinearTermsLeftOut);
+        assert_eq!(said, without, "{equation} to order {order}");
+    }
 }
 
 /// Every steady motion against the true periodic one, found by shooting: amplitude and stability.

@@ -49,7 +49,7 @@ pub enum ResponseError {
         at: f64,
     },
     /// The parameter to vary is none of the equation.
-    #[error("there is no parameter `{name}` in the equation: its parameters are {}", list(.known))]
+    #[error("there is no parameter `{name}` in the equation: {}", parameters(.known))]
     NoParameter {
         /// The name.
         name: Symbol,
@@ -129,6 +129,14 @@ pub struct Tried {
     pub starts: usize,
     /// Motions that they led to.
     pub motions: usize,
+}
+
+/// The parameters of an equation, in words.
+fn parameters(known: &[Symbol]) -> String {
+    match known {
+        [] => "it has none".to_owned(),
+        known => format!("its parameters are {}", list(known)),
+    }
 }
 
 fn list(symbols: &[Symbol]) -> String {

@@ -236,7 +236,8 @@ impl Budget {
 pub struct Settled {
     /// Position and velocity at phase zero.
     pub state: [f64; 2],
-    /// The periods of the motion after which it comes back; nothing where it does not within eight.
+    /// The periods of the motion after which it comes back, or would where what has not died out yet is gone; nothing where it does not
+    /// within eight.
     pub returns_after: Option<usize>,
     /// Its positions over the last period, at equal steps.
     pub positions: Vec<f64>,
@@ -285,6 +286,9 @@ pub fn settle(
     /// Periods in which a repetition is looked for.
     const LONGEST: usize = 8;
     const BOUND: f64 = 1e8;
+    /// Periods over which the largest difference is taken, and the part of it that may be left a quarter of the run later.
+    const WINDOW: usize = 16;
+    const FALLING: f64 = 0.9;
     let omega = driven.frequency_at(parameter);
     let period = std::f64::consts::TAU / omega;
     let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
@@ -326,13 +330,25 @@ pub fn settle(
     let positions = last?.positions(SAMPLES);
     let state = states.last().copied()?;
     let extent = half_of_peak_to_peak(&positions).max(1e-12);
-    let repeats = |count: &usize| {
-        let before = states.len().checked_sub(1 + count).and_then(|index| states.get(index));
-        before.is_some_and(|before| (state[0] - before[0]).hypot((state[1] - before[1]) / omega) <= 1e-3 * extent)
+    let apart = |index: usize, count: usize| {
+        let [one, other] = [states.get(index)?, states.get(index.checked_sub(count)?)?];
+        Some((one[0] - other[0]).hypot((one[1] - other[1]) / omega))
+    };
+    let end = states.len() - 1;
+    let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
+    // What dies out slowly beside a motion comes back to itself as well, where its frequency is a fraction of the drive's.
+    let dies_out = |count: usize| {
+        let around = |quarter: usize| {
+            let last = end * quarter / 4;
+            let differences = (last.saturating_sub(WINDOW)..=last).filter_map(|index| apart(index, count));
+            differences.fold(0.0_f64, f64::max)
+        };
+        let sizes = [1, 2, 3, 4].map(around);
+        end > 8 * WINDOW && sizes.windows(2).all(|pair| pair[1] < FALLING * pair[0])
     };
     Some(Settled {
         state,
-        returns_after: (1..=LONGEST).find(repeats),
+        returns_after: (1..=LONGEST).find(|count| repeats(*count) || dies_out(*count)),
         positions,
     })
 }

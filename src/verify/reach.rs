@@ -50,7 +50,7 @@ pub enum Reach {
     Everywhere(f64),
     /// Up to this amplitude.
     UpTo(f64),
-    /// Between two amplitudes, of motions over several wells, which do not begin at rest.
+    /// Between two amplitudes, of motions over several wells, which do not begin at rest, and of a law that is outside near rest.
     Between {
         /// From this one on.
         from: f64,
@@ -157,7 +157,7 @@ pub(super) fn reach(
         return about_the_amplitude(&error, &amplitudes, asked, tolerance);
     }
     let mut points = Vec::new();
-    for size in amplitudes {
+    for &size in &amplitudes {
         match error(size) {
             Some(value) => points.push((size, value)),
             None => break,
@@ -187,7 +187,8 @@ pub(super) fn reach(
         Some(tiny) if tiny.1.abs() <= tolerance => {
             points.splice(0..0, smaller);
         }
-        _ if first.1.abs() > tolerance => return Some(Reach::Nowhere),
+        // A law that is no good near rest may be so further out.
+        _ if first.1.abs() > tolerance => return about_the_amplitude(&error, &amplitudes, asked, tolerance),
         _ => {}
     }
     for pair in points.windows(2) {
@@ -198,8 +199,8 @@ pub(super) fn reach(
     Some(Reach::Everywhere(signed(last)))
 }
 
-/// The range about the amplitude asked for in which the frequency of motions over several wells stays within the tolerance, or, where
-/// it is not within it there, the outermost.
+/// The range about the amplitude asked for in which the frequency stays within the tolerance, or, where it is not within it there, the
+/// outermost.
 fn about_the_amplitude(
     error: &dyn Fn(f64) -> Option<f64>,
     amplitudes: &[f64],

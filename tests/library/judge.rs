@@ -699,3 +699,45 @@ fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
     assert!(escapes, "{refused}");
     assert!(judge(&oscillator, &solution, &at("1/2"), 0.01).is_ok());
 }
+
+/// A law that is off near rest and good further out has a range about the amplitude, and the verdict changes at its ends.
+#[test]
+fn a_law_that_is_off_near_rest_has_a_range_further_out() {
+    for equation in ["x'' + sgn(x) + x^3 = 0", "x'' + x + sgn(x)/2 = 0"] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let solution = solve(&oscillator, &Options::default()).expect(equation);
+        let at = |amplitude: f64| {
+            judge(&oscillator, &solution, &values(&[("A", &amplitude.to_string())]), 0.01).expect(equation)
+        };
+        let asked = at(1.0);
+        let range = asked
+            .ranges
+            .iter()
+            .find(|range| range.text.starts_with("within"))
+            .expect("a range");
+        let ends: Vec<f64> = range
+            .text
+            .split(" = ")
+            .skip(1)
+            .filter_map(|rest| rest.split([' ', ',']).next()?.parse().ok())
+            .collect();
+        assert!(
+            asked.verdict == Verdict::Pass && !range.outside,
+            "{equation}: {}",
+            range.text
+        );
+        let passes = |amplitude: f64| at(amplitude).verdict == Verdict::Pass;
+        assert!(
+            passes(1.01 * ends[0]) && !passes(0.99 * ends[0]),
+            "{equation}: {}",
+            range.text
+        );
+        if !range.text.contains("looked at") {
+            assert!(
+                passes(0.99 * ends[1]) && !passes(1.01 * ends[1]),
+                "{equation}: {}",
+                range.text
+            );
+        }
+    }
+}

@@ -144,6 +144,26 @@ fn folds_of_one_harmonic_are_those_of_the_closed_form() {
     }
 }
 
+/// A linear oscillator has one motion; what of the beginning has not died out is none. A hard spring has motions of three periods there.
+#[test]
+fn what_dies_out_slowly_is_no_motion_of_its_own() {
+    for (equation, range) in [
+        ("x'' + x'/50 + x = cos(Omega*t)/10", [2.0, 3.0]),
+        ("x'' + x'/200 + x = cos(Omega*t)/10", [2.0, 3.0]),
+        ("x'' + x'/50 + x + x^3/10 = cos(Omega*t)/10", [1.3, 1.4]),
+    ] {
+        let found = response(equation, "Omega", range, "");
+        assert!(found.elsewhere.is_empty(), "{equation}: {:?}", found.elsewhere);
+    }
+    let found = response("x'' + x'/10 + x^3 = 3*cos(Omega*t)/10", "Omega", [1.0, 1.4], "");
+    let periods: Vec<_> = found.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
+    assert!(
+        !periods.is_empty() && periods.iter().all(|periods| *periods == Some(3)),
+        "{:?}",
+        found.elsewhere
+    );
+}
+
 /// Where the range begins between the folds, or ends there, all three motions are found: as many as `s ((1 - Omega^2 + 3 k s/4)^2 + (c Omega)^2) = F^2`
 /// has roots. Neither rest nor a simulation need lead to the resonant ones.
 #[test]

@@ -259,10 +259,17 @@ impl OscillatorError {
             Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
                 if term.expression().symbols().iter().all(|symbol| symbol.primes() == 0) =>
             {
-                either(
-                    "take the force as it is: `",
-                    [Method::Hamiltonian, Method::HarmonicBalance],
-                )
+                let by_energy = [Method::Hamiltonian, Method::HarmonicBalance];
+                match self {
+                    Self::NotPolynomial(_) => {
+                        let small = Setting::Small(AmplitudeConvention::Initial.symbol());
+                        let smooth = Advice::words("where it is smooth, expand it in the amplitude: `").choose(small);
+                        let as_it_is = smooth.then("`; or take the force as it is: `");
+                        let [first, second] = by_energy.map(Setting::Method);
+                        as_it_is.choose(first).then("` or `").choose(second).then("`")
+                    }
+                    _ => either("take the force as it is: `", by_energy),
+                }
             }
             Self::NoRestoringForce(force) if force.is_zero() => either(
                 "methods that need no linear part: `",

@@ -391,10 +391,11 @@ pub(super) fn judgement(
         line("relative error", percent(error));
     }
     let judged_on = match series_of_omega {
-        Some(other) => format!(
+        Some(other) if other.is_finite() => format!(
             "the root of omega^2; the series of omega itself errs by {}",
             percent(other)
         ),
+        Some(_) => "the root of omega^2; the series of omega itself has no value".to_owned(),
         None => verification.judged_on.to_owned(),
     };
     line("judged on", judged_on);

@@ -205,8 +205,9 @@ fn driven_parts(
     }
     let in_numbers = |expression: Expr| {
         let expression = expression.substitute_all(values)?;
-        let expression = in_waves(&expression, time, frequency)?;
-        Ok::<Expr, NotCertified>(expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)
+        // First the coordinate, which may have the letter of a wave.
+        let expression = expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?;
+        in_waves(&expression, time, frequency)
     };
     let damping = in_numbers(oscillator.force.differentiate(velocity)?)?;
     let force = in_numbers(oscillator.force.substitute(velocity, &Expr::zero())?)?;

@@ -34,29 +34,112 @@ const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
 /// # Errors
 /// [`NotProved`].
 pub(super) fn prove(certificate: &Certificate) -> Result<Proof, NotProved> {
-    prove_around(certificate, Bound::ZERO)
+    Theorem::of(certificate)?.proof(Bound::ZERO)
 }
 
-/// The same for every start that is within `spread` of that of the certificate: each has one motion within the radius. The equations
-/// differ in the condition at `t = 0` alone, by no more than that.
+/// The motions of all starts that are near that of a certificate.
+pub(super) struct Neighbours {
+    /// `1/omega^2` of every one of them.
+    pub(super) mu: Ball,
+    /// That of the start of the certificate.
+    pub(super) mu_in_middle: Ball,
+    /// The derivative of `1/omega^2` by the start, at every one of them.
+    pub(super) slope: Ball,
+}
+
+/// Checks a certificate for every start that is within `spread` of its own: each has one motion within the radius. The equations differ
+/// in the condition at `t = 0` alone, by no more than that. With u the unknowns of a motion, `DF(u) u' = e_eta` for the derivative u' by the start,
+/// and for any v
+///
+/// ```text
+/// ||u' - v|| <= (||B (e_eta - DF(ubar) v)|| + Z2 r ||v||)/(1 - Z1 - Z2 r)
+/// ```
 ///
 /// # Errors
 /// [`NotProved`].
-pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<Proof, NotProved> {
-    if certificate.odd && !certificate.is_odd()? {
-        return Err(NotProved::NotOdd);
-    }
-    let system = System::of(certificate)?;
-    let first = certificate.force.differentiate(coordinate())?;
-    let second = first.differentiate(coordinate())?;
-    let defect = system.defect() + spread * system.start;
-    let contraction = system.contraction(&Slope::of(along(&first, &system.motion)?))?;
-    let curvature = |within| system.curvature([&first, &second], within);
-    let distinct = |radius: Bound| {
-        radius.over(system.inverse.sigma.value()).value() < certificate.size_of_mu()
-            && radius.value() < certificate.size_of_first_harmonic()
+pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
+    let theorem = Theorem::of(certificate)?;
+    let [of_middle, of_all] = [theorem.proof(Bound::ZERO)?, theorem.proof(spread)?];
+    let sigma = theorem.system.inverse.sigma.value();
+    let widened = |ball: &Ball, by: Bound| Ball {
+        middle: ball.middle.clone(),
+        radius: ball.radius + by,
     };
-    radius(defect, contraction, curvature, distinct)
+    let (direction, left) = theorem.system.slope_by_start(&theorem.slope);
+    let turned = of_all.curvature * of_all.radius;
+    let contracts = (of_all.contraction + turned).below_complement();
+    let size = Bound::power_of_two(certificate.sigma) * WORKING.magnitude(&direction.mu) + direction.harmonics.norm();
+    let apart = (left + turned * size).over(contracts);
+    let around = |proof: &Proof| widened(&theorem.system.mu, proof.radius.over(sigma));
+    Ok(Neighbours {
+        mu: around(&of_all),
+        mu_in_middle: around(&of_middle),
+        slope: widened(&direction.mu, apart.over(sigma)),
+    })
+}
+
+/// A direction of `mu` and the harmonics.
+struct Direction {
+    mu: Ball,
+    harmonics: FourierSeries,
+}
+
+impl Direction {
+    /// Adds the middles of a correction.
+    fn add(&mut self, correction: &Correction<usize>, block: &[usize]) {
+        let added = |to: &Ball, ball: &Ball| Ball {
+            middle: &to.middle + &ball.middle,
+            radius: Bound::ZERO,
+        };
+        self.mu = added(&self.mu, &correction.block[0]);
+        let cosines = &mut self.harmonics.cosines;
+        let in_block = block.iter().zip(&correction.block[1..]);
+        for (&k, ball) in in_block.chain(correction.beyond.iter().map(|(k, ball)| (k, ball))) {
+            cosines.resize(cosines.len().max(k + 1), Ball::zero());
+            cosines[k] = added(&cosines[k], ball);
+        }
+    }
+}
+
+/// The bounds of a certificate that its proofs are made of.
+struct Theorem<'a> {
+    system: System<'a>,
+    /// f' and f''.
+    derivatives: [Expr; 2],
+    slope: Slope,
+    defect: Bound,
+    contraction: Bound,
+}
+
+impl<'a> Theorem<'a> {
+    fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
+        if certificate.odd && !certificate.is_odd()? {
+            return Err(NotProved::NotOdd);
+        }
+        let system = System::of(certificate)?;
+        let first = certificate.force.differentiate(coordinate())?;
+        let second = first.differentiate(coordinate())?;
+        let slope = Slope::of(along(&first, &system.motion)?);
+        Ok(Self {
+            defect: system.defect(),
+            contraction: system.contraction(&slope)?,
+            derivatives: [first, second],
+            slope,
+            system,
+        })
+    }
+
+    /// The proof for every start that is so near.
+    fn proof(&self, spread: Bound) -> Result<Proof, NotProved> {
+        let certificate = self.system.certificate;
+        let defect = self.defect + spread * self.system.start;
+        let curvature = |within| self.system.curvature(self.derivatives.each_ref(), within);
+        let distinct = |radius: Bound| {
+            radius.over(self.system.inverse.sigma.value()).value() < certificate.size_of_mu()
+                && radius.value() < certificate.size_of_first_harmonic()
+        };
+        radius(defect, self.contraction, curvature, distinct)
+    }
 }
 
 /// What is to be subtracted from `mu` and the harmonics of a certificate, so that it is nearer to the solution; nothing is proved
@@ -161,33 +244,78 @@ impl<'a> System<'a> {
     /// `B F`: the correction of `mu` and of every harmonic, by which the approximation is the further off.
     fn correction(&self) -> Correction<usize> {
         let last = self.motion.cosines.len().max(self.force.cosines.len());
-        let zero = Ball::zero();
-        let mut start = self.motion.cosines.iter().fold(zero, |sum, c| WORKING.sum(&sum, c));
-        start = WORKING.difference(&start, &WORKING.fraction(&self.certificate.start));
+        let sum = self.motion.at_zero();
+        let start = WORKING.difference(&sum, &WORKING.fraction(&self.certificate.start));
+        self.image(start, last, |k| {
+            let inertia = WORKING.scaled(&self.motion.cosine(k), -i64::from(Self::square(k)));
+            WORKING.sum(&inertia, &self.accelerated(k))
+        })
+    }
+
+    /// B of what is left of the equations: of that at the start, and of those of the harmonics up to one.
+    fn image(&self, mut start: Ball, last: usize, equation: impl Fn(usize) -> Ball) -> Correction<usize> {
         let mut beyond = vec![];
         for k in self.beyond(last) {
-            let image = WORKING.divided(&self.accelerated(k), Self::square(k));
-            let y = WORKING.difference(&self.motion.cosine(k), &image);
+            let y = WORKING.scaled(&WORKING.divided(&equation(k), Self::square(k)), -1);
             start = WORKING.difference(&start, &y);
             beyond.push((k, y));
         }
         let mut vector = vec![start];
-        vector.extend(self.block.iter().map(|&k| {
-            let inertia = WORKING.scaled(&self.motion.cosine(k), -i64::from(Self::square(k)));
-            WORKING.sum(&inertia, &self.accelerated(k))
-        }));
+        vector.extend(self.block.iter().map(|&k| equation(k)));
         Correction {
             block: image(&self.inverse.entries, &vector, WORKING),
             beyond,
         }
     }
 
+    /// The norm of `mu` and harmonics.
+    fn norm(&self, vector: &Correction<usize>) -> Bound {
+        let beyond: Bound = vector.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
+        self.inverse.norm(&vector.block, WORKING) + beyond
+    }
+
+    /// About the derivative v of `mu` and the harmonics by the start, and a bound of `||B (e_eta - DF v)||`.
+    fn slope_by_start(&self, slope: &Slope) -> (Direction, Bound) {
+        /// Steps of Newton's iteration, each of which gains the digits of Z1.
+        const STEPS: usize = 6;
+        let one = WORKING.integer(1);
+        let mut direction = Direction {
+            mu: Ball::zero(),
+            harmonics: FourierSeries::exactly(vec![], vec![]),
+        };
+        let mut step = 0;
+        loop {
+            let waves = &direction.harmonics;
+            let bent = slope.series.product(waves);
+            let last = self
+                .force
+                .cosines
+                .len()
+                .max(bent.cosines.len())
+                .max(waves.cosines.len());
+            let left = self.image(WORKING.difference(&one, &waves.at_zero()), last, |k| {
+                let inertia = WORKING.scaled(&waves.cosine(k), i64::from(Self::square(k)));
+                let moved = WORKING.sum(
+                    &WORKING.product(&direction.mu, &self.force.cosine(k)),
+                    &WORKING.product(&self.mu, &bent.cosine(k)),
+                );
+                WORKING.difference(&inertia, &moved)
+            });
+            if step == STEPS {
+                let unseen =
+                    WORKING.magnitude(&direction.mu) * self.force.tail + WORKING.magnitude(&self.mu) * bent.tail;
+                let left = self.norm(&left) + self.size * unseen;
+                return (direction, left);
+            }
+            direction.add(&left, &self.block);
+            step += 1;
+        }
+    }
+
     /// Y0.
     fn defect(&self) -> Bound {
-        let correction = self.correction();
-        let beyond: Bound = correction.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
         let unseen = self.size * WORKING.magnitude(&self.mu) * self.force.tail;
-        self.inverse.norm(&correction.block, WORKING) + beyond + unseen
+        self.norm(&self.correction()) + unseen
     }
 
     /// Z1.

@@ -1,9 +1,14 @@
 //! From an amplitude to a range: a formula that is within a tolerance for every amplitude of an interval, proved.
 //!
 //! An interval `|A - A_m| <= h` is one question more in the theorem: the condition at `t = 0` is off by h at most, so that
-//! `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at `A_m` prove all motions of the interval at once. There
-//! `omega~^2 mu`, the law on the whole interval times `1/omega^2` of all its motions, encloses the square of the ratio of the
-//! frequencies.
+//! `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at `A_m` prove all motions of the interval at once. The square of the
+//! ratio of the frequencies is `q = omega~^2 mu`, the law times `1/omega^2`, and by the mean value theorem
+//!
+//! ```text
+//! q(A) = q(A_m) + (A - A_m) ((omega~^2)' mu + omega~^2 mu')      with the law, mu and mu' of the whole interval in the second term
+//! ```
+//!
+//! What is not known of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
 //!
 //! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far the formula is proved to
 //! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.
@@ -11,9 +16,10 @@
 use super::candidate::{NotCertified, certify, inverse, refine, weight};
 use super::force::along;
 use super::fourier_series::{FourierSeries, WORKING};
-use super::radii_polynomial::{NotProved, Proof};
-use super::theorem::prove_around;
+use super::radii_polynomial::NotProved;
+use super::theorem::{Neighbours, prove_around};
 use super::{Certificate, HIGHEST_HARMONIC, coordinate};
+use crate::decimal::{not_above_typed, rounded_fraction};
 use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
@@ -90,6 +96,7 @@ pub fn validity(
     supervision: Supervision,
 ) -> Result<Validity, NotCertified> {
     let mut family = Family::of(oscillator, solution, at, from)?;
+    let tolerance = not_above_typed(tolerance);
     let finer = (1..=4)
         .take_while(|finer| tolerance < 0.01 / f64::from(1 << (finer - 1)))
         .count();
@@ -124,7 +131,12 @@ pub fn validity(
             _ if width > 1 => width = (width / 2).min(next - position),
             _ => {
                 // At the first places beyond, the error is too near to the tolerance to be told from it.
-                let farther = [0, 3, 15, 63, 255].map(|steps| place((next + (steps << finer)).min(finest)));
+                // As they are printed, with six digits.
+                let shown = |position: u32| match position.min(finest) {
+                    position if position == finest => to.clone(),
+                    position => rounded_fraction(&place(position), 6),
+                };
+                let farther = [0, 3, 15, 63, 255].map(|steps| shown(next + (steps << finer)));
                 break family.beyond(&farther, tolerance);
             }
         }
@@ -150,6 +162,8 @@ struct Family<'a> {
     equilibrium: Rational,
     /// omega~^2 as an expression in the amplitude, which has the letter of the coordinate here.
     squared: Expr,
+    /// Its derivative.
+    slope: Expr,
 }
 
 impl<'a> Family<'a> {
@@ -178,9 +192,11 @@ impl<'a> Family<'a> {
         let value = value
             .substitute_all(&values)?
             .substitute(amplitude, &Expr::from(coordinate()))?;
+        let squared = if is_squared { value } else { &value * &value };
         Ok(Self {
             equilibrium: &certificate.start - from,
-            squared: if is_squared { value } else { &value * &value },
+            slope: squared.differentiate(coordinate())?,
+            squared,
             oscillator,
             solution,
             at,
@@ -196,15 +212,20 @@ impl<'a> Family<'a> {
         // Where this fails, the last motion that was proved is still the nearest one.
         let mut certificate = self.certificate.clone();
         certificate.start = &self.equilibrium + &middle;
-        refine(&mut certificate, spread * Bound::power_of_two(-10))?;
-        let proof = proved(&mut certificate, spread)?;
-        let mut mu = certificate.mu_ball();
-        mu.radius += proof.radius.over(Bound::power_of_two(certificate.sigma).value());
-        let mut amplitude = WORKING.fraction(&middle);
-        amplitude.radius += spread;
-        let law = along(&self.squared, &FourierSeries::constant(amplitude))?;
-        let ratio = WORKING.product(&law.at_zero(), &mu);
-        let root = WORKING.root(&ratio, 2).ok_or(NotProved::TooLarge(proof.radius))?;
+        refine(&mut certificate, spread * spread * Bound::power_of_two(-4))?;
+        let near = proved(&mut certificate, spread)?;
+        let law = |expression: &Expr, radius: Bound| {
+            let mut amplitude = WORKING.fraction(&middle);
+            amplitude.radius += radius;
+            along(expression, &FourierSeries::constant(amplitude)).map(|series| series.at_zero())
+        };
+        let slope = WORKING.sum(
+            &WORKING.product(&law(&self.slope, spread)?, &near.mu),
+            &WORKING.product(&law(&self.squared, spread)?, &near.slope),
+        );
+        let mut ratio = WORKING.product(&law(&self.squared, Bound::ZERO)?, &near.mu_in_middle);
+        ratio.radius += spread * WORKING.magnitude(&slope);
+        let root = WORKING.root(&ratio, 2).ok_or(NotProved::TooLarge(spread))?;
         self.certificate = certificate;
         Ok(WORKING
             .magnitude(&WORKING.difference(&root, &WORKING.integer(1)))
@@ -233,7 +254,7 @@ impl<'a> Family<'a> {
 }
 
 /// The proof of all motions whose start is so near, with a larger block where that of the last one is too small.
-fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Proof, NotProved> {
+fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
     certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
     match prove_around(certificate, spread) {
         Err(NotProved::NoContraction(_)) if certificate.highest < HIGHEST_HARMONIC / 2 => {

@@ -4,7 +4,7 @@
 
 use num_traits::{Pow, Signed, Zero};
 
-use crate::exact::rational::to_f64;
+use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::scaled::Scaled;
 use crate::exact::{Integer, Rational};
 
@@ -49,8 +49,13 @@ pub fn rounded(value: f64) -> Rational {
 /// So many significant digits of a number, as a fraction; seventeen tell any two numbers apart.
 pub fn rounded_to(value: f64, digits: usize) -> Rational {
     let decimals = digits.saturating_sub(1);
-    let text = format!("{value:.decimals$e}");
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    parsed(&format!("{value:.decimals$e}"))
+}
+
+/// The fraction of a decimal in the notation of `{:e}`.
+fn parsed(text: &str) -> Rational {
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     let digits: Integer = mantissa.replace('.', "").parse().unwrap_or_default();
     let power = exponent.parse::<i32>().unwrap_or(0) - decimals as i32;
     let ten = Rational::from_integer(10.into());
@@ -81,6 +86,11 @@ pub fn significant_fraction(value: &Rational, digits: usize) -> String {
         return significant(double, digits);
     }
     let (mantissa, power) = scientific(value, digits);
+    in_powers(value, &mantissa, power)
+}
+
+/// `1.5e300`, of a whole number and a power of ten that make a fraction.
+fn in_powers(value: &Rational, mantissa: &Integer, power: i32) -> String {
     let sign = if value.is_negative() { "-" } else { "" };
     let text = mantissa.abs().to_string();
     let (first, rest) = text.split_at(1);
@@ -90,12 +100,76 @@ pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     format!("{sign}{first}{point}{rest}e{exponent}")
 }
 
+/// The decimal of so many significant digits next below a number that is not negative, as [`significant`] writes it.
+pub fn rounded_down(value: f64, digits: usize) -> String {
+    rounded_to_side(value, digits, 0)
+}
+
+/// The decimal of so many significant digits next above a number that is not negative, likewise.
+pub fn rounded_up(value: f64, digits: usize) -> String {
+    rounded_to_side(value, digits, 1)
+}
+
+fn rounded_to_side(value: f64, digits: usize, side: usize) -> String {
+    match from_f64(value) {
+        Some(exact) => significant_fraction(&neighbours(&exact, digits)[side], digits),
+        None => value.to_string(),
+    }
+}
+
+/// The fraction that the shortest decimal of a finite double stands for, 1/100 for `0.01`: the number that was typed, where it had
+/// at most fifteen digits.
+pub fn as_typed(value: f64) -> Rational {
+    parsed(&format!("{value:e}"))
+}
+
+/// The largest double that is not above the decimal a double was [typed as](as_typed).
+pub fn not_above_typed(value: f64) -> f64 {
+    match from_f64(value) {
+        Some(exact) if exact > as_typed(value) => value.next_down(),
+        _ => value,
+    }
+}
+
+/// A decimal in full, as [`significant`] writes it; `None` where it has more than forty significant digits.
+pub fn exact_decimal(value: &Rational) -> Option<String> {
+    const MOST: usize = 40;
+    (1..=MOST)
+        .find(|digits| neighbours(value, *digits)[0] == *value)
+        .map(|digits| {
+            let (mantissa, power) = scientific(value, digits);
+            let exponent = power + digits as i32 - 1;
+            match (-4..15).contains(&exponent) {
+                true => fixed(value, usize::try_from(-power).unwrap_or(0)),
+                false => in_powers(value, &mantissa, power),
+            }
+        })
+}
+
 /// A fraction with so many decimals at most, without zeros at the end; of what is very large or small fifteen digits.
 pub fn plain_decimal(value: &Rational, decimals: usize) -> String {
-    let size = to_f64(value).abs();
-    if !value.is_zero() && !(1e-5..1e15).contains(&size) {
-        return significant_fraction(value, 15);
+    match has_plain_decimals(value) {
+        true => fixed(value, decimals),
+        false => significant_fraction(&rounded_fraction(value, 15), 15),
     }
+}
+
+/// The fraction that [`plain_decimal`] prints.
+pub fn plain_fraction(value: &Rational, decimals: usize) -> Rational {
+    match has_plain_decimals(value) {
+        true => {
+            let unit = Rational::from_integer(Integer::from(10).pow(decimals as u32));
+            (value * &unit).round() / unit
+        }
+        false => rounded_fraction(value, 15),
+    }
+}
+
+fn has_plain_decimals(value: &Rational) -> bool {
+    value.is_zero() || (1e-5..1e15).contains(&to_f64(value).abs())
+}
+
+fn fixed(value: &Rational, decimals: usize) -> String {
     let unit = Integer::from(10).pow(decimals as u32);
     let digits = (value.abs() * Rational::from_integer(unit))
         .round()

@@ -14,6 +14,7 @@
 use std::fmt;
 
 use super::force::NoValue;
+use crate::decimal::rounded_up;
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::expr::ExprError;
@@ -59,9 +60,9 @@ impl fmt::Display for NotProved {
             ),
             Self::Derivative(error) => write!(formatter, "the derivatives of the force: {error}"),
             Self::NotOdd => formatter.write_str("the equation is not odd, or there are even harmonics"),
-            Self::NoContraction(bound) => write!(formatter, "Z1 <= {:.3e} is not below 1", bound.value()),
-            Self::TooFar(bound) => write!(formatter, "Y0 <= {:.3e} is too large", bound.value()),
-            Self::TooLarge(bound) => write!(formatter, "the radius {:.3e} is too large", bound.value()),
+            Self::NoContraction(bound) => write!(formatter, "Z1 <= {} is not below 1", rounded_up(bound.value(), 4)),
+            Self::TooFar(bound) => write!(formatter, "Y0 <= {} is too large", rounded_up(bound.value(), 4)),
+            Self::TooLarge(bound) => write!(formatter, "the radius {} is too large", rounded_up(bound.value(), 4)),
         }
     }
 }

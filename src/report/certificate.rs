@@ -2,18 +2,25 @@
 
 use std::borrow::Cow;
 
+use num_traits::{Signed as _, Zero as _};
+
 use super::driven::slow_equations;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
     Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, Range, Validity, coordinate,
 };
-use crate::decimal::{decimal, neighbours, plain_decimal, significant, significant_fraction};
+use crate::decimal::{
+    as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction, rounded_fraction, rounded_up,
+    significant_fraction,
+};
 use crate::derivation::Line;
-use crate::exact::Rational;
+use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
+use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
-use crate::solution::Solution;
+use crate::solution::{Solution, constant_in_words};
+use crate::spelling::printable_in_line;
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
@@ -44,6 +51,14 @@ impl AnyCertificate<'_> {
         match self {
             Self::Motion(certificate) => certificate.formula.as_ref(),
             Self::Damped(certificate) => certificate.formula.as_ref(),
+        }
+    }
+
+    /// The binary digits of its numbers.
+    const fn bits(&self) -> usize {
+        match self {
+            Self::Motion(certificate) => certificate.bits,
+            Self::Damped(certificate) => certificate.bits,
         }
     }
 
@@ -84,12 +99,26 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// What is within r of the numbers of the certificate.
+    /// What is within r of the numbers of the certificate, among what it is the only one.
     fn unknowns(&self) -> &'static str {
         match self {
-            Self::Motion(_) => "pair (1/omega^2, X)",
-            Self::Damped(certificate) if certificate.drive.is_some() => "motion X",
-            Self::Damped(_) => "pair (1/omega, X)",
+            Self::Motion(_) => "pair (1/omega^2, X), X of cosines,",
+            Self::Damped(certificate) => match (certificate.drive.is_some(), certificate.odd) {
+                (true, false) => "motion X",
+                (true, true) => "motion X of odd harmonics",
+                (false, false) => "pair (1/omega, X), the first harmonic a cosine,",
+                (false, true) => "pair (1/omega, X), X of odd harmonics and the first a cosine,",
+            },
+        }
+    }
+
+    /// What the theorem leaves open: with odd harmonics alone it says nothing of motions that have others.
+    fn left_open(&self) -> Option<&'static str> {
+        match self {
+            Self::Damped(certificate) if certificate.odd => {
+                Some("of motions with even harmonics nothing is proved: one may be within r too")
+            }
+            _ => None,
         }
     }
 
@@ -137,7 +166,7 @@ impl CertificateReport<'_> {
     /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
-        Some(Verdict::of(errors.relative.upper <= self.tolerance))
+        Some(Verdict::of(errors.relative.upper <= not_above_typed(self.tolerance)))
     }
 }
 
@@ -204,12 +233,17 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         _ => facts.push(("omega", enclosed(&report.certified.frequency))),
     }
     if let Some(exponent) = &report.certified.exponent {
-        let phase = "at t = 0 the first harmonic, of the motion and of the formula, is a positive cosine".to_owned();
+        let of = match report.certified.formula {
+            Some(_) => "of the motion and of the formula",
+            None => "of the motion",
+        };
+        let phase = format!("at t = 0 the first harmonic, {of}, is a positive cosine");
         facts.insert(facts.len() - 1, ("phase", phase));
         facts.push(("stability", stability(exponent)));
     }
-    if let Some(errors) = &report.certified.formula {
-        facts.extend(of_formula(errors, report));
+    match &report.certified.formula {
+        Some(errors) => facts.extend(of_formula(errors, report)),
+        None => facts.push(("formula", "none is judged: the proof is of the motion alone".to_owned())),
     }
     blocks.push(Block::Facts(facts));
     sections.push(blocks);
@@ -218,29 +252,42 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         vec![heading, Block::Facts(of_range(validity, report.tolerance))]
     }));
     let proof = report.certified.proof;
-    let upper = |bound: crate::exact::Bound| above(bound.value());
+    let upper = |bound: crate::exact::Bound| rounded_up(bound.value(), 4);
     sections.push(vec![
         Block::Heading(format!(
             "The proof: exactly one {} within r of the certificate's",
             certificate.unknowns()
         )),
-        Block::Facts(vec![
-            ("r", upper(proof.radius)),
-            ("defect Y0", upper(proof.defect)),
-            ("contraction Z1", upper(proof.contraction)),
-            ("curvature Z2", upper(proof.curvature)),
-            ("block", certificate.block()),
-        ]),
+        Block::Facts(
+            [
+                ("r", upper(proof.radius)),
+                ("defect Y0", upper(proof.defect)),
+                ("contraction Z1", upper(proof.contraction)),
+                ("curvature Z2", upper(proof.curvature)),
+                ("block", certificate.block()),
+            ]
+            .into_iter()
+            .chain(certificate.left_open().map(|words| ("left open", words.to_owned())))
+            .collect(),
+        ),
     ]);
+    sections.extend(words_of_file(report));
     Document { sections }
 }
 
 fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> {
-    let amplitude = |value: &Rational| significant(to_f64(value), 6);
+    // The proof is of this place exactly: six digits, or the fraction.
+    let amplitude = |value: &Rational| match rounded_fraction(value, 6) == *value {
+        true => significant_fraction(value, 6),
+        false => value.to_string(),
+    };
     // What is not proved is not said: six digits, the last one towards the inside of the range.
-    let from = significant_fraction(&neighbours(&validity.from, 6)[1], 6);
-    let to = significant_fraction(&neighbours(&validity.to, 6)[0], 6);
-    let within = significant(100.0 * tolerance, 3);
+    let inside = [&neighbours(&validity.from, 6)[1], &neighbours(&validity.to, 6)[0]];
+    let [from, to] = match inside[0] <= inside[1] {
+        true => inside.map(|end| significant_fraction(end, 6)),
+        false => [&validity.from, &validity.to].map(ToString::to_string),
+    };
+    let within = percent(tolerance);
     let beyond = match &validity.beyond {
         Beyond::Asked => None,
         Beyond::Further(place) => Some(format!("omega is off by more at A = {}, proved", amplitude(place))),
@@ -268,15 +315,16 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     let letter = report
         .question
         .map_or(coordinate(), |(solution, _)| solution.coordinate());
-    let formula = report.certificate.formula();
-    let law = formula
-        .map(|formula| ("formula", formula.law.clone()))
-        .filter(|_| report.question.is_none());
-    let percent = Range {
-        lower: 100.0 * errors.relative.lower,
-        upper: 100.0 * errors.relative.upper,
+    let formula = report.certificate.formula().filter(|_| report.question.is_none());
+    let formula = formula.map(|formula| numbers_of(formula, report)).unwrap_or_default();
+    let copies = match report.certified.copies {
+        1 => None,
+        copies => Some((
+            "compared with",
+            format!("the nearest of {copies} motions that the symmetries of the equation make of X"),
+        )),
     };
-    let within = significant(100.0 * report.tolerance, 3);
+    let within = percent(report.tolerance);
     let what = if errors.amplitude.is_some() {
         "amplitude"
     } else {
@@ -288,29 +336,114 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
         _ => format!("fail ({what} is not proved to be within {within} %)"),
     };
     let verdict = ("verdict", verdict);
-    let deviation = above(errors.deviation.upper);
+    let deviation = rounded_up(errors.deviation.upper, 4);
     let facts = match errors.amplitude {
         Some(amplitude) => vec![
             ("error of the formula's amplitude", between(amplitude, "")),
-            ("relative error", between(percent, " %")),
+            ("relative error", between_percent(errors.relative)),
             ("largest deviation", between(errors.deviation, "")),
             verdict,
         ],
         None => vec![
             ("error of the formula's omega", between(errors.frequency, "")),
-            ("relative error", between(percent, " %")),
+            ("relative error", between_percent(errors.relative)),
             ("largest deviation at one phase", between(errors.deviation, "")),
             (
                 "deviation in time",
                 format!(
                     "|{letter}(t) - formula| <= {deviation} + {}*|t| for all t",
-                    above(errors.drift.upper)
+                    rounded_up(errors.drift.upper, 4)
                 ),
             ),
             verdict,
         ],
     };
-    law.into_iter().chain(facts).collect()
+    formula.into_iter().chain(copies).chain(facts).collect()
+}
+
+/// The formula of a file: its law where that has been read and held against the numbers, and the numbers, which are what is judged.
+fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'static str, String)> {
+    let values: Vec<String> = formula
+        .values
+        .iter()
+        .map(|(name, value)| format!("{name} = {}", constant_in_words(value)))
+        .collect();
+    let law = printable_in_line(&formula.law);
+    let law = match values.is_empty() {
+        true => law,
+        false => format!("{law} at {}", values.join(", ")),
+    };
+    let law = report.certified.law_is_held.then_some(("formula", law));
+    let bits = report.certificate.bits();
+    let number = |units: &Integer| Rational::new(units.clone(), Integer::from(1) << bits);
+    let omega = report.certified.formula.filter(|errors| errors.amplitude.is_none());
+    let omega = omega.map(|_| {
+        let omega = significant_fraction(&rounded_fraction(&number(&formula.frequency), 12), 12);
+        ("omega of the formula", omega)
+    });
+    let displacement = displacement([&formula.coefficients, &formula.sines], number);
+    law.into_iter()
+        .chain(omega)
+        .chain([("X of the formula", displacement)])
+        .collect()
+}
+
+/// The largest harmonics of a motion, rounded, and how many more there are.
+fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -> String {
+    /// More are not written.
+    const MOST: usize = 5;
+    let [cosines, sines] = units.map(|units| units.iter().map(&number).collect::<Vec<Rational>>());
+    let mut waves: Vec<(usize, &str, Rational)> = vec![];
+    for k in 0..cosines.len().max(sines.len()) {
+        for (name, list) in [("cos", &cosines), ("sin", &sines)] {
+            waves.extend(
+                list.get(k)
+                    .filter(|value| !value.is_zero())
+                    .map(|value| (k, name, value.clone())),
+            );
+        }
+    }
+    let mut sizes: Vec<Rational> = waves.iter().map(|(.., value)| value.abs()).collect();
+    sizes.sort_by(|one, other| other.cmp(one));
+    let smallest = sizes.get(MOST - 1).or(sizes.last()).cloned().unwrap_or_default();
+    let (shown, others): (Vec<_>, Vec<_>) = waves.into_iter().partition(|(.., value)| value.abs() >= smallest);
+    let term = |(k, name, value): &(usize, &str, Rational)| {
+        let size = significant_fraction(&rounded_fraction(&value.abs(), 6), 6);
+        let wave = match k {
+            0 => size,
+            1 => format!("{size}*{name}(theta)"),
+            k => format!("{size}*{name}({k}*theta)"),
+        };
+        (value.is_negative(), wave)
+    };
+    let mut text = String::new();
+    for (index, (is_negative, wave)) in shown.iter().map(term).enumerate() {
+        text += match (index, is_negative) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        };
+        text += &wave;
+    }
+    match (shown.is_empty(), others.len()) {
+        (true, _) => "0".to_owned(),
+        (false, 0) => text + ", rounded",
+        (false, 1) => text + ", rounded, and 1 smaller term",
+        (false, more) => format!("{text}, rounded, and {more} smaller terms"),
+    }
+}
+
+/// What a file says in words that nothing was held against.
+fn words_of_file<'a>(report: &CertificateReport) -> Option<Vec<Block<'a>>> {
+    let formula = report.certificate.formula()?;
+    let is_unread = report.question.is_none() && !report.certified.law_is_held && !formula.law.is_empty();
+    is_unread.then(|| {
+        vec![
+            Block::Heading("Words of the file, which nothing was held against".to_owned()),
+            Block::Facts(vec![("law", printable_in_line(&formula.law))]),
+        ]
+    })
 }
 
 /// Whether the cycle attracts, as far as that is proved.
@@ -336,46 +469,63 @@ pub(super) fn enclosed(enclosure: &Enclosure) -> String {
     } else {
         f64::from(MOST)
     };
-    let decimals = (known as i32).clamp(0, MOST);
-    let value = to_f64(&enclosure.middle);
-    let text = plain_decimal(&enclosure.middle, usize::try_from(decimals).unwrap_or(0));
-    // What is very large or small is written with fifteen digits.
-    let rounding = match (1e-4..1e14).contains(&value.abs()) {
-        true => 0.5 * 10.0_f64.powi(-decimals),
-        false => 1e-14 * value.abs(),
-    };
-    let printed = radius + rounding;
-    format!("{text} +- {}", above(printed))
+    let decimals = usize::try_from((known as i32).clamp(0, MOST)).unwrap_or(0);
+    let text = plain_decimal(&enclosure.middle, decimals);
+    let rounding = (&enclosure.middle - plain_fraction(&enclosure.middle, decimals)).abs();
+    // The bound of a sum is rounded up, as its parts are.
+    let printed = enclosure.radius + Bound::of_fraction(&rounding);
+    format!("{text} +- {}", rounded_up(printed.value(), 4))
 }
 
-/// A number with its two ends, in one where they agree in what is printed.
-pub(super) fn between(range: Range, unit: &str) -> String {
-    let middle = decimal(range.lower);
-    if range.upper == 0.0 {
+/// A tolerance in percent, exactly.
+pub(super) fn percent(tolerance: f64) -> String {
+    let percent = as_typed(tolerance) * Integer::from(100);
+    exact_decimal(&percent).unwrap_or_else(|| percent.to_string())
+}
+
+/// A number with its two ends, each rounded outwards, in one where they agree.
+fn between(range: Range, unit: &str) -> String {
+    let ends = [range.lower, range.upper].map(from_f64);
+    between_exactly(ends, unit)
+}
+
+/// The same of a ratio in percent.
+fn between_percent(range: Range) -> String {
+    let percent = |end: f64| Some(from_f64(end)? * Integer::from(100));
+    between_exactly([range.lower, range.upper].map(percent), " %")
+}
+
+/// Ends of which the second is `None` where nothing is known.
+fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String {
+    /// Digits of ends that agree, and of others.
+    const DIGITS: [usize; 2] = [6, 4];
+    let lower = lower.unwrap_or_default();
+    let Some(upper) = upper else {
+        return format!("at least {}{unit}", significant_fraction(&neighbours(&lower, 4)[0], 4));
+    };
+    if upper.is_zero() {
         return "none".to_owned();
     }
-    if middle == decimal(range.upper) {
-        return format!("{middle}{unit}");
+    // A proof has some digits more than a double: an error as small may be none.
+    let is_small = upper < Rational::new(1.into(), 1_000_000_000.into());
+    let agree = rounded_fraction(&lower, DIGITS[0]) == rounded_fraction(&upper, DIGITS[0]);
+    let digits = DIGITS[usize::from(!agree)];
+    let [below, above] = [&neighbours(&lower, digits)[0], &neighbours(&upper, digits)[1]];
+    let text = |end: &Rational| format!("{}{unit}", significant_fraction(end, digits));
+    match below == above {
+        true => text(above),
+        false if lower.is_zero() || is_small && !agree => format!("at most {}", text(above)),
+        false => format!("between {} and {}", text(below), text(above)),
     }
-    if range.lower == 0.0 || range.upper < 1e-9 {
-        return format!("at most {}{unit}", above(range.upper));
-    }
-    format!("between {}{unit} and {}{unit}", below(range.lower), above(range.upper))
 }
 
-/// Four digits, not below.
-fn above(value: f64) -> String {
-    outward(value, 1)
-}
-
-/// Four digits, not above.
-fn below(value: f64) -> String {
-    outward(value, 0)
-}
-
-fn outward(value: f64, side: usize) -> String {
-    match from_f64(value) {
-        Some(exact) => significant_fraction(&neighbours(&exact, 4)[side], 4),
-        None => value.to_string(),
+/// A ratio in percent with six digits where both ends have the same, else as [`between`] says it.
+pub(super) fn rounded_percent(range: Range) -> String {
+    let percent = |end: f64| Some(rounded_fraction(&(from_f64(end)? * Integer::from(100)), 6));
+    match [range.lower, range.upper].map(percent) {
+        [Some(lower), Some(upper)] if lower == upper && !upper.is_zero() => {
+            format!("{} %", significant_fraction(&upper, 6))
+        }
+        _ => between_percent(range),
     }
 }

@@ -1,9 +1,9 @@
 //! What is proved of an impact, and with it of its closed forms.
 
-use super::certificate::{between, enclosed};
+use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document, Heading};
 use crate::certificate::{ImpactEnclosure, Range};
-use crate::decimal::{plain_decimal, significant};
+use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
 use crate::impact::{Impact, Reading};
 use crate::verify::Verdict;
@@ -38,7 +38,7 @@ impl ImpactCertificateReport<'_> {
         let errors = self.errors();
         let within = |column: usize| {
             let mut ranges = errors.iter().filter_map(|(_, ranges)| ranges.get(column + 1));
-            ranges.all(|range| range.upper <= self.tolerance)
+            ranges.all(|range| range.upper <= not_above_typed(self.tolerance))
         };
         let columns = self.impact.columns.iter().enumerate();
         columns
@@ -47,29 +47,10 @@ impl ImpactCertificateReport<'_> {
     }
 }
 
-/// A fraction as it is: in decimals where they end.
-fn exactly(value: &Rational) -> String {
-    const MOST: usize = 40;
-    let ten = Rational::from_integer(10.into());
-    let mut scaled = value.clone();
-    for places in 0..MOST {
-        if scaled.is_integer() {
-            return plain_decimal(value, places);
-        }
-        scaled *= &ten;
-    }
-    value.to_string()
-}
-
 /// The document of a proved impact.
 pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<'a> {
-    let percent = |range: &Range| {
-        let percent = Range {
-            lower: 100.0 * range.lower,
-            upper: 100.0 * range.upper,
-        };
-        between(percent, " %")
-    };
+    // As they are: in decimals where they end.
+    let exactly = |value: &Rational| exact_decimal(value).unwrap_or_else(|| value.to_string());
     let [amplitude, barrier, stiffness] = report.exact.map(exactly);
     let given = vec![
         ("A, released from rest at x = -A", amplitude),
@@ -78,14 +59,14 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
     ];
     let proved = report.enclosure.in_order();
     let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure)));
-    let within = significant(100.0 * report.tolerance, 3);
+    let within = percent(report.tolerance);
     let errors = report.errors();
     let verdict = |(index, (reading, verdict)): (usize, &(Reading, Verdict))| {
         let column = || {
             let column = errors
                 .iter()
                 .filter_map(move |(name, ranges)| Some((*name, ranges.get(index + 1)?)));
-            column.filter(|(_, range)| range.upper > report.tolerance)
+            column.filter(|(_, range)| range.upper > not_above_typed(report.tolerance))
         };
         let names: Vec<&str> = column().map(|(name, _)| name).collect();
         let words = match (verdict, column().all(|(_, range)| range.lower > report.tolerance)) {
@@ -99,7 +80,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
         .into_iter()
         .chain(report.impact.columns.iter().map(|column| column.reading.name()));
     let row = |(name, ranges): &(&'static str, Vec<Range>)| {
-        let cells = ranges.iter().map(percent);
+        let cells = ranges.iter().copied().map(rounded_percent);
         std::iter::once((*name).to_owned()).chain(cells).collect()
     };
     let verdicts = report.verdicts();
@@ -121,6 +102,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
                     head: head.map(|text| Heading { text, latex: text }).collect(),
                     rows: errors.iter().map(row).collect(),
                 },
+                Block::Note("a single number is rounded: both of its ends have these digits".to_owned()),
             ],
             vec![
                 Block::Heading("Verdict".to_owned()),

@@ -19,6 +19,34 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
+/// A text from a file as it may be shown: what would steer a terminal, or turn the order of the letters, stands as its code, `\u{1b}`. Line ends
+/// and tabs stay.
+pub fn printable(text: &str) -> String {
+    escaped(text, |letter| !matches!(letter, '\n' | '\t') && is_invisible(letter))
+}
+
+/// The same in one line.
+pub fn printable_in_line(text: &str) -> String {
+    escaped(text, is_invisible)
+}
+
+/// Whether a letter steers what shows it: control characters, and marks of the direction of writing.
+pub fn is_invisible(letter: char) -> bool {
+    letter.is_control()
+        || matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+}
+
+fn escaped(text: &str, is_code: impl Fn(char) -> bool) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match is_code(letter) {
+            true => shown.extend(letter.escape_unicode()),
+            false => shown.push(letter),
+        }
+    }
+    shown
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

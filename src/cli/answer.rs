@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use lindstedt::export::html::{self, Page};
-use lindstedt::export::{latex, text};
+use lindstedt::export::{latex, printable, text};
 use lindstedt::report::Document;
 use lindstedt::solution::Solution;
 
@@ -28,9 +28,9 @@ impl Answer<'_> {
     /// The result and the picture that were asked for, without a verdict.
     pub(super) fn outcome(&self, common: &Common) -> Result<Outcome, Failure> {
         let text = match common.format() {
-            Format::Text => text::document(self.document, self.width),
-            Format::Latex => latex::document(self.document),
-            Format::Html => page(self.picture, None, |page| html::document(self.document, page)),
+            Format::Text => printable(&text::document(self.document, self.width)),
+            Format::Latex => printable(&latex::document(self.document)),
+            Format::Html => printable(&page(self.picture, None, |page| html::document(self.document, page))),
             Format::Svg => drawn(self.picture)?,
             format => (self.other)(format)?,
         };

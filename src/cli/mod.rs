@@ -38,6 +38,7 @@ use std::time::{Duration, Instant};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use lindstedt::export::code::Language;
+use lindstedt::export::{is_invisible, printable};
 use lindstedt::problem::LARGEST_FILE;
 use lindstedt::solution::{Advice, Setting};
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
@@ -361,6 +362,15 @@ impl Command {
         }
     }
 
+    /// The time limit in seconds, where there is one.
+    fn timeout(&self) -> Option<f64> {
+        let limit = match self {
+            Self::Check(_) => Some(certify::LONGEST_CHECK),
+            _ => None,
+        };
+        self.common().timeout.or(limit)
+    }
+
     /// Whether a verdict that fails is exit code 3 without `--tolerance`.
     fn is_judged(&self) -> bool {
         matches!(self, Self::Audit(_) | Self::Paper(_))
@@ -415,7 +425,8 @@ pub fn run() -> ExitCode {
         Err(Failure::Usage(message)) => return fail(2, &message),
         Ok(()) => {}
     }
-    let (outcome, in_vain) = within_limits(command, common.timeout);
+    let timeout = command.timeout();
+    let (outcome, in_vain) = within_limits(command, timeout);
     match (outcome, in_vain) {
         (Some(Some(Ok(outcome))), _) => finish(outcome, &common, judged),
         (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
@@ -530,11 +541,11 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
         None => {}
     }
     if let Some(note) = outcome.note.filter(|_| !common.quiet) {
-        eprintln!("{note}");
+        eprintln!("{}", printable(&note));
     }
     let written = files::write(common.output.as_deref(), outcome.result);
     if let (Ok(()), Some(reason)) = (&written, &no_picture) {
-        let _ = writeln!(std::io::stderr(), "error: no picture: {reason}");
+        let _ = writeln!(std::io::stderr(), "error: no picture: {}", printable(reason));
     }
     match written {
         Err(error) => fail(1, &error),
@@ -546,7 +557,8 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
 }
 
 fn fail(code: u8, message: &str) -> ExitCode {
-    let _ = writeln!(std::io::stderr(), "error: {message}");
+    // A file that is quoted may hold anything.
+    let _ = writeln!(std::io::stderr(), "error: {}", printable(message));
     ExitCode::from(code)
 }
 
@@ -593,6 +605,14 @@ fn tolerance(common: &Common) -> f64 {
 /// A document as text of several lines.
 fn json_text(document: &impl Serialize) -> Result<String, Failure> {
     match serde_json::to_string_pretty(document) {
+        // JSON leaves some characters as they are that steer a terminal; they are in strings alone.
+        Ok(text) if text.chars().any(|letter| letter != '\n' && is_invisible(letter)) => {
+            let escaped = text.chars().map(|letter| match letter != '\n' && is_invisible(letter) {
+                true => format!("\\u{:04x}", u32::from(letter)),
+                false => letter.to_string(),
+            });
+            Ok(escaped.collect::<String>() + "\n")
+        }
         Ok(text) => Ok(text + "\n"),
         Err(error) => Err(Failure::Refused(error.to_string())),
     }

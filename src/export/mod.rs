@@ -26,3 +26,4 @@ pub mod text;
 pub mod trajectory;
 
 pub use crate::decimal::{decimal, significant};
+pub use crate::spelling::{is_invisible, printable, printable_in_line};

@@ -491,23 +491,17 @@ pub fn motions(
     if let Some(moving) = off_cycle(solution, at) {
         return motions(oscillator, &moving, at);
     }
-    let symbol = amplitude_symbol(solution);
-    let numbers = at.with(symbol, at.get(symbol).unwrap_or(1.0));
+    let numbers = numbers_of_motion(solution, at);
     let settled = on_cycle(solution, at);
     if let (Some(slow), None) = (solution.slow(), &settled) {
         return transient::motions(oscillator, solution, slow, &numbers).map(Some);
     }
     let solution = settled.as_ref().unwrap_or(solution);
-    let meant = meant(oscillator, solution, &numbers);
-    let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
-    if !truth.has_path() {
-        return Err(VerificationError::NoPath);
-    }
+    let truth = true_path(oscillator, solution, &numbers)?;
     let Some((frequency, motion)) = formula_motion(oscillator, solution, &numbers) else {
         return Ok(None);
     };
     let velocity = motion.derivative();
-    let times = (0..=SAMPLES).map(|k| truth.period() * k as f64 / SAMPLES as f64);
     let formula = |t: f64| {
         (
             t,
@@ -516,10 +510,67 @@ pub fn motions(
         )
     };
     Ok(Some(Motions {
-        formula: times.clone().map(formula).collect(),
-        truth: times.map(|t| truth.sample(t)).collect(),
+        formula: instants(&truth).map(formula).collect(),
+        truth: samples_of(&truth),
         envelope: None,
     }))
+}
+
+/// The true motion that an answer is about, over one period, whether its formula has a value there or not; the answer is one of a
+/// periodic motion without a drive.
+///
+/// # Errors
+/// As for [`judge`].
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve, verify::true_motion};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// // omega^2 = 1 - A^2/8 is negative there.
+/// let samples = true_motion(&pendulum, &solution, &"A = 3".parse()?)?;
+/// assert!(samples.last().is_some_and(|(period, ..)| (period - 16.155).abs() < 1e-3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn true_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<Vec<Sample>, VerificationError> {
+    let numbers = numbers_of_motion(solution, at);
+    let settled = on_cycle(solution, at);
+    let solution = settled.as_ref().unwrap_or(solution);
+    true_path(oscillator, solution, &numbers).map(|truth| samples_of(&truth))
+}
+
+/// The values as numbers, the amplitude 1 where it is left out.
+fn numbers_of_motion(solution: &Solution, at: &Values) -> BTreeMap<Symbol, f64> {
+    let symbol = amplitude_symbol(solution);
+    at.with(symbol, at.get(symbol).unwrap_or(1.0))
+}
+
+/// The true motion, with its path.
+fn true_path(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<TrueMotion, VerificationError> {
+    let meant = meant(oscillator, solution, numbers);
+    let truth = TrueMotion::of(oscillator, &meant, numbers)?;
+    match truth.has_path() {
+        true => Ok(truth),
+        false => Err(VerificationError::NoPath),
+    }
+}
+
+/// The instants at which a motion is sampled, over one period.
+fn instants(truth: &TrueMotion) -> impl Iterator<Item = f64> {
+    let period = truth.period();
+    (0..=SAMPLES).map(move |k| period * k as f64 / SAMPLES as f64)
+}
+
+fn samples_of(truth: &TrueMotion) -> Vec<Sample> {
+    instants(truth).map(|t| truth.sample(t)).collect()
 }
 
 /// omega by the formula: the root of omega^2, `None` where that is not positive.
